@@ -1,0 +1,1 @@
+// Keeps the library alive while its rooms fill.

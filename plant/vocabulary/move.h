@@ -1,0 +1,73 @@
+/// Canonical moves: what a program asks of the machine, free of syntax, modal state and units.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+
+#include "plant/vocabulary/axes.h"
+
+namespace servomill {
+
+enum class MoveKind : std::uint8_t {
+  // motion
+  rapid,
+  feed,
+  arc,
+  dwell,
+  // everything else
+  tool,     // M6: `number` is the tool now in the spindle
+  spindle,  // M3 M4 M5: `direction`, `value` in rad/s
+  coolant,  // M7 M8 M9: `number` bit 0 mist, bit 1 flood
+  stop,     // M0 M1 (number 0 or 1): waits for the operator, does not in a simulation
+  end,      // M2 M30
+  message,  // (MSG, ...) `text`
+};
+
+enum class FeedMode : std::uint8_t { units_per_minute, inverse_time };
+
+/// How the path may leave the programmed one at corners.
+enum class PathMode : std::uint8_t {
+  exact_path,  // G61: corners are reached exactly, without a stop where none is needed
+  exact_stop,  // G61.1: stands still at the end of every move
+  continuous,  // G64 P: corners are rounded within `path_tolerance`
+};
+
+/// Circle or helix from the point before to `end`, about `centre`; normal is one of the principal
+/// axes: 0 for G19 (YZ), 1 for G18 (ZX), 2 for G17 (XY).
+struct Arc {
+  int normal_axis = 2;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // m, like `end`; component along normal unused
+  int turns = 1;  // > 0 counter-clockwise about the positive normal, < 0 clockwise; |turns| counts
+                  // started revolutions
+};
+
+/// One canonical move. `end` is in the active work coordinate system, `end_machine` in machine
+/// coordinates: rotation, work offset and tool offset applied. For a machine whose rotary axes
+/// stand still, or without tool-centre-point control, `end_machine` holds the axis positions.
+struct Move {
+  MoveKind kind = MoveKind::feed;
+  int line = 0;                                              // of the original program, from 1
+  AxisWords end = AxisWords::Zero();                         // m, rad
+  AxisWords end_machine = AxisWords::Zero();                 // m, rad
+  Arc arc;                                                   // kind arc, centre in work coordinates
+  Eigen::Vector3d centre_machine = Eigen::Vector3d::Zero();  // kind arc, m
+  double feed = 0.0;  // m/s if X, Y or Z moves, else rad/s; not for rapid
+  FeedMode feed_mode =
+      FeedMode::units_per_minute;  // how it was programmed; `feed` is the same quantity
+  PathMode path_mode = PathMode::continuous;
+  double path_tolerance = 0.0;  // m; 0 with `continuous`: the machine's default
+  double value = 0.0;           // dwell: s; spindle: rad/s
+  int number = 0;
+  int direction = 0;  // spindle: 1 clockwise (M3), -1 (M4), 0 off
+  std::string text;
+
+  // Arc length on the path of the *original* program where this move begins and ends (m). The
+  // reader of a program sets them; whoever rewrites moves carries them over.
+  double s_begin = 0.0;
+  double s_end = 0.0;
+};
+
+constexpr bool is_motion(MoveKind kind) { return kind <= MoveKind::arc; }
+
+}  // namespace servomill
