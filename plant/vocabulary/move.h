@@ -59,7 +59,9 @@ struct Move {
   double path_tolerance = 0.0;  // m; 0 with `continuous`: the machine's default
   double value = 0.0;           // dwell: s; spindle: rad/s
   int number = 0;
-  int direction = 0;  // spindle: 1 clockwise (M3), -1 (M4), 0 off
+  int direction = 0;    // spindle: 1 clockwise (M3), -1 (M4), 0 off
+  int work_offset = 1;  // 1 is G54, 9 is G59.3
+  int tool_offset = 0;  // H of G43; 0: none (G49)
   std::string text;
 
   // Arc length on the path of the *original* program where this move begins and ends (m). The
