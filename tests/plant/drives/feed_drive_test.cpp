@@ -1,0 +1,199 @@
+#include "plant/drives/feed_drive.h"
+
+#include <cvode/cvode.h>
+#include <gtest/gtest.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+namespace servomill::plant {
+namespace {
+
+constexpr double kTick = 10e-6;
+constexpr std::array<bool, kJoints> kOnlyX = {true, false, false, false, false};
+
+FeedDriveParams x_axis() {  // the coherent set of the HSM 600U, axis X
+  FeedDriveParams p;
+  p.r = 0.02 / (2 * std::numbers::pi);
+  p.J = 9.6e-3;
+  p.M = 750;
+  p.k = 2.2e8;
+  p.c = 4.0e4;
+  p.b_motor = 0.01;
+  p.b_load = 1500;
+  p.Kt = 1.6;
+  p.i_max = 50;
+  p.T_i = 0.35e-3;
+  return p;
+}
+
+DriveBank bank_of(const FeedDriveParams& p, std::initializer_list<Tick> steps) {
+  return DriveBank({p, {}, {}, {}, {}}, kOnlyX, kTick, std::vector<Tick>(steps));
+}
+
+// Reference integration of drive_equations by CVODE (BDF, dense), restarted at each change of
+// input.
+class CvodeDrive {
+ public:
+  explicit CvodeDrive(const FeedDriveParams& p) : A_(drive_equations(p)) {
+    SUNContext_Create(nullptr, &context_);
+    y_ = N_VNew_Serial(5, context_);
+    N_VConst(0.0, y_);
+    memory_ = CVodeCreate(CV_BDF, context_);
+    CVodeInit(memory_, &CvodeDrive::rhs, 0.0, y_);
+    CVodeSetUserData(memory_, this);
+    absolute_ = N_VNew_Serial(5, context_);
+    for (int i = 0; i < 5; ++i) NV_Ith_S(absolute_, i) = i < 2 ? 1e-13 : 1e-17;
+    CVodeSVtolerances(memory_, 1e-12, absolute_);
+    matrix_ = SUNDenseMatrix(5, 5, context_);
+    solver_ = SUNLinSol_Dense(y_, matrix_, context_);
+    CVodeSetLinearSolver(memory_, solver_, matrix_);
+    CVodeSetMaxNumSteps(memory_, 1000000);
+  }
+  ~CvodeDrive() {
+    CVodeFree(&memory_);
+    SUNLinSolFree(solver_);
+    SUNMatDestroy(matrix_);
+    N_VDestroy(absolute_);
+    N_VDestroy(y_);
+    SUNContext_Free(&context_);
+  }
+  CvodeDrive(const CvodeDrive&) = delete;
+  CvodeDrive& operator=(const CvodeDrive&) = delete;
+
+  void hold(double i_cmd, double F, double until) {
+    input_ << i_cmd, F;
+    CVodeReInit(memory_, t_, y_);
+    CVodeSetStopTime(memory_, until);
+    double reached = t_;
+    while (reached < until) {
+      ASSERT_GE(CVode(memory_, until, y_, &reached, CV_NORMAL), 0);
+    }
+    t_ = until;
+  }
+  double state(int i) const { return NV_Ith_S(y_, i); }
+
+ private:
+  static int rhs(double, N_Vector y, N_Vector dy, void* self) {
+    const auto& drive = *static_cast<CvodeDrive*>(self);
+    Eigen::Matrix<double, 7, 1> z;
+    z << Eigen::Map<Eigen::Matrix<double, 5, 1>>(N_VGetArrayPointer(y)), drive.input_;
+    Eigen::Map<Eigen::Matrix<double, 5, 1>>(N_VGetArrayPointer(dy)) = drive.A_ * z;
+    return 0;
+  }
+  Eigen::Matrix<double, 5, 7> A_;
+  Eigen::Vector2d input_ = Eigen::Vector2d::Zero();
+  double t_ = 0.0;
+  SUNContext context_ = nullptr;
+  N_Vector y_ = nullptr, absolute_ = nullptr;
+  void* memory_ = nullptr;
+  SUNMatrix matrix_ = nullptr;
+  SUNLinearSolver solver_ = nullptr;
+};
+
+TEST(FeedDrive, AgreesWithCvodeUnderHeldInputs) {
+  constexpr double kPositionTol = 1e-12;  // m, CVODE at rtol 1e-12 after 50 changes of input
+  const DriveBank bank = bank_of(x_axis(), {20});
+  DriveState s;
+  DriveInput input;
+  CvodeDrive reference(x_axis());
+  for (int n = 0; n < 50; ++n) {
+    input.i_cmd[0] = 20.0 * std::sin(0.7 * n);
+    input.F[0] = n % 2 ? 300.0 : -100.0;
+    bank.advance(s, input, 20);
+    reference.hold(input.i_cmd[0], input.F[0], (n + 1) * 20 * kTick);
+    ASSERT_NEAR(s.x[0], reference.state(4), kPositionTol) << n;
+    ASSERT_NEAR(s.v[0], reference.state(3), 1e-9) << n;
+    ASSERT_NEAR(s.w[0], reference.state(1), 1e-7) << n;
+  }
+}
+
+TEST(FeedDrive, OneLongStepEqualsManyShortOnes) {
+  constexpr double kRoundingTol = 1e-15;  // m, sixty products of rounding
+  const DriveBank bank = bank_of(x_axis(), {1, 60});
+  DriveState fine, coarse;
+  DriveInput input;
+  input.i_cmd[0] = 12.0;
+  for (int n = 0; n < 60; ++n) bank.advance(fine, input, 1);
+  bank.advance(coarse, input, 60);
+  EXPECT_NEAR(fine.x[0], coarse.x[0], kRoundingTol);
+}
+
+TEST(FeedDrive, ConstantCurrentAcceleratesTheTotalInertia) {
+  FeedDriveParams p = x_axis();
+  p.b_motor = p.b_load = 0.0;
+  const DriveBank bank = bank_of(p, {1000});
+  DriveState s;
+  DriveInput input;
+  input.i_cmd[0] = 10.0;
+  for (int n = 0; n < 20; ++n) bank.advance(s, input, 1000);  // until the screw is wound up
+  const double v0 = s.v[0];
+  for (int n = 0; n < 20; ++n) bank.advance(s, input, 1000);
+  const double acceleration = (s.v[0] - v0) / (20 * 1000 * kTick);
+  EXPECT_NEAR(acceleration, p.Kt * 10.0 * p.r / p.J_total(), 1e-6 * acceleration);
+}
+
+TEST(FeedDrive, ResonatesWhereTheTwoMassFormulaSays) {
+  FeedDriveParams p = x_axis();
+  p.b_motor = p.b_load = 0.0;
+  p.c = 0.0;
+  const DriveBank bank = bank_of(p, {1});
+  DriveState s;
+  s.delta[0] = 1e-6;  // wound up, then released
+  int crossings = 0;
+  double first = 0, last = 0, before = s.delta[0];
+  for (int n = 1; n < 100000; ++n) {
+    bank.advance(s, {}, 1);
+    if (before > 0 && s.delta[0] <= 0) {
+      const double t = (n - s.delta[0] / (s.delta[0] - before)) * kTick;
+      (crossings++ ? last : first) = t;
+    }
+    before = s.delta[0];
+  }
+  const double f = (crossings - 1) / (last - first);
+  const double expected = std::sqrt(p.k * (1 / p.M + p.r * p.r / p.J)) / (2 * std::numbers::pi);
+  EXPECT_NEAR(f, expected, 1e-5 * expected);
+  EXPECT_NEAR(expected, 115.0, 0.5);  // DOMAIN: 115 Hz
+}
+
+TEST(FeedDrive, RigidIsTheStiffLimit) {
+  const auto deviation = [](double stiffness_factor) {
+    FeedDriveParams stiff = x_axis();
+    stiff.k *= stiffness_factor;
+    stiff.c *= std::sqrt(stiffness_factor);
+    FeedDriveParams rigid = x_axis();
+    rigid.kind = DriveKind::rigid;
+    DriveState a, b;
+    const DriveBank bank_a = bank_of(stiff, {100}), bank_b = bank_of(rigid, {100});
+    DriveInput input;
+    input.i_cmd[0] = 10.0;
+    for (int n = 0; n < 200; ++n) {
+      bank_a.advance(a, input, 100);
+      bank_b.advance(b, input, 100);
+    }
+    return std::abs(a.x[0] - b.x[0]);
+  };
+  const double coarse = deviation(1.0), fine = deviation(100.0);
+  EXPECT_NEAR(coarse / fine, 100.0, 5.0);  // first order in 1/k
+}
+
+TEST(FeedDrive, StaysAtRestUnderItsConstantLoad) {
+  FeedDriveParams p = x_axis();
+  p.F_load = 200.0;
+  const DriveBank bank = bank_of(p, {20});
+  Joints Q = Joints::Zero();
+  Q[0] = 0.25;
+  DriveState s = bank.at_rest(Q);
+  DriveInput input;
+  input.i_cmd[0] = s.i[0];
+  for (int n = 0; n < 5000; ++n) bank.advance(s, input, 20);
+  EXPECT_NEAR(s.x[0], 0.25, 1e-12);
+  EXPECT_EQ(s.x[1], 0.0);  // joints that the machine lacks do not move
+}
+
+}  // namespace
+}  // namespace servomill::plant
