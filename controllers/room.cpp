@@ -1,1 +1,0 @@
-// Keeps the library alive while its rooms fill.
