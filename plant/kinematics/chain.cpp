@@ -8,23 +8,9 @@
 namespace servomill::plant {
 namespace {
 
-void move(const ChainAxis& a, const JointMotion& m, ToolPose& P) {
-  if (is_linear(a.axis)) {
-    P.p_WT[index_of(a.axis)] += m.shift;
-    return;
-  }
-  P.p_WT = turned(a.axis, m.cosine, m.sine, P.p_WT - a.centre) + a.centre;
-  P.k_W = turned(a.axis, m.cosine, m.sine, P.k_W);
-}
-
 void turn_columns(const ChainAxis& a, double q, Eigen::Matrix3d& R) {
   const JointMotion m = motion_at(a, q);
   for (int i = 0; i < 3; ++i) R.col(i) = turned(a.axis, m.cosine, m.sine, R.col(i));
-}
-
-int linear_axes(const MachineChain& chain) {
-  return static_cast<int>(std::count_if(chain.axes.begin(), chain.axes.end(),
-                                        [](const ChainAxis& a) { return is_linear(a.axis); }));
 }
 
 }  // namespace
@@ -38,6 +24,11 @@ ChainAxis& MachineChain::at(Axis axis) {
 
 const ChainAxis& MachineChain::at(Axis axis) const {
   return const_cast<MachineChain*>(this)->at(axis);
+}
+
+int number_of_linear_axes(const MachineChain& chain) {
+  return static_cast<int>(std::count_if(chain.axes.begin(), chain.axes.end(),
+                                        [](const ChainAxis& a) { return is_linear(a.axis); }));
 }
 
 MachineChain make_chain(const Structure& structure) {
@@ -61,7 +52,7 @@ JointMotion motion_at(const ChainAxis& axis, double q) {
 ToolPose forward(const MachineChain& chain, const Joints& Q, const Eigen::Vector3d& p_ST) {
   ToolPose P{p_ST, Eigen::Vector3d::UnitZ()};
   for (auto a = chain.axes.rbegin(); a != chain.axes.rend(); ++a) {
-    move(*a, motion_at(*a, Q[a->joint]), P);
+    apply(*a, motion_at(*a, Q[a->joint]), P);
   }
   return P;
 }
@@ -101,7 +92,7 @@ std::optional<Joints> inverse_fixed_rotary(const MachineChain& chain, const Eige
   // The tip is an affine function of the linear joints; the second round removes rounding.
   for (int round = 0; round < 2; ++round) {
     const LeastSquares step = least_squares(J, p_WT - forward(chain, Q, p_ST).p_WT);
-    if (step.rank < linear_axes(chain)) return std::nullopt;
+    if (step.rank < number_of_linear_axes(chain)) return std::nullopt;
     Q.head<kLinearJoints>() += step.x;
   }
   const double miss = (p_WT - forward(chain, Q, p_ST).p_WT).norm();

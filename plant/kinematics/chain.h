@@ -33,7 +33,7 @@ struct ChainAxis {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // m in M, all axes at zero. A rotary axis
                                                      // turns about a line through this point;
                                                      // angular errors of any axis turn about it.
-  Sense sense = Sense::tool;  // rotary axes only
+  Sense sense = Sense::tool;                         // rotary axes only
 };
 
 struct MachineChain {
@@ -44,6 +44,8 @@ struct MachineChain {
   ChainAxis& at(Axis axis);
   const ChainAxis& at(Axis axis) const;
 };
+
+int number_of_linear_axes(const MachineChain& chain);
 
 /// Chain of a structure with all centres at the origin and all senses `tool`.
 MachineChain make_chain(const Structure& structure);
@@ -86,6 +88,16 @@ inline Eigen::Vector3d turned(Axis about, double cosine, double sine, const Eige
   u[i] = cosine * v[i] - sine * v[j];
   u[j] = sine * v[i] + cosine * v[j];
   return u;
+}
+
+/// What one ideal joint does to a tool pose given in the frame behind it.
+inline void apply(const ChainAxis& a, const JointMotion& m, ToolPose& P) {
+  if (is_linear(a.axis)) {
+    P.p_WT[index_of(a.axis)] += m.shift;
+    return;
+  }
+  P.p_WT = turned(a.axis, m.cosine, m.sine, P.p_WT - a.centre) + a.centre;
+  P.k_W = turned(a.axis, m.cosine, m.sine, P.k_W);
 }
 
 /// The shifts x that bring J x as close as possible to v, the smallest such x; the rank of J.

@@ -1,0 +1,129 @@
+#include "plant/geometry/error_function.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace servomill::plant {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+// Index of the first point above `at`, from 1 to size - 1 inside the table.
+std::size_t upper_point(const LinearTable& table, double at) {
+  const auto above = std::upper_bound(table.s.begin(), table.s.end(), at);
+  return static_cast<std::size_t>(above - table.s.begin());
+}
+
+double slope(const LinearTable& table, std::size_t i) {
+  return (table.error[i] - table.error[i - 1]) / (table.s[i] - table.s[i - 1]);
+}
+
+bool all_zero(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return v == 0.0; });
+}
+
+}  // namespace
+
+double Harmonic::value(double s) const { return amplitude * std::sin(kTurn / period * s + phase); }
+
+double Harmonic::derivative(double s) const {
+  return amplitude * (kTurn / period) * std::cos(kTurn / period * s + phase);
+}
+
+double LinearTable::value(double at) const {
+  const std::size_t i = upper_point(*this, at);
+  if (i == 0) return error.front();
+  if (i == s.size()) return error.back();
+  return error[i - 1] + slope(*this, i) * (at - s[i - 1]);
+}
+
+double LinearTable::derivative(double at) const {
+  const std::size_t i = upper_point(*this, at);
+  return i == 0 || i == s.size() ? 0.0 : slope(*this, i);
+}
+
+double ErrorFunction::value(double s) const {
+  double sum = 0.0;
+  for (std::size_t i = polynomial.size(); i-- > 0;) sum = sum * s + polynomial[i];
+  for (const Harmonic& h : harmonics) sum += h.value(s);
+  for (const LinearTable& t : tables) sum += t.value(s);
+  return sum;
+}
+
+double ErrorFunction::derivative(double s) const {
+  double sum = 0.0;
+  for (std::size_t i = polynomial.size(); i-- > 1;) {
+    sum = sum * s + static_cast<double>(i) * polynomial[i];
+  }
+  for (const Harmonic& h : harmonics) sum += h.derivative(s);
+  for (const LinearTable& t : tables) sum += t.derivative(s);
+  return sum;
+}
+
+bool ErrorFunction::is_zero() const {
+  return all_zero(polynomial) &&
+         std::all_of(harmonics.begin(), harmonics.end(),
+                     [](const Harmonic& h) { return h.amplitude == 0.0; }) &&
+         std::all_of(tables.begin(), tables.end(),
+                     [](const LinearTable& t) { return all_zero(t.error); });
+}
+
+ErrorFunction constant(double c) { return polynomial({c}); }
+
+ErrorFunction polynomial(std::vector<double> coefficients) {
+  return {std::move(coefficients), {}, {}};
+}
+
+ErrorFunction harmonic(double amplitude, double period, double phase) {
+  assert(period > 0.0);
+  return {{}, {{amplitude, period, phase}}, {}};
+}
+
+ErrorFunction linear_table(std::vector<double> s, std::vector<double> error) {
+  assert(!table_fault(s, error));
+  return {{}, {}, {{std::move(s), std::move(error)}}};
+}
+
+std::optional<std::string> table_fault(const std::vector<double>& s,
+                                       const std::vector<double>& error) {
+  if (s.empty()) return "has no points; must have at least 1";
+  if (s.size() != error.size()) {
+    return fmt::format("has {} positions and {} errors; must have as many", s.size(), error.size());
+  }
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    if (!std::isfinite(s[i]) || !std::isfinite(error[i])) {
+      return fmt::format("has ({}, {}) at point {}; must be finite", s[i], error[i], i + 1);
+    }
+    if (i > 0 && !(s[i] > s[i - 1])) {
+      return fmt::format("has {} after {} at point {}; positions must increase", s[i], s[i - 1],
+                         i + 1);
+    }
+  }
+  return std::nullopt;
+}
+
+ErrorFunction operator+(const ErrorFunction& f, const ErrorFunction& g) {
+  ErrorFunction sum = f;
+  sum.polynomial.resize(std::max(f.polynomial.size(), g.polynomial.size()), 0.0);
+  for (std::size_t i = 0; i < g.polynomial.size(); ++i) sum.polynomial[i] += g.polynomial[i];
+  sum.harmonics.insert(sum.harmonics.end(), g.harmonics.begin(), g.harmonics.end());
+  sum.tables.insert(sum.tables.end(), g.tables.begin(), g.tables.end());
+  return sum;
+}
+
+ErrorFunction scaled(const ErrorFunction& f, double factor) {
+  ErrorFunction out = f;
+  for (double& c : out.polynomial) c *= factor;
+  for (Harmonic& h : out.harmonics) h.amplitude *= factor;
+  for (LinearTable& t : out.tables) {
+    for (double& e : t.error) e *= factor;
+  }
+  return out;
+}
+
+}  // namespace servomill::plant

@@ -1,0 +1,58 @@
+/// Geometric error as a function of the coordinate of its axis.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace servomill::plant {
+
+/// amplitude sin(2 pi s / period + phase)
+struct Harmonic {
+  double amplitude = 0.0;  // m or rad
+  double period = 1.0;     // m or rad of travel, > 0
+  double phase = 0.0;      // rad
+  double value(double s) const;
+  double derivative(double s) const;
+  bool operator==(const Harmonic&) const = default;
+};
+
+/// Linear between points, constant beyond the first and the last.
+struct LinearTable {
+  std::vector<double> s;      // m or rad of travel, strictly increasing, at least one
+  std::vector<double> error;  // m or rad, one for each s
+  double value(double at) const;
+  double derivative(double at) const;  ///< at a point: that of the interval above it
+  bool operator==(const LinearTable&) const = default;
+};
+
+/// Sum of a polynomial, harmonics and tables; zero when empty. Values are m for errors along X, Y,
+/// Z and rad for errors about A, B, C; the coordinate s is m for linear axes and rad for rotary
+/// ones.
+struct ErrorFunction {
+  std::vector<double> polynomial;  // c0 + c1 s + c2 s^2 + ...
+  std::vector<Harmonic> harmonics;
+  std::vector<LinearTable> tables;
+
+  double value(double s) const;
+  double derivative(double s) const;
+
+  /// True only if the function vanishes everywhere because all its numbers do.
+  bool is_zero() const;
+  bool operator==(const ErrorFunction&) const = default;
+};
+
+ErrorFunction constant(double c);
+ErrorFunction polynomial(std::vector<double> coefficients);
+ErrorFunction harmonic(double amplitude, double period, double phase = 0.0);
+/// @pre table_fault(s, error) is nullopt
+ErrorFunction linear_table(std::vector<double> s, std::vector<double> error);
+
+/// Rule that a table breaks, to be put behind the name of its key, or nullopt.
+std::optional<std::string> table_fault(const std::vector<double>& s,
+                                       const std::vector<double>& error);
+
+ErrorFunction operator+(const ErrorFunction& f, const ErrorFunction& g);
+ErrorFunction scaled(const ErrorFunction& f, double factor);
+
+}  // namespace servomill::plant

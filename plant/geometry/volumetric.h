@@ -1,0 +1,116 @@
+/// Kinematics with geometric errors, and the volumetric error: where the tool is minus where the
+/// ideal machine would have it. Sign convention: `plant/geometry/error_model.h`.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "plant/geometry/error_model.h"
+#include "plant/kinematics/chain.h"
+
+namespace servomill::plant {
+
+/// Deviation of the tool from the ideal machine, in W.
+struct VolumetricError {
+  Eigen::Vector3d dp_W = Eigen::Vector3d::Zero();  // m, of the tip
+  Eigen::Vector3d dk_W = Eigen::Vector3d::Zero();  // of the unit tool axis
+};
+
+/// Derivatives of the tool pose at Q: dp_WT = J_pQ dQ (m/m, m/rad), dk_W = J_kQ dQ (1/m, 1/rad).
+struct PoseJacobian {
+  Eigen::Matrix<double, 3, kJoints> J_pQ = Eigen::Matrix<double, 3, kJoints>::Zero();
+  Eigen::Matrix<double, 3, kJoints> J_kQ = Eigen::Matrix<double, 3, kJoints>::Zero();
+};
+
+/// A machine with its errors, prepared so that one evaluation costs only the errors that are not
+/// zero. Constant after construction: any number of threads may share it. No allocation after that.
+///
+/// Laws, for all Q and tools:
+///   (1) errors zero:  forward(Q) == plant::forward(chain, Q), bit for bit
+///   (2) error(Q) = forward(Q) - plant::forward(chain, Q)
+///   (3) |error(Q) - first_order_error(Q)| shrinks with the square of the errors
+///   (4) forward(inverse(p)) = p
+///   (5) linear_jacobian(chain, Q) joint_offset(Q) = error(Q).dp_W
+class VolumetricModel {
+ public:
+  VolumetricModel(const MachineChain& chain, const ErrorModel& errors);
+
+  const MachineChain& chain() const { return chain_; }
+
+  /// Pose of the tool of the machine with errors.
+  /// @param Q     joint coordinates (5; m, rad)
+  /// @param p_ST  tip in the spindle nose (3; m)
+  ToolPose forward(const Joints& Q, const Eigen::Vector3d& p_ST) const;
+
+  /// Exact volumetric error.
+  VolumetricError error(const Joints& Q, const Eigen::Vector3d& p_ST) const;
+
+  /// Volumetric error to first order in the errors: the sum of the screws that the single errors
+  /// would cause on an otherwise ideal machine.
+  VolumetricError first_order_error(const Joints& Q, const Eigen::Vector3d& p_ST) const;
+
+  /// Shift of X, Y, Z (3; m) that moves the ideal tip by error(Q).dp_W. Where the linear axes
+  /// cannot do that (fewer than three, or two of them parallel at these angles) the shift that
+  /// comes closest, and the smallest of those; 0 for axes that the machine lacks.
+  Eigen::Vector3d joint_offset(const Joints& Q, const Eigen::Vector3d& p_ST) const;
+
+  /// Derivatives of forward() with respect to all joints, error functions included.
+  PoseJacobian jacobian(const Joints& Q, const Eigen::Vector3d& p_ST) const;
+
+  /// Linear joints that put the true tip at p_WT, rotary joints as in Q_near, by Newton's method.
+  /// @return all joints (5; m, rad), or nullopt if the tip is not within kInverseTolerance after
+  ///         kMaxNewtonSteps, or two linear axes are parallel
+  std::optional<Joints> inverse(const Eigen::Vector3d& p_WT, const Joints& Q_near,
+                                const Eigen::Vector3d& p_ST) const;
+
+  static constexpr double kInverseTolerance = 1e-12;  // m
+  static constexpr int kMaxNewtonSteps = 20;
+
+ private:
+  // Errors of one axis, laid out for evaluation: all six polynomials are one of vectors.
+  struct Prepared {
+    template <class T>
+    struct Term {
+      int direction;
+      T function;
+    };
+    bool has_components = false, has_angles = false, has_location = false;
+    std::vector<AxisWords> polynomial;  // c0, c1, ... (6; EX. EY. EZ. EA. EB. EC.)
+    std::vector<Term<Harmonic>> harmonics;
+    std::vector<Term<LinearTable>> tables;
+    AxisWords location = AxisWords::Zero();
+    Eigen::Matrix3d R_location = Eigen::Matrix3d::Identity();  // of L
+  };
+  using Motions = std::array<JointMotion, kJoints>;  // in the order of chain_.axes
+
+  static Prepared prepare(const ChainAxis& axis, const ErrorModel& errors);
+  static AxisWords values(const Prepared& errors, double q);
+  static AxisWords derivatives(const Prepared& errors, double q);
+  static void apply_component_errors(const Prepared& errors, double q, ToolPose& P);
+  static void apply_with_errors(const ChainAxis& a, const Prepared& errors, double q,
+                                const JointMotion& m, ToolPose& P);
+  Motions motions_at(const Joints& Q) const;
+  ToolPose true_pose(const Joints& Q, const Motions& motions, const Eigen::Vector3d& p_ST) const;
+  ToolPose ideal_pose(const Motions& motions, const Eigen::Vector3d& p_ST) const;
+
+  MachineChain chain_;
+  std::vector<Prepared> errors_;     // in the order of chain_.axes
+  bool linear_axes_are_orthogonal_;  // three of them, no rotary axis between
+};
+
+/// The same for one evaluation; prepare a VolumetricModel for many.
+ToolPose forward(const MachineChain& chain, const ErrorModel& errors, const Joints& Q,
+                 const Eigen::Vector3d& p_ST);
+VolumetricError volumetric_error(const MachineChain& chain, const ErrorModel& errors,
+                                 const Joints& Q, const Eigen::Vector3d& p_ST);
+VolumetricError first_order_volumetric_error(const MachineChain& chain, const ErrorModel& errors,
+                                             const Joints& Q, const Eigen::Vector3d& p_ST);
+std::optional<Joints> nonideal_inverse(const MachineChain& chain, const ErrorModel& errors,
+                                       const Eigen::Vector3d& p_WT, const Joints& Q_near,
+                                       const Eigen::Vector3d& p_ST);
+Eigen::Vector3d joint_offset(const MachineChain& chain, const ErrorModel& errors, const Joints& Q,
+                             const Eigen::Vector3d& p_ST);
+
+}  // namespace servomill::plant

@@ -1,0 +1,28 @@
+/// Reproducible random error models for the law tests.
+#pragma once
+
+#include "plant/geometry/error_model.h"
+#include "tests/plant/kinematics/all_structures.h"
+
+namespace servomill::plant {
+
+/// A cubic and a harmonic of up to about three times `size` within 1 m or 2 rad.
+inline ErrorFunction random_function(Uniform& random, double size) {
+  const double c0 = size * random(), c1 = size * random(), c2 = size * random();
+  const double amplitude = size * random(), phase = 3.0 * random();
+  return polynomial({c0, c1, c2, 0.3 * size * random()}) + harmonic(amplitude, 0.8, phase);
+}
+
+/// All component and location errors, of `size` (m, rad).
+inline ErrorModel random_errors(Uniform& random, double size) {
+  ErrorModel errors;
+  for (auto& axis : errors.components) {
+    for (ErrorFunction& f : axis) f = random_function(random, size);
+  }
+  for (AxisWords& axis : errors.locations) {
+    for (double& e : axis) e = size * random();
+  }
+  return errors;
+}
+
+}  // namespace servomill::plant
