@@ -11,8 +11,6 @@
 namespace servomill::plant {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
-
 // Index of the first point above `at`, from 1 to size - 1 inside the table.
 std::size_t upper_point(const LinearTable& table, double at) {
   const auto above = std::upper_bound(table.s.begin(), table.s.end(), at);
@@ -29,10 +27,12 @@ bool all_zero(const std::vector<double>& values) {
 
 }  // namespace
 
-double Harmonic::value(double s) const { return amplitude * std::sin(kTurn / period * s + phase); }
+double Harmonic::omega() const { return 2.0 * std::numbers::pi / period; }
+
+double Harmonic::value(double s) const { return amplitude * std::sin(omega() * s + phase); }
 
 double Harmonic::derivative(double s) const {
-  return amplitude * (kTurn / period) * std::cos(kTurn / period * s + phase);
+  return amplitude * omega() * std::cos(omega() * s + phase);
 }
 
 double LinearTable::value(double at) const {

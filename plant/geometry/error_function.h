@@ -12,6 +12,7 @@ struct Harmonic {
   double amplitude = 0.0;  // m or rad
   double period = 1.0;     // m or rad of travel, > 0
   double phase = 0.0;      // rad
+  double omega() const;    ///< 2 pi / period
   double value(double s) const;
   double derivative(double s) const;
   bool operator==(const Harmonic&) const = default;

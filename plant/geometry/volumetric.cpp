@@ -10,21 +10,18 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Exponential of [e]x: Rot v = v + a e x v + b e x (e x v), and its left Jacobian, which gives the
-// angular velocity e' + b e x e' + c e x (e x e').
+// Exponential of [e]x: Rot v = v + a e x v + b e x (e x v). The angular velocity when e changes by
+// de is de + b e x de + c e x (e x de).
 class Rotation {
  public:
-  explicit Rotation(const Vector3d& e) : e_(e) {
-    const double t2 = e.squaredNorm();
-    if (t2 < kSeries) {
-      a_ = 1.0 - t2 / 6.0 * (1.0 - t2 / 20.0 * (1.0 - t2 / 42.0));
-      b_ = 0.5 - t2 / 24.0 * (1.0 - t2 / 30.0 * (1.0 - t2 / 56.0));
-      c_ = 1.0 / 6.0 - t2 / 120.0 * (1.0 - t2 / 42.0 * (1.0 - t2 / 72.0));
+  explicit Rotation(const Vector3d& e) : e_(e), t2_(e.squaredNorm()) {
+    if (t2_ < kSeries) {
+      a_ = 1.0 + t2_ * (-1.0 / 6.0 + t2_ * (1.0 / 120.0 - t2_ * (1.0 / 5040.0)));
+      b_ = 0.5 + t2_ * (-1.0 / 24.0 + t2_ * (1.0 / 720.0 - t2_ * (1.0 / 40320.0)));
     } else {
-      const double t = std::sqrt(t2);
+      const double t = std::sqrt(t2_);
       a_ = std::sin(t) / t;
-      b_ = (1.0 - std::cos(t)) / t2;
-      c_ = (1.0 - a_) / t2;
+      b_ = (1.0 - std::cos(t)) / t2_;
     }
   }
 
@@ -40,14 +37,16 @@ class Rotation {
   }
 
   Vector3d velocity(const Vector3d& de) const {
+    const double c =
+        t2_ < kSeries ? 1.0 / 6.0 - t2_ * (1.0 / 120.0 - t2_ * (1.0 / 5040.0)) : (1.0 - a_) / t2_;
     const Vector3d ed = e_.cross(de);
-    return de + b_ * ed + c_ * e_.cross(ed);
+    return de + b_ * ed + c * e_.cross(ed);
   }
 
  private:
   static constexpr double kSeries = 1e-3;  // rad^2: the next term is below 1e-17
   Vector3d e_;
-  double a_, b_, c_;
+  double t2_, a_, b_;
 };
 
 Vector3d shift_of(const AxisWords& errors) { return errors.head<3>(); }
@@ -66,6 +65,12 @@ bool has_orthogonal_linear_axes(const MachineChain& chain) {
     }
   }
   return linear == kLinearJoints;
+}
+
+std::size_t leading_rotary_axes(const MachineChain& chain) {
+  const auto first = std::find_if(chain.axes.begin(), chain.axes.end(),
+                                  [](const ChainAxis& a) { return is_linear(a.axis); });
+  return static_cast<std::size_t>(first - chain.axes.begin());
 }
 
 // A tool pose and its derivatives with respect to all joints, moved together by rigid motions.
@@ -92,6 +97,8 @@ struct PoseAndJacobian {
 VolumetricModel::VolumetricModel(const MachineChain& chain, const ErrorModel& errors)
     : chain_(chain), linear_axes_are_orthogonal_(has_orthogonal_linear_axes(chain)) {
   for (const ChainAxis& a : chain_.axes) errors_.push_back(prepare(a, errors));
+  const std::size_t rotary = leading_rotary_axes(chain_);
+  for (faultless_ = 0; faultless_ < rotary && errors_[faultless_].is_zero();) ++faultless_;
 }
 
 VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
@@ -105,20 +112,25 @@ VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
     out.has_angles = out.has_angles || !is_linear(direction);
     out.polynomial.resize(std::max(out.polynomial.size(), f.polynomial.size()), AxisWords::Zero());
     for (std::size_t i = 0; i < f.polynomial.size(); ++i) out.polynomial[i][d] = f.polynomial[i];
-    for (const Harmonic& h : f.harmonics) out.harmonics.push_back({d, h});
+    for (const Harmonic& h : f.harmonics) {
+      out.harmonics.push_back({d, h.amplitude, h.omega(), h.phase});
+    }
     for (const LinearTable& t : f.tables) out.tables.push_back({d, t});
   }
   out.location = errors.locations[static_cast<std::size_t>(index_of(axis.axis))];
   out.has_location = !out.location.isZero(0.0);
   out.R_location = Rotation(turn_of(out.location)).matrix();
+  if (is_linear(axis.axis)) out.direction = out.R_location * unit_vector(axis.axis);
   return out;
 }
 
 AxisWords VolumetricModel::values(const Prepared& errors, double q) {
   AxisWords e = AxisWords::Zero();
   for (std::size_t i = errors.polynomial.size(); i-- > 0;) e = e * q + errors.polynomial[i];
-  for (const auto& h : errors.harmonics) e[h.direction] += h.function.value(q);
-  for (const auto& t : errors.tables) e[t.direction] += t.function.value(q);
+  for (const auto& h : errors.harmonics) {
+    e[h.direction] += h.amplitude * std::sin(h.omega * q + h.phase);
+  }
+  for (const auto& t : errors.tables) e[t.direction] += t.table.value(q);
   return e;
 }
 
@@ -127,92 +139,84 @@ AxisWords VolumetricModel::derivatives(const Prepared& errors, double q) {
   for (std::size_t i = errors.polynomial.size(); i-- > 1;) {
     e = e * q + static_cast<double>(i) * errors.polynomial[i];
   }
-  for (const auto& h : errors.harmonics) e[h.direction] += h.function.derivative(q);
-  for (const auto& t : errors.tables) e[t.direction] += t.function.derivative(q);
+  for (const auto& h : errors.harmonics) {
+    e[h.direction] += h.amplitude * h.omega * std::cos(h.omega * q + h.phase);
+  }
+  for (const auto& t : errors.tables) e[t.direction] += t.table.derivative(q);
   return e;
 }
 
+template <bool kWithAxis>
 void VolumetricModel::apply_component_errors(const Prepared& errors, double q, ToolPose& P) {
   if (!errors.has_components) return;
   const AxisWords e = values(errors, q);
   if (errors.has_angles) {
     const Rotation R(turn_of(e));
     P.p_WT = R * P.p_WT;
-    P.k_W = R * P.k_W;
+    if constexpr (kWithAxis) P.k_W = R * P.k_W;
   }
   P.p_WT += shift_of(e);
 }
 
+template <bool kWithAxis>
 void VolumetricModel::apply_with_errors(const ChainAxis& a, const Prepared& errors, double q,
                                         const JointMotion& m, ToolPose& P) {
   P.p_WT -= a.centre;
-  if (a.side == Side::tool) apply_component_errors(errors, q, P);
-  // L^-1
-  if (errors.has_location) {
-    P.p_WT = errors.R_location.transpose() * P.p_WT - shift_of(errors.location);
-    P.k_W = errors.R_location.transpose() * P.k_W;
-  }
-  // J(q), now about the origin
+  if (a.side == Side::tool) apply_component_errors<kWithAxis>(errors, q, P);
+  // L J(q) L^-1, now about the origin
   if (is_linear(a.axis)) {
-    P.p_WT[index_of(a.axis)] += m.shift;
-  } else {
+    P.p_WT += m.shift * errors.direction;
+  } else if (!errors.has_location) {
     P.p_WT = turned(a.axis, m.cosine, m.sine, P.p_WT);
     P.k_W = turned(a.axis, m.cosine, m.sine, P.k_W);
+  } else {
+    const Matrix3d& R = errors.R_location;
+    const Vector3d t = shift_of(errors.location);
+    const Vector3d p = R.transpose() * P.p_WT - t, k = R.transpose() * P.k_W;
+    P.p_WT = R * (turned(a.axis, m.cosine, m.sine, p) + t);
+    P.k_W = R * turned(a.axis, m.cosine, m.sine, k);
   }
-  // L
-  if (errors.has_location) {
-    P.p_WT = errors.R_location * (P.p_WT + shift_of(errors.location));
-    P.k_W = errors.R_location * P.k_W;
-  }
-  if (a.side == Side::workpiece) apply_component_errors(errors, q, P);
+  if (a.side == Side::workpiece) apply_component_errors<kWithAxis>(errors, q, P);
   P.p_WT += a.centre;
 }
 
-VolumetricModel::Motions VolumetricModel::motions_at(const Joints& Q) const {
-  Motions motions;
-  for (std::size_t i = 0; i < chain_.axes.size(); ++i) {
-    motions[i] = motion_at(chain_.axes[i], Q[chain_.axes[i].joint]);
-  }
-  return motions;
-}
-
-ToolPose VolumetricModel::ideal_pose(const Motions& motions, const Vector3d& p_ST) const {
-  ToolPose P{p_ST, Vector3d::UnitZ()};
-  for (std::size_t i = chain_.axes.size(); i-- > 0;) apply(chain_.axes[i], motions[i], P);
-  return P;
-}
-
-ToolPose VolumetricModel::true_pose(const Joints& Q, const Motions& motions,
-                                    const Vector3d& p_ST) const {
-  ToolPose P{p_ST, Vector3d::UnitZ()};
-  for (std::size_t i = chain_.axes.size(); i-- > 0;) {
+// Takes the true tool, and the ideal one if asked for, from the spindle to the frame before
+// `first_axis`. Without the tool axis k_W is left meaningless.
+template <bool kWithAxis>
+void VolumetricModel::move_through(std::size_t first_axis, const Joints& Q, ToolPose& P_true,
+                                   ToolPose* P) const {
+  for (std::size_t i = chain_.axes.size(); i-- > first_axis;) {
     const ChainAxis& a = chain_.axes[i];
-    if (errors_[i].has_components || errors_[i].has_location) {
-      apply_with_errors(a, errors_[i], Q[a.joint], motions[i], P);
+    const double q = Q[a.joint];
+    const JointMotion m = motion_at(a, q);
+    if (errors_[i].is_zero()) {
+      apply(a, m, P_true);
     } else {
-      apply(a, motions[i], P);
+      apply_with_errors<kWithAxis>(a, errors_[i], q, m, P_true);
     }
+    if (P != nullptr) apply(a, m, *P);
   }
-  return P;
 }
 
 ToolPose VolumetricModel::forward(const Joints& Q, const Vector3d& p_ST) const {
-  return true_pose(Q, motions_at(Q), p_ST);
+  ToolPose P{p_ST, Vector3d::UnitZ()};
+  move_through<true>(0, Q, P, nullptr);
+  return P;
 }
 
 VolumetricError VolumetricModel::error(const Joints& Q, const Vector3d& p_ST) const {
-  const Motions motions = motions_at(Q);
-  const ToolPose P_true = true_pose(Q, motions, p_ST), P = ideal_pose(motions, p_ST);
+  ToolPose P{p_ST, Vector3d::UnitZ()}, P_true = P;
+  move_through<true>(0, Q, P_true, &P);
   return {P_true.p_WT - P.p_WT, P_true.k_W - P.k_W};
 }
 
 VolumetricError VolumetricModel::first_order_error(const Joints& Q, const Vector3d& p_ST) const {
-  const Motions motions = motions_at(Q);
   ToolPose P{p_ST, Vector3d::UnitZ()};
   VolumetricError sum;
   for (std::size_t i = chain_.axes.size(); i-- > 0;) {
     const ChainAxis& a = chain_.axes[i];
     const AxisWords component = values(errors_[i], Q[a.joint]);
+    const JointMotion m = motion_at(a, Q[a.joint]);
     const auto add_screw = [&](const AxisWords& screw) {
       sum.dp_W += shift_of(screw) + turn_of(screw).cross(P.p_WT - a.centre);
       sum.dk_W += turn_of(screw).cross(P.k_W);
@@ -220,10 +224,10 @@ VolumetricError VolumetricModel::first_order_error(const Joints& Q, const Vector
     // L J L^-1 = J + dL J - J dL: the location error at the tool behind and before the joint
     if (a.side == Side::tool) add_screw(component);
     add_screw(-errors_[i].location);
-    apply(a, motions[i], P);
+    apply(a, m, P);
     if (!is_linear(a.axis)) {
-      sum.dp_W = turned(a.axis, motions[i].cosine, motions[i].sine, sum.dp_W);
-      sum.dk_W = turned(a.axis, motions[i].cosine, motions[i].sine, sum.dk_W);
+      sum.dp_W = turned(a.axis, m.cosine, m.sine, sum.dp_W);
+      sum.dk_W = turned(a.axis, m.cosine, m.sine, sum.dk_W);
     }
     add_screw(errors_[i].location);
     if (a.side == Side::workpiece) add_screw(component);
@@ -232,22 +236,26 @@ VolumetricError VolumetricModel::first_order_error(const Joints& Q, const Vector
 }
 
 Vector3d VolumetricModel::joint_offset(const Joints& Q, const Vector3d& p_ST) const {
-  const Motions motions = motions_at(Q);
-  Vector3d d = true_pose(Q, motions, p_ST).p_WT - ideal_pose(motions, p_ST).p_WT;
-  if (!linear_axes_are_orthogonal_) return least_squares(linear_jacobian(chain_, Q), d).x;
-  // Undo the rotations between the workpiece and the linear axes.
-  for (std::size_t i = 0; !is_linear(chain_.axes[i].axis); ++i) {
-    d = turned(chain_.axes[i].axis, motions[i].cosine, -motions[i].sine, d);
+  if (!linear_axes_are_orthogonal_) {
+    return least_squares(linear_jacobian(chain_, Q), error(Q, p_ST).dp_W).x;
+  }
+  // Rotary axes without errors before the linear ones turn the shift there and back.
+  ToolPose P{p_ST, Vector3d::UnitZ()}, P_true = P;
+  move_through<false>(faultless_, Q, P_true, &P);
+  Vector3d d = P_true.p_WT - P.p_WT;
+  for (std::size_t i = faultless_; !is_linear(chain_.axes[i].axis); ++i) {
+    const JointMotion m = motion_at(chain_.axes[i], Q[chain_.axes[i].joint]);
+    d = turned(chain_.axes[i].axis, m.cosine, -m.sine, d);
   }
   return d;
 }
 
 PoseJacobian VolumetricModel::jacobian(const Joints& Q, const Vector3d& p_ST) const {
-  const Motions motions = motions_at(Q);
   PoseAndJacobian tool{{p_ST, Vector3d::UnitZ()}, {}};
   for (std::size_t i = chain_.axes.size(); i-- > 0;) {
     const ChainAxis& a = chain_.axes[i];
     const Prepared& errors = errors_[i];
+    const JointMotion m = motion_at(a, Q[a.joint]);
     const AxisWords e = values(errors, Q[a.joint]), de = derivatives(errors, Q[a.joint]);
     const auto apply_components = [&] {
       const Rotation R(turn_of(e));
@@ -264,12 +272,12 @@ PoseJacobian VolumetricModel::jacobian(const Joints& Q, const Vector3d& p_ST) co
     // J(q)
     const Vector3d direction = unit_vector(a.axis);
     if (is_linear(a.axis)) {
-      tool.shift(motions[i].shift * direction);
+      tool.shift(m.shift * direction);
       tool.move_with(a.joint, direction);
     } else {
       Matrix3d R;
       for (int n = 0; n < 3; ++n) {
-        R.col(n) = turned(a.axis, motions[i].cosine, motions[i].sine, Vector3d::Unit(n));
+        R.col(n) = turned(a.axis, m.cosine, m.sine, Vector3d::Unit(n));
       }
       tool.turn(R);
       tool.turn_with(a.joint, a.sense == Sense::table ? Vector3d(-direction) : direction);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -71,33 +70,41 @@ class VolumetricModel {
  private:
   // Errors of one axis, laid out for evaluation: all six polynomials are one of vectors.
   struct Prepared {
-    template <class T>
-    struct Term {
+    struct PreparedHarmonic {
       int direction;
-      T function;
+      double amplitude, omega, phase;  // m or rad, 1/m or 1, rad
     };
+    struct PreparedTable {
+      int direction;
+      LinearTable table;
+    };
+    bool is_zero() const { return !has_components && !has_location; }
+
     bool has_components = false, has_angles = false, has_location = false;
     std::vector<AxisWords> polynomial;  // c0, c1, ... (6; EX. EY. EZ. EA. EB. EC.)
-    std::vector<Term<Harmonic>> harmonics;
-    std::vector<Term<LinearTable>> tables;
+    std::vector<PreparedHarmonic> harmonics;
+    std::vector<PreparedTable> tables;
     AxisWords location = AxisWords::Zero();
     Eigen::Matrix3d R_location = Eigen::Matrix3d::Identity();  // of L
+    Eigen::Vector3d direction =
+        Eigen::Vector3d::Zero();  // of a linear axis: L T(q) L^-1 is a shift
   };
-  using Motions = std::array<JointMotion, kJoints>;  // in the order of chain_.axes
 
   static Prepared prepare(const ChainAxis& axis, const ErrorModel& errors);
   static AxisWords values(const Prepared& errors, double q);
   static AxisWords derivatives(const Prepared& errors, double q);
+  template <bool kWithAxis>
   static void apply_component_errors(const Prepared& errors, double q, ToolPose& P);
+  template <bool kWithAxis>
   static void apply_with_errors(const ChainAxis& a, const Prepared& errors, double q,
                                 const JointMotion& m, ToolPose& P);
-  Motions motions_at(const Joints& Q) const;
-  ToolPose true_pose(const Joints& Q, const Motions& motions, const Eigen::Vector3d& p_ST) const;
-  ToolPose ideal_pose(const Motions& motions, const Eigen::Vector3d& p_ST) const;
+  template <bool kWithAxis>
+  void move_through(std::size_t first_axis, const Joints& Q, ToolPose& P_true, ToolPose* P) const;
 
   MachineChain chain_;
   std::vector<Prepared> errors_;     // in the order of chain_.axes
   bool linear_axes_are_orthogonal_;  // three of them, no rotary axis between
+  std::size_t faultless_;            // rotary axes next to the workpiece that have no errors
 };
 
 /// The same for one evaluation; prepare a VolumetricModel for many.

@@ -45,6 +45,7 @@ MachineChain make_chain(const Structure& structure) {
 
 JointMotion motion_at(const ChainAxis& axis, double q) {
   if (is_linear(axis.axis)) return {.shift = q};
+  if (q == 0.0) return {};
   if (axis.sense == Sense::table) q = -q;
   return {.cosine = std::cos(q), .sine = std::sin(q)};
 }
