@@ -1,0 +1,23 @@
+/// Canonical moves for programs that read: one JSON object a line.
+#pragma once
+
+#include <string>
+
+#include "plant/vocabulary/move.h"
+
+namespace servomill::controllers {
+
+/// One record, without a line end. Lengths in mm, angles in degrees, nine decimals.
+///   t      rapid feed arc dwell tool spindle coolant stop end msg print
+///   line   of the program, from 1
+///   end, mend   [x,y,z,a,b,c] of motion, in work and in machine coordinates
+///   feed   mm/min if X, Y or Z moves, else deg/min; fmode "upm" (G94) or "inv" (G93)
+///   arc: plane "XY" "YZ" "XZ"; center [c1,c2] in the order (X,Y) (Y,Z) (Z,X); mcenter [x,y,z];
+///        turns as in `Arc`
+///   dwell: sec. tool: n. spindle: dir, rpm. coolant: mist, flood. stop: kind. msg, print: text.
+std::string canon_json(const Move& move);
+
+/// The record of a fault, as the last line.
+std::string canon_error_json(const std::string& message);
+
+}  // namespace servomill::controllers

@@ -1,0 +1,972 @@
+#include "controllers/gcode/interpreter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "controllers/gcode/arc_geometry.h"
+#include "controllers/gcode/modal_state.h"
+#include "controllers/gcode/parameters.h"
+#include "controllers/gcode/parser.h"
+#include "controllers/gcode/request.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr double kIntegerTol = 1e-4;     // as LinuxCNC, for words that must be integers
+constexpr double kTurnsTol = 1e-3;       // as LinuxCNC, for P of an arc
+constexpr double kSlowestInverse = 0.1;  // mm, inch or deg per minute; as LinuxCNC
+
+// Axis words of a group of letters, as they stand in parameters: mm and degrees.
+double in_parameter_unit(int axis, double value) {
+  return value / (is_linear(kAllAxes[static_cast<std::size_t>(axis)]) ? mm : deg);
+}
+double from_parameter_unit(int axis, double value) {
+  return value * (is_linear(kAllAxes[static_cast<std::size_t>(axis)]) ? mm : deg);
+}
+
+bool is_blank(std::string_view line) {
+  return line.find_first_not_of(" \t\r") == std::string_view::npos;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+// The lines of a program, with the rules for '%'.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : rest_(text) {}
+
+  bool next(std::string_view& line) {
+    if (rest_.empty()) return false;
+    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+    line = rest_.substr(0, end);
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    ++number_;
+    return true;
+  }
+  int number() const { return number_; }
+
+ private:
+  std::string_view rest_;
+  int number_ = 0;
+};
+
+// What a '%' means where it stands.
+enum class Percent { start, end, misplaced };
+
+class PercentRule {
+ public:
+  void saw_line() { first_ = false; }
+  Percent saw_percent() {
+    const Percent meaning = first_ ? Percent::start : open_ ? Percent::end : Percent::misplaced;
+    if (meaning == Percent::start) open_ = true;
+    first_ = false;
+    return meaning;
+  }
+
+ private:
+  bool first_ = true;
+  bool open_ = false;
+};
+
+constexpr std::string_view kMisplacedPercent =
+    "'%' ends a program only if another '%' is its first line";
+constexpr std::string_view kNoEnd = "the program ends without M2, M30 or a closing '%'";
+
+}  // namespace
+
+std::array<AxisWords, 9> ProgramSetup::zero_offsets() {
+  std::array<AxisWords, 9> offsets;
+  offsets.fill(AxisWords::Zero());
+  return offsets;
+}
+
+class Interpreter::Machine {
+ public:
+  Machine(std::string text, std::string file, ProgramSetup setup)
+      : text_(std::move(text)),
+        file_(std::move(file)),
+        setup_(std::move(setup)),
+        parameters_({[this](int number) { return system_number(number); },
+                     [this](std::string_view name) { return system_name(name); }}),
+        parser_(file_, setup_.block_delete),
+        lines_(text_) {
+    for (const auto& [name, value] : setup_.parameters) set_initial(name, value);
+    for (int system = 1; system <= kWorkSystems; ++system) store_setup_offset(system);
+    if (setup_.work_system < 1 || setup_.work_system > kWorkSystems) {
+      throw InputError({file_, 0, 0}, fmt::format("work system {}; must be in 1 ... {}",
+                                                  setup_.work_system, kWorkSystems));
+    }
+    state_.tool = setup_.tool;
+    load_work_system(setup_.work_system);
+    state_.position = state_.to_work(setup_.start);
+    parameters_.commit();
+  }
+
+  std::optional<Move> next() {
+    while (given_ == out_.size()) {
+      out_.clear();
+      given_ = 0;
+      if (ended_ || !read_block()) return std::nullopt;
+    }
+    return std::move(out_[given_++]);
+  }
+
+ private:
+  // ---- setup
+  void set_initial(const std::string& name, double value);
+  void store_setup_offset(int system);
+
+  // ---- reading
+  bool read_block();
+  void run_block();
+  [[noreturn]] void fail(int column, std::string message) const {
+    throw InputError({file_, lines_.number(), column}, std::move(message));
+  }
+  void assign_parameters();
+
+  // ---- words
+  const Request& request() const { return request_; }
+  [[noreturn]] void fail_at(char letter, std::string message) const {
+    fail(request_.word(letter).column, std::move(message));
+  }
+  double unit_of(Axis axis) const { return is_linear(axis) ? state_.unit : deg; }
+  bool has_axis(int i) const { return request_.has(letter(axis_at(i))); }
+  static Axis axis_at(int i) { return kAllAxes[static_cast<std::size_t>(i)]; }
+  /// SI value of an axis word.
+  double axis_word(int i) const { return request_[letter(axis_at(i))] * unit_of(axis_at(i)); }
+  bool has_any_axis() const {
+    for (int i = 0; i < kAxisWords; ++i) {
+      if (has_axis(i)) return true;
+    }
+    return false;
+  }
+  int integer(char letter, double tolerance = kIntegerTol) const;
+
+  // ---- steps of a block, in the order of execution
+  using Step = void (Machine::*)();
+  static const std::array<Step, 20> kSteps;
+  void messages();
+  void feed_mode();
+  void feed();
+  void spindle_speed();
+  void select_tool();
+  void change_tool();
+  void spindle();
+  void coolant();
+  void override_switches() {}
+  void dwell();
+  void plane();
+  void units();
+  void cutter_compensation() {}
+  void tool_length();
+  void work_system();
+  void path_control();
+  void distance();
+  void non_modal();
+  void motion();
+  void stop();
+
+  void set_offsets();                     // G10
+  void set_work_offset(int system);       // G10 L2
+  void set_current_position(int system);  // G10 L20
+  void load_work_system(int system);
+  void refresh_if_active(int system);
+  void go_home(int first_parameter);     // G28 G30
+  void store_home(int first_parameter);  // G28.1 G30.1
+  void shift_position(bool is_g52);      // G92 G52
+  void drop_shift(bool forget);          // G92.1 G92.2
+  void restore_shift();                  // G92.3
+  void store_shift();
+  const ToolEntry& tool_named(char letter, int number) const;
+
+  void straight();
+  void arc();
+  ArcCentre arc_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end, bool clockwise);
+  int arc_turns(bool clockwise) const;
+  AxisWords programmed_end() const;
+  double move_feed(const AxisWords& end, double length) const;
+  void require_feed() const;
+
+  // ---- output
+  Move& emit(MoveKind kind);
+  void move_to(MoveKind kind, const AxisWords& end, double length, double feed);
+  void emit_spindle();
+
+  // ---- parameters that the system sets
+  double system_number(int number) const;
+  std::optional<double> system_name(std::string_view name) const;
+
+  std::string text_;
+  std::string file_;
+  ProgramSetup setup_;
+  Parameters parameters_;
+  Parser parser_;
+  Lines lines_;
+  PercentRule percent_;
+  Block block_;
+  Request request_;
+  ModalState state_;
+  ModalState before_;  // the block
+  bool ended_ = false;
+  std::vector<Move> out_;
+  std::size_t given_ = 0;
+  std::vector<std::pair<int, double>> new_numbers_;
+};
+
+const std::array<Interpreter::Machine::Step, 20> Interpreter::Machine::kSteps = {
+    &Machine::messages,
+    &Machine::feed_mode,
+    &Machine::feed,
+    &Machine::spindle_speed,
+    &Machine::select_tool,
+    &Machine::change_tool,
+    &Machine::spindle,
+    &Machine::coolant,
+    &Machine::override_switches,
+    &Machine::dwell,
+    &Machine::plane,
+    &Machine::units,
+    &Machine::cutter_compensation,
+    &Machine::tool_length,
+    &Machine::work_system,
+    &Machine::path_control,
+    &Machine::distance,
+    &Machine::non_modal,
+    &Machine::motion,
+    &Machine::stop,
+};
+
+// ------------------------------------------------------------------------------------------ setup
+
+void Interpreter::Machine::set_initial(const std::string& name, double value) {
+  const Place place{file_, 0, 0};
+  const auto refuse = [&](std::string_view why) {
+    throw InputError(place, fmt::format("parameter '{}': {}", name, why));
+  };
+  if (!std::isfinite(value)) refuse("value must be finite");
+  if (name.size() > 3 && name.starts_with("#<") && name.back() == '>') {
+    std::string key;
+    for (const char c : name.substr(2, name.size() - 3)) {
+      if (c != ' ' && c != '\t') key += c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+    }
+    if (key.empty()) refuse("name is empty");
+    if (parameters_.is_system_name(key)) refuse("is set by the machine");
+    parameters_.set(key, value);
+    return;
+  }
+  const bool digits = name.size() > 1 && name.size() < 6 && name[0] == '#' &&
+                      name.find_first_not_of("0123456789", 1) == std::string::npos;
+  if (!digits) refuse("must be written #123 or #<name>");
+  const int number = parameter_number(std::stoi(name.substr(1)), place);
+  if (parameter::is_read_only(number)) refuse("is set by the machine");
+  parameters_.set(number, value);
+}
+
+void Interpreter::Machine::store_setup_offset(int system) {
+  const auto k = static_cast<std::size_t>(system - 1);
+  const AxisWords& offset = setup_.work_offset[k];
+  for (int i = 0; i < kAxisWords; ++i) {
+    if (offset[i] == 0.0) continue;  // a parameter may have set it
+    parameters_.set(parameter::work_offset(system) + i, in_parameter_unit(i, offset[i]));
+  }
+  if (setup_.work_rotation[k] != 0.0) {
+    parameters_.set(parameter::work_rotation(system), setup_.work_rotation[k] / deg);
+  }
+}
+
+// ---------------------------------------------------------------------------------------- reading
+
+bool Interpreter::Machine::read_block() {
+  std::string_view line;
+  if (!lines_.next(line)) {
+    ended_ = true;
+    fail(0, std::string(kNoEnd));
+  }
+  if (is_blank(line)) return true;
+  parser_.parse(line, lines_.number(), block_);
+  if (block_.percent) {
+    const Percent meaning = percent_.saw_percent();
+    if (meaning == Percent::misplaced) fail(1, std::string(kMisplacedPercent));
+    ended_ = meaning == Percent::end;
+    return true;
+  }
+  percent_.saw_line();
+  if (block_.deleted) return true;
+  before_ = state_;
+  try {
+    run_block();
+  } catch (const InputError&) {
+    state_ = before_;
+    parameters_.roll_back();
+    out_.clear();
+    throw;
+  }
+  parameters_.commit();
+  return true;
+}
+
+void Interpreter::Machine::run_block() {
+  request_ = resolve(block_, parameters_, state_.motion, file_);
+  assign_parameters();
+  for (const Step step : kSteps) (this->*step)();
+}
+
+// All right-hand sides are read before the first parameter changes.
+void Interpreter::Machine::assign_parameters() {
+  if (block_.assignments.empty()) return;
+  new_numbers_.clear();
+  for (const Assignment& a : block_.assignments) {
+    const double value = evaluate(a.value, block_, parameters_, file_);
+    int number = 0;
+    if (a.name < 0) {
+      const double index = evaluate(a.index, block_, parameters_, file_);
+      number = parameter_number(index, {file_, block_.line, a.column});
+      if (parameter::is_read_only(number)) {
+        fail(a.column, fmt::format("parameter #{} is read-only", number));
+      }
+    }
+    new_numbers_.emplace_back(number, value);
+  }
+  for (std::size_t i = 0; i < new_numbers_.size(); ++i) {
+    const Assignment& a = block_.assignments[i];
+    if (a.name < 0) {
+      parameters_.set(new_numbers_[i].first, new_numbers_[i].second);
+      continue;
+    }
+    const std::string& name = block_.names[static_cast<std::size_t>(a.name)];
+    if (system_name(name)) fail(a.column, fmt::format("parameter #<{}> is read-only", name));
+    parameters_.set(name, new_numbers_[i].second);
+  }
+}
+
+int Interpreter::Machine::integer(char letter, double tolerance) const {
+  const double value = request_[letter];
+  const double nearest = std::round(value);
+  if (!(std::abs(value - nearest) <= tolerance) || std::abs(nearest) > 1e9) {
+    fail_at(letter, fmt::format("{}{}; must be an integer", letter, value));
+  }
+  return static_cast<int>(nearest);
+}
+
+// ---------------------------------------------------------------- speed, feed, tool and the like
+
+void Interpreter::Machine::messages() {
+  for (const Comment& comment : block_.messages) {
+    Move& move = emit(MoveKind::message);
+    move.text =
+        comment.kind == CommentKind::message ? comment.text : substitute(comment.text, parameters_);
+    move.text = trimmed(move.text);
+    move.number = comment.kind == CommentKind::print ? kPrintMessage : 0;
+  }
+}
+
+void Interpreter::Machine::feed_mode() {
+  const int code = request().code(Group::g_feed_mode);
+  if (code < 0) return;
+  state_.feed_mode = code == 930 ? FeedMode::inverse_time : FeedMode::units_per_minute;
+  state_.feed_linear = state_.feed_rotary = 0.0;  // as LinuxCNC: a feed does not outlive its mode
+}
+
+void Interpreter::Machine::feed() {
+  if (!request().has('F')) return;
+  const double F = request()['F'];
+  if (F < 0.0) fail_at('F', fmt::format("F{}; must be >= 0", F));
+  if (state_.feed_mode == FeedMode::inverse_time) return;  // belongs to its block only
+  state_.feed_linear = F * state_.unit / minute;
+  state_.feed_rotary = F * deg / minute;
+}
+
+void Interpreter::Machine::emit_spindle() {
+  Move& move = emit(MoveKind::spindle);
+  move.direction = state_.spindle_direction;
+  move.value = state_.spindle_speed;
+}
+
+void Interpreter::Machine::spindle_speed() {
+  if (!request().has('S')) return;
+  const double S = request()['S'];
+  if (S < 0.0) fail_at('S', fmt::format("S{}; must be >= 0", S));
+  state_.spindle_speed = S * rpm;
+  emit_spindle();
+}
+
+const ToolEntry& Interpreter::Machine::tool_named(char letter, int number) const {
+  static const ToolEntry no_tool;
+  if (number == 0) return no_tool;
+  const ToolEntry* tool = setup_.tools.find(number);
+  if (tool == nullptr) {
+    fail_at(letter, fmt::format("{}{}: no such tool in the tool table of {} tools", letter, number,
+                                setup_.tools.size()));
+  }
+  return *tool;
+}
+
+void Interpreter::Machine::select_tool() {
+  if (!request().has('T')) return;
+  const int number = integer('T');
+  if (number < 0) fail_at('T', fmt::format("T{}; must be >= 0", number));
+  tool_named('T', number);
+  state_.selected_tool = number;
+}
+
+void Interpreter::Machine::change_tool() {
+  if (request().code(Group::m_tool) < 0) return;
+  if (state_.spindle_direction != 0) {
+    state_.spindle_direction = 0;
+    emit_spindle();
+  }
+  if (state_.selected_tool >= 0) state_.tool = state_.selected_tool;
+  emit(MoveKind::tool).number = state_.tool;
+}
+
+void Interpreter::Machine::spindle() {
+  const int code = request().code(Group::m_spindle);
+  if (code < 0) return;
+  state_.spindle_direction = code == 30 ? 1 : code == 40 ? -1 : 0;
+  emit_spindle();
+}
+
+void Interpreter::Machine::coolant() {
+  const int code = request().code(Group::m_coolant);
+  if (code < 0) return;
+  if (code == 70) state_.coolant |= kMist;
+  if (code == 80) state_.coolant |= kFlood;
+  if (code == 90) state_.coolant = 0;
+  emit(MoveKind::coolant).number = state_.coolant;
+}
+
+// ------------------------------------------------------------------------------------ modal codes
+
+void Interpreter::Machine::dwell() {
+  if (request().code(Group::g_non_modal) != 40) return;
+  const int column = request().of(Group::g_non_modal).column;
+  if (!request().has('P')) fail(column, "G4 needs a P word (seconds)");
+  const double P = request()['P'];
+  if (P < 0.0) fail_at('P', fmt::format("G4 P{}; must be >= 0", P));
+  const int motion_code = request().code(Group::g_motion);
+  if (motion_code == 20 || motion_code == 30) {
+    fail(column, "G4 and an arc in one block: both use the P word");
+  }
+  emit(MoveKind::dwell).value = P;
+}
+
+void Interpreter::Machine::plane() {
+  const int code = request().code(Group::g_plane);
+  if (code >= 0) state_.normal_axis = code == 170 ? 2 : code == 180 ? 1 : 0;
+}
+
+void Interpreter::Machine::units() {
+  const int code = request().code(Group::g_units);
+  if (code >= 0) state_.unit = code == 200 ? inch : mm;
+}
+
+void Interpreter::Machine::tool_length() {
+  const int code = request().code(Group::g_tool_length);
+  if (code < 0) return;
+  const AxisWords machine = state_.to_machine(state_.position);
+  if (code == 490) {
+    state_.tool_offset.setZero();
+    state_.tool_offset_number = 0;
+  } else if (code == 431) {
+    for (int i = 0; i < kAxisWords; ++i) {
+      if (has_axis(i)) state_.tool_offset[i] = axis_word(i);
+    }
+    state_.tool_offset_number = kOtherToolOffset;
+  } else {
+    const bool has_H = request().has('H');
+    if (code == 432 && !has_H) {
+      fail(request().of(Group::g_tool_length).column, "G43.2 needs an H word");
+    }
+    int number = has_H ? integer('H') : state_.tool;
+    if (number == 0) number = state_.tool;
+    const AxisWords& offset = tool_named(has_H ? 'H' : 'T', number).offset;
+    state_.tool_offset = code == 432 ? AxisWords(state_.tool_offset + offset) : offset;
+    state_.tool_offset_number = code == 432 ? kOtherToolOffset : number;
+  }
+  state_.position = state_.to_work(machine);
+}
+
+void Interpreter::Machine::load_work_system(int system) {
+  const AxisWords machine = state_.to_machine(state_.position);
+  state_.work_system = system;
+  for (int i = 0; i < kAxisWords; ++i) {
+    state_.work_offset[i] =
+        from_parameter_unit(i, parameters_.get(parameter::work_offset(system) + i));
+  }
+  state_.set_rotation(parameters_.get(parameter::work_rotation(system)) * deg);
+  parameters_.set(parameter::kWorkSystem, system);
+  state_.position = state_.to_work(machine);
+}
+
+void Interpreter::Machine::work_system() {
+  const int code = request().code(Group::g_work_system);
+  if (code < 0) return;
+  const int system = code <= 590 ? (code - 530) / 10 : 6 + code - 590;
+  if (system != state_.work_system) load_work_system(system);
+}
+
+void Interpreter::Machine::path_control() {
+  const int code = request().code(Group::g_path_control);
+  if (code < 0) return;
+  state_.path_mode = code == 610   ? PathMode::exact_path
+                     : code == 611 ? PathMode::exact_stop
+                                   : PathMode::continuous;
+  state_.path_tolerance = 0.0;
+  if (code != 640) return;
+  for (const char word : {'P', 'Q'}) {
+    const double value = request()[word];
+    if (value < 0.0) fail_at(word, fmt::format("G64 {}{}; must be >= 0", word, value));
+  }
+  state_.path_tolerance = request()['P'] * state_.unit;
+}
+
+void Interpreter::Machine::distance() {
+  const int code = request().code(Group::g_distance);
+  if (code >= 0) state_.is_incremental = code == 910;
+  const int arc_code = request().code(Group::g_arc_distance);
+  if (arc_code >= 0) state_.is_centre_absolute = arc_code == 901;
+}
+
+// -------------------------------------------------------------------- G10 G28 G30 G52 G53 G92
+
+void Interpreter::Machine::non_modal() {
+  switch (request().code(Group::g_non_modal)) {
+    case 100:
+      return set_offsets();
+    case 280:
+      return go_home(parameter::kHome);
+    case 281:
+      return store_home(parameter::kHome);
+    case 300:
+      return go_home(parameter::kSecondHome);
+    case 301:
+      return store_home(parameter::kSecondHome);
+    case 520:
+    case 920:
+      return shift_position(request().code(Group::g_non_modal) == 520);
+    case 921:
+      return drop_shift(true);
+    case 922:
+      return drop_shift(false);
+    case 923:
+      return restore_shift();
+    default:
+      return;  // none, G4 (done), G53 (part of the motion)
+  }
+}
+
+void Interpreter::Machine::set_offsets() {
+  const int column = request().of(Group::g_non_modal).column;
+  if (!request().has('L')) fail(column, "G10 needs an L word (L2 or L20)");
+  const int L = integer('L');
+  if (L == 0 || L == 1 || L == 10 || L == 11) {
+    fail_at('L', fmt::format("G10 L{} (tool table) is not supported yet", L));
+  }
+  if (L != 2 && L != 20) fail_at('L', fmt::format("G10 L{}; must be L2 or L20", L));
+  if (!request().has('P')) fail(column, fmt::format("G10 L{} needs a P word (0 ... 9)", L));
+  const int P = integer('P');
+  if (P < 0 || P > kWorkSystems) fail_at('P', fmt::format("G10 L{} P{}; must be in 0 ... 9", L, P));
+  const int system = P == 0 ? state_.work_system : P;
+  L == 2 ? set_work_offset(system) : set_current_position(system);
+}
+
+void Interpreter::Machine::set_work_offset(int system) {
+  for (int i = 0; i < kAxisWords; ++i) {
+    if (!has_axis(i)) continue;
+    parameters_.set(parameter::work_offset(system) + i, in_parameter_unit(i, axis_word(i)));
+  }
+  if (request().has('R')) parameters_.set(parameter::work_rotation(system), request()['R']);
+  refresh_if_active(system);
+}
+
+// The offset that makes the present position read as the words say.
+void Interpreter::Machine::set_current_position(int system) {
+  if (request().has('R')) fail_at('R', "R word with G10 L20; only G10 L2 sets a rotation");
+  ModalState other = state_;
+  for (int i = 0; i < kAxisWords; ++i) {
+    other.work_offset[i] =
+        from_parameter_unit(i, parameters_.get(parameter::work_offset(system) + i));
+  }
+  other.set_rotation(parameters_.get(parameter::work_rotation(system)) * deg);
+  AxisWords excess = AxisWords::Zero();
+  const AxisWords present = other.to_work(state_.to_machine(state_.position));
+  for (int i = 0; i < kAxisWords; ++i) {
+    if (has_axis(i)) excess[i] = present[i] - axis_word(i);
+  }
+  const AxisWords offset = other.work_offset + other.rotated(excess);
+  for (int i = 0; i < kAxisWords; ++i) {
+    parameters_.set(parameter::work_offset(system) + i, in_parameter_unit(i, offset[i]));
+  }
+  refresh_if_active(system);
+}
+
+void Interpreter::Machine::refresh_if_active(int system) {
+  if (system == state_.work_system) load_work_system(system);
+}
+
+void Interpreter::Machine::go_home(int first_parameter) {
+  AxisWords target;
+  for (int i = 0; i < kAxisWords; ++i) {
+    target[i] = from_parameter_unit(i, parameters_.get(first_parameter + i));
+  }
+  const AxisWords home = state_.to_work(target);
+  const bool some = has_any_axis();
+  if (some) {
+    const AxisWords via = programmed_end();
+    move_to(MoveKind::rapid, via, (via - state_.position).head<3>().norm(), 0.0);
+  }
+  AxisWords end = state_.position;
+  for (int i = 0; i < kAxisWords; ++i) {
+    if (!some || has_axis(i)) end[i] = home[i];
+  }
+  move_to(MoveKind::rapid, end, (end - state_.position).head<3>().norm(), 0.0);
+}
+
+void Interpreter::Machine::store_home(int first_parameter) {
+  const AxisWords machine = state_.to_machine(state_.position);
+  for (int i = 0; i < kAxisWords; ++i) {
+    parameters_.set(first_parameter + i, in_parameter_unit(i, machine[i]));
+  }
+}
+
+void Interpreter::Machine::store_shift() {
+  for (int i = 0; i < kAxisWords; ++i) {
+    parameters_.set(parameter::kG92 + i, in_parameter_unit(i, state_.shift[i]));
+  }
+  parameters_.set(parameter::kG92Active, 1.0);
+}
+
+void Interpreter::Machine::shift_position(bool is_g52) {
+  if (!has_any_axis()) {
+    fail(request().of(Group::g_non_modal).column,
+         fmt::format("{} needs an axis word", is_g52 ? "G52" : "G92"));
+  }
+  for (int i = 0; i < kAxisWords; ++i) {
+    if (!has_axis(i)) continue;
+    const double sum = state_.position[i] + state_.shift[i];
+    if (is_g52) {
+      state_.shift[i] = axis_word(i);
+      state_.position[i] = sum - state_.shift[i];
+    } else {
+      state_.position[i] = axis_word(i);
+      state_.shift[i] = sum - state_.position[i];
+    }
+  }
+  store_shift();
+}
+
+void Interpreter::Machine::drop_shift(bool forget) {
+  state_.position += state_.shift;
+  state_.shift.setZero();
+  if (forget) store_shift();
+  parameters_.set(parameter::kG92Active, 0.0);
+}
+
+void Interpreter::Machine::restore_shift() {
+  state_.position += state_.shift;
+  for (int i = 0; i < kAxisWords; ++i) {
+    state_.shift[i] = from_parameter_unit(i, parameters_.get(parameter::kG92 + i));
+  }
+  state_.position -= state_.shift;
+  parameters_.set(parameter::kG92Active, 1.0);
+}
+
+// ----------------------------------------------------------------------------------------- motion
+
+void Interpreter::Machine::motion() {
+  const int explicit_code = request().code(Group::g_motion);
+  if (explicit_code >= 0) state_.motion = explicit_code;
+  const int code = request().motion_code();
+  if (request().code(Group::g_non_modal) == 530) {
+    const int column = request().of(Group::g_non_modal).column;
+    if (code != 0 && code != 10) fail(column, "G53 needs G0 or G1");
+    if (state_.is_incremental) fail(column, "G53 with G91; machine coordinates are absolute");
+  }
+  if (code == 0 || code == 10) straight();
+  if (code == 20 || code == 30) arc();
+}
+
+AxisWords Interpreter::Machine::programmed_end() const {
+  const bool is_machine = request().code(Group::g_non_modal) == 530;
+  AxisWords end = is_machine ? state_.to_machine(state_.position) : state_.position;
+  for (int i = 0; i < kAxisWords; ++i) {
+    if (!has_axis(i)) continue;
+    const bool add = state_.is_incremental && !is_machine;
+    end[i] = add ? end[i] + axis_word(i) : axis_word(i);
+  }
+  return is_machine ? state_.to_work(end) : end;
+}
+
+void Interpreter::Machine::require_feed() const {
+  const Request::Chosen& chosen = request().motion;
+  const std::string name = code_name('G', chosen.code->tenths);
+  if (state_.feed_mode == FeedMode::inverse_time) {
+    if (!request().has('F')) {
+      fail(chosen.column, fmt::format("{} without F; G93 needs one in every block", name));
+    }
+  } else if (state_.feed_linear == 0.0) {
+    fail(chosen.column, fmt::format("{} with zero feed; no F is in force", name));
+  }
+}
+
+// @param length  of the XYZ path, m
+double Interpreter::Machine::move_feed(const AxisWords& end, double length) const {
+  const bool is_linear_move = end.head<3>() != state_.position.head<3>() || length > 0.0;
+  if (state_.feed_mode == FeedMode::units_per_minute) {
+    return is_linear_move ? state_.feed_linear : state_.feed_rotary;
+  }
+  const double rate = request()['F'] / minute;
+  if (is_linear_move) return std::max(rate * length, kSlowestInverse * state_.unit / minute);
+  const double angle = (end - state_.position).tail<3>().norm();
+  return std::max(rate * angle, kSlowestInverse * deg / minute);
+}
+
+void Interpreter::Machine::straight() {
+  const bool is_rapid = request().motion_code() == 0;
+  if (!is_rapid) require_feed();
+  if (!has_any_axis()) return;
+  const AxisWords end = programmed_end();
+  const double length = (end - state_.position).head<3>().norm();
+  move_to(is_rapid ? MoveKind::rapid : MoveKind::feed, end, length,
+          is_rapid ? 0.0 : move_feed(end, length));
+}
+
+int Interpreter::Machine::arc_turns(bool clockwise) const {
+  int turns = 1;
+  if (request().has('P')) {
+    turns = integer('P', kTurnsTol);
+    if (turns < 1) fail_at('P', fmt::format("P{}; an arc has at least 1 turn", turns));
+  }
+  return clockwise ? -turns : turns;
+}
+
+ArcCentre Interpreter::Machine::arc_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end,
+                                           bool clockwise) {
+  const Request::Chosen& chosen = request().motion;
+  const std::string name = code_name('G', chosen.code->tenths);
+  const int n = state_.normal_axis;
+  const int first = (n + 1) % 3, second = (n + 2) % 3;
+  const ArcTolerance& tolerance = state_.unit == mm ? kArcToleranceMm : kArcToleranceInch;
+  const char letters[] = {"IJK"[first], "IJK"[second]};
+  const char normal = "IJK"[n];
+  const bool has_centre = request().has(letters[0]) || request().has(letters[1]);
+  if (request().has('R')) {
+    for (const char c : {'I', 'J', 'K'}) {
+      if (request().has(c)) fail_at(c, fmt::format("{} and R in one {} block", c, name));
+    }
+    if (!has_axis(first) && !has_axis(second)) {
+      fail(chosen.column,
+           fmt::format("{} with R needs {} or {}", name, "XYZ"[first], "XYZ"[second]));
+    }
+    return radius_format(start, end, request()['R'] * state_.unit, clockwise, tolerance);
+  }
+  if (request().has(normal)) {
+    fail_at(normal,
+            fmt::format("{} in an arc of the {}{} plane", normal, "XYZ"[first], "XYZ"[second]));
+  }
+  if (!has_centre) {
+    fail(chosen.column, fmt::format("{} needs R, {} or {}", name, letters[0], letters[1]));
+  }
+  Eigen::Vector2d centre(request()[letters[0]] * state_.unit, request()[letters[1]] * state_.unit);
+  if (!state_.is_centre_absolute) return centre_format(start, end, start + centre, tolerance);
+  for (const char c : letters) {
+    if (!request().has(c)) {
+      fail(chosen.column, fmt::format("{} needs {}: with G90.1 the centre is absolute", name, c));
+    }
+  }
+  return centre_format(start, end, centre, tolerance);
+}
+
+void Interpreter::Machine::arc() {
+  require_feed();
+  const bool clockwise = request().motion_code() == 20;
+  const int turns = arc_turns(clockwise);
+  const int n = state_.normal_axis;
+  const int first = (n + 1) % 3, second = (n + 2) % 3;
+  const AxisWords end = programmed_end();
+  const Eigen::Vector2d a(state_.position[first], state_.position[second]);
+  const Eigen::Vector2d b(end[first], end[second]);
+  const ArcCentre found = arc_centre(a, b, clockwise);
+  if (!found.fault.empty()) {
+    fail(request().motion.column,
+         fmt::format("{}: {}", code_name('G', request().motion_code()), found.fault));
+  }
+  // length of the helix
+  const double around = (a - found.centre).norm() * swept_angle(a, b, found.centre, turns);
+  const double length = std::hypot(around, end[n] - state_.position[n]);
+  AxisWords centre = AxisWords::Zero();
+  centre[first] = found.centre.x();
+  centre[second] = found.centre.y();
+  centre[n] = end[n];
+  move_to(MoveKind::arc, end, length, move_feed(end, length));
+  out_.back().arc = {n, centre.head<3>(), turns};
+  out_.back().centre_machine = state_.to_machine(centre).head<3>();
+}
+
+void Interpreter::Machine::stop() {
+  const int code = request().code(Group::m_stop);
+  if (code < 0) return;
+  if (code == 0 || code == 10) {
+    emit(MoveKind::stop).number = code / 10;
+    return;
+  }
+  if (state_.spindle_direction != 0) {
+    state_.spindle_direction = 0;
+    emit_spindle();
+  }
+  if (state_.coolant != 0) {
+    state_.coolant = 0;
+    emit(MoveKind::coolant).number = 0;
+  }
+  emit(MoveKind::end);
+  ended_ = true;
+}
+
+// ----------------------------------------------------------------------------------------- output
+
+Move& Interpreter::Machine::emit(MoveKind kind) {
+  Move& move = out_.emplace_back();
+  move.kind = kind;
+  move.line = lines_.number();
+  move.end = state_.position;
+  move.end_machine = state_.to_machine(state_.position);
+  move.path_mode = state_.path_mode;
+  move.path_tolerance = state_.path_tolerance;
+  move.feed_mode = state_.feed_mode;
+  move.work_offset = state_.work_system;
+  move.tool_offset = state_.tool_offset_number;
+  move.s_begin = move.s_end = state_.s;
+  return move;
+}
+
+void Interpreter::Machine::move_to(MoveKind kind, const AxisWords& end, double length,
+                                   double feed) {
+  const double s_begin = state_.s;
+  state_.s += length;
+  state_.position = end;
+  Move& move = emit(kind);
+  move.feed = feed;
+  move.s_begin = s_begin;
+}
+
+// ------------------------------------------------------------------------------ system parameters
+
+double Interpreter::Machine::system_number(int number) const {
+  const ToolEntry* tool = setup_.tools.find(state_.tool);
+  if (number == parameter::kTool) return state_.tool;
+  if (number == parameter::kToolDiameter) return tool == nullptr ? 0.0 : tool->diameter / mm;
+  const int offset = number - parameter::kTool - 1;
+  if (offset >= 0 && offset < kAxisWords) {
+    return tool == nullptr ? 0.0 : in_parameter_unit(offset, tool->offset[offset]);
+  }
+  const int axis = number - parameter::kPosition;
+  if (axis >= 0 && axis < kAxisWords) return state_.position[axis] / unit_of(axis_at(axis));
+  return 0.0;
+}
+
+std::optional<double> Interpreter::Machine::system_name(std::string_view name) const {
+  if (name.size() == 2 && name[0] == '_') {
+    if (const auto axis = axis_of(name[1])) {
+      return state_.position[index_of(*axis)] / unit_of(*axis);
+    }
+  }
+  if (name == "_metric") return state_.unit == mm ? 1.0 : 0.0;
+  if (name == "_imperial") return state_.unit == mm ? 0.0 : 1.0;
+  if (name == "_absolute") return state_.is_incremental ? 0.0 : 1.0;
+  if (name == "_incremental") return state_.is_incremental ? 1.0 : 0.0;
+  if (name == "_current_tool") return state_.tool;
+  if (name == "_selected_tool") return state_.selected_tool;
+  if (name == "_feed") return state_.feed_linear * minute / state_.unit;
+  if (name == "_rpm") return state_.spindle_speed / rpm;
+  return std::nullopt;
+}
+
+// ------------------------------------------------------------------------------------- public API
+
+Interpreter::Interpreter(std::string text, std::string file, ProgramSetup setup)
+    : machine_(std::make_unique<Machine>(std::move(text), std::move(file), std::move(setup))) {}
+Interpreter::~Interpreter() = default;
+Interpreter::Interpreter(Interpreter&&) noexcept = default;
+Interpreter& Interpreter::operator=(Interpreter&&) noexcept = default;
+
+std::optional<Move> Interpreter::next() { return machine_->next(); }
+
+std::vector<Move> interpret(std::string text, std::string file, ProgramSetup setup) {
+  Interpreter interpreter(std::move(text), std::move(file), std::move(setup));
+  std::vector<Move> moves;
+  while (std::optional<Move> move = interpreter.next()) moves.push_back(std::move(*move));
+  return moves;
+}
+
+namespace {
+
+bool ends_program(const Block& block) {
+  return std::any_of(block.words.begin(), block.words.end(), [](const Word& word) {
+    return word.letter == 'M' && word.value.is_constant() &&
+           (word.value.number == 2.0 || word.value.number == 30.0);
+  });
+}
+
+void append(std::vector<Fault>& faults, const InputError& error) {
+  for (const Fault& fault : error.faults()) {
+    const bool known = std::any_of(faults.begin(), faults.end(), [&](const Fault& other) {
+      return other.place == fault.place && other.message == fault.message;
+    });
+    if (!known) faults.push_back(fault);
+  }
+}
+
+std::vector<Fault> syntax_faults(std::string_view text, const std::string& file,
+                                 bool block_delete) {
+  std::vector<Fault> faults;
+  Parser parser(file, block_delete);
+  Block block;
+  Lines lines(text);
+  PercentRule percent;
+  for (std::string_view line; lines.next(line);) {
+    if (is_blank(line)) continue;
+    try {
+      parser.parse(line, lines.number(), block);
+      if (block.percent) {
+        if (percent.saw_percent() == Percent::end) break;
+        continue;
+      }
+      percent.saw_line();
+      check_codes(block, file);
+      if (ends_program(block)) break;
+    } catch (const InputError& error) {
+      percent.saw_line();
+      append(faults, error);
+    }
+  }
+  return faults;
+}
+
+}  // namespace
+
+std::vector<Fault> check_program(std::string text, std::string file, ProgramSetup setup) {
+  std::vector<Fault> faults = syntax_faults(text, file, setup.block_delete);
+  try {
+    Interpreter interpreter(std::move(text), std::move(file), std::move(setup));
+    while (interpreter.next()) {
+    }
+  } catch (const InputError& error) {
+    append(faults, error);
+  }
+  std::stable_sort(faults.begin(), faults.end(), [](const Fault& a, const Fault& b) {
+    return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+  });
+  return faults;
+}
+
+}  // namespace servomill::controllers

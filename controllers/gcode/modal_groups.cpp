@@ -1,0 +1,158 @@
+#include "controllers/gcode/modal_groups.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace servomill::controllers {
+namespace {
+
+using enum Group;
+
+// Sorted by code. Source of groups and words: LinuxCNC 2.9, G-code reference and "Modal Groups".
+constexpr auto kGCodes = std::to_array<Code>({
+    {0, g_motion, true, "", true},
+    {10, g_motion, true, "", true},
+    {20, g_motion, true, "IJKRP", true},
+    {30, g_motion, true, "IJKRP", true},
+    {40, g_non_modal, true, "P"},
+    {50, g_motion, false, ""},
+    {51, g_motion, false, ""},
+    {52, g_motion, false, ""},
+    {53, g_non_modal, false, ""},
+    {70, g_non_modal, false, ""},
+    {80, g_non_modal, false, ""},
+    {100, g_non_modal, true, "LPR", true},
+    {170, g_plane, true, ""},
+    {171, g_plane, false, ""},
+    {180, g_plane, true, ""},
+    {181, g_plane, false, ""},
+    {190, g_plane, true, ""},
+    {191, g_plane, false, ""},
+    {200, g_units, true, ""},
+    {210, g_units, true, ""},
+    {280, g_non_modal, true, "", true},
+    {281, g_non_modal, true, ""},
+    {300, g_non_modal, true, "", true},
+    {301, g_non_modal, true, ""},
+    {330, g_motion, false, ""},
+    {331, g_motion, false, ""},
+    {382, g_motion, false, ""},
+    {383, g_motion, false, ""},
+    {384, g_motion, false, ""},
+    {385, g_motion, false, ""},
+    {400, g_cutter_compensation, true, ""},
+    {410, g_cutter_compensation, false, ""},
+    {411, g_cutter_compensation, false, ""},
+    {420, g_cutter_compensation, false, ""},
+    {421, g_cutter_compensation, false, ""},
+    {430, g_tool_length, true, "H"},
+    {431, g_tool_length, true, "", true},
+    {432, g_tool_length, true, "H"},
+    {490, g_tool_length, true, ""},
+    {520, g_non_modal, true, "", true},
+    {530, g_non_modal, true, ""},
+    {540, g_work_system, true, ""},
+    {550, g_work_system, true, ""},
+    {560, g_work_system, true, ""},
+    {570, g_work_system, true, ""},
+    {580, g_work_system, true, ""},
+    {590, g_work_system, true, ""},
+    {591, g_work_system, true, ""},
+    {592, g_work_system, true, ""},
+    {593, g_work_system, true, ""},
+    {610, g_path_control, true, ""},
+    {611, g_path_control, true, ""},
+    {640, g_path_control, true, "PQ"},
+    {700, g_non_modal, false, ""},
+    {710, g_non_modal, false, ""},
+    {720, g_non_modal, false, ""},
+    {730, g_motion, false, ""},
+    {740, g_motion, false, ""},
+    {760, g_motion, false, ""},
+    {800, g_motion, true, ""},
+    {810, g_motion, false, ""},
+    {820, g_motion, false, ""},
+    {830, g_motion, false, ""},
+    {840, g_motion, false, ""},
+    {850, g_motion, false, ""},
+    {860, g_motion, false, ""},
+    {870, g_motion, false, ""},
+    {880, g_motion, false, ""},
+    {890, g_motion, false, ""},
+    {900, g_distance, true, ""},
+    {901, g_arc_distance, true, ""},
+    {910, g_distance, true, ""},
+    {911, g_arc_distance, true, ""},
+    {920, g_non_modal, true, "", true},
+    {921, g_non_modal, true, ""},
+    {922, g_non_modal, true, ""},
+    {923, g_non_modal, true, ""},
+    {930, g_feed_mode, true, ""},
+    {940, g_feed_mode, true, ""},
+    {950, g_feed_mode, false, ""},
+    {960, g_spindle_mode, false, ""},
+    {970, g_spindle_mode, true, ""},
+    {980, g_retract, true, ""},
+    {990, g_retract, true, ""},
+});
+
+constexpr auto kMCodes = std::to_array<Code>({
+    {0, m_stop, true, ""},
+    {10, m_stop, true, ""},
+    {20, m_stop, true, ""},
+    {30, m_spindle, true, ""},
+    {40, m_spindle, true, ""},
+    {50, m_spindle, true, ""},
+    {60, m_tool, true, ""},
+    {70, m_coolant, true, ""},
+    {80, m_coolant, true, ""},
+    {90, m_coolant, true, ""},
+    {190, m_spindle, false, ""},
+    {300, m_stop, true, ""},
+    {480, m_override, true, ""},
+    {490, m_override, true, ""},
+    {500, m_override, false, ""},
+    {510, m_override, false, ""},
+    {520, m_override, false, ""},
+    {530, m_override, false, ""},
+    {600, m_stop, false, ""},
+    {610, m_tool, false, ""},
+    {620, m_input_output, false, ""},
+    {630, m_input_output, false, ""},
+    {640, m_input_output, false, ""},
+    {650, m_input_output, false, ""},
+    {660, m_input_output, false, ""},
+    {670, m_input_output, false, ""},
+    {680, m_input_output, false, ""},
+    {700, m_input_output, false, ""},
+    {710, m_input_output, false, ""},
+    {720, m_input_output, false, ""},
+    {730, m_input_output, false, ""},
+    {980, m_input_output, false, ""},
+    {990, m_input_output, false, ""},
+});
+
+constexpr bool by_tenths(const Code& a, const Code& b) { return a.tenths < b.tenths; }
+static_assert(std::is_sorted(kGCodes.begin(), kGCodes.end(), by_tenths));
+static_assert(std::is_sorted(kMCodes.begin(), kMCodes.end(), by_tenths));
+
+}  // namespace
+
+std::span<const Code> g_codes() { return kGCodes; }
+std::span<const Code> m_codes() { return kMCodes; }
+
+const Code* find_code(char letter, int tenths) {
+  const std::span<const Code> codes = letter == 'G' ? g_codes() : m_codes();
+  const auto found = std::lower_bound(codes.begin(), codes.end(), tenths,
+                                      [](const Code& c, int t) { return c.tenths < t; });
+  return found != codes.end() && found->tenths == tenths ? &*found : nullptr;
+}
+
+std::string code_name(char letter, int tenths) {
+  return tenths % 10 == 0 ? fmt::format("{}{}", letter, tenths / 10)
+                          : fmt::format("{}{}.{}", letter, tenths / 10, tenths % 10);
+}
+
+}  // namespace servomill::controllers

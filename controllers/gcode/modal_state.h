@@ -1,0 +1,54 @@
+/// What the interpreter remembers from block to block, parameters aside.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "plant/vocabulary/axes.h"
+#include "plant/vocabulary/move.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers {
+
+inline constexpr int kWorkSystems = 9;       // G54 ... G59.3
+inline constexpr int kOtherToolOffset = -1;  // `Move::tool_offset` of G43.1 and G43.2
+inline constexpr int kPrintMessage = 1;      // `Move::number` of (PRINT, ...); else 0
+inline constexpr int kMist = 1, kFlood = 2;  // bits of `Move::number` of a coolant move
+
+/// Positions are SI. Machine coordinates = R (position + shift) + work_offset + tool_offset, where
+/// R turns X and Y by the rotation of the work system.
+struct ModalState {
+  AxisWords position = AxisWords::Zero();  // in work coordinates
+  AxisWords shift = AxisWords::Zero();     // G92, G52
+  AxisWords work_offset = AxisWords::Zero();
+  AxisWords tool_offset = AxisWords::Zero();
+  double cos_rotation = 1.0;
+  double sin_rotation = 0.0;
+  int work_system = 1;
+  int tool_offset_number = 0;
+
+  int motion = 800;     // ten times the code; 800: none
+  int normal_axis = 2;  // of the plane of arcs
+  double unit = mm;     // of length words
+  bool is_incremental = false;
+  bool is_centre_absolute = false;
+  FeedMode feed_mode = FeedMode::units_per_minute;
+  double feed_linear = 0.0;  // m/s
+  double feed_rotary = 0.0;  // rad/s
+  PathMode path_mode = PathMode::continuous;
+  double path_tolerance = 0.0;  // m
+
+  int tool = 0;
+  int selected_tool = -1;  // -1: no T yet
+  int spindle_direction = 0;
+  double spindle_speed = 0.0;  // rad/s
+  int coolant = 0;
+
+  double s = 0.0;  // m, length of the XYZ path so far
+
+  void set_rotation(double angle);
+  AxisWords rotated(const AxisWords& v) const;
+  AxisWords to_machine(const AxisWords& work) const;
+  AxisWords to_work(const AxisWords& machine) const;
+};
+
+}  // namespace servomill::controllers

@@ -1,0 +1,262 @@
+#include "controllers/gcode/parameters.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cassert>
+#include <cmath>
+
+#include "controllers/gcode/lexer.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr double kIntegerTol = 1e-4;  // RS274/NGC: how far from an integer a number may be
+constexpr double kEqualTol = 1e-4;    // as LinuxCNC: EQ and NE
+
+// Every step pushes at most one number, and a line has fewer steps than characters.
+using Stack = std::array<double, kLongestLine + 1>;
+
+[[noreturn]] void fail(const Place& place, std::string message) {
+  throw InputError(place, std::move(message));
+}
+
+double rounded(double x) { return std::trunc(x + (x < 0.0 ? -0.5 : 0.5)); }
+
+double modulo(double a, double b) {
+  const double r = std::fmod(a, b);
+  return r < 0.0 ? r + std::abs(b) : r;
+}
+
+double power(double a, double b, const Place& place) {
+  if (a < 0.0 && b != std::floor(b)) {
+    fail(place,
+         fmt::format("{} ** {}: a negative number has no power that is not an integer", a, b));
+  }
+  return std::pow(a, b);
+}
+
+double binary(OpCode code, double a, double b, const Place& place) {
+  switch (code) {
+    case OpCode::power:
+      return power(a, b, place);
+    case OpCode::multiply:
+      return a * b;
+    case OpCode::divide:
+      if (b == 0.0) fail(place, fmt::format("{} / {}: division by zero", a, b));
+      return a / b;
+    case OpCode::modulo:
+      if (b == 0.0) fail(place, fmt::format("{} MOD {}: division by zero", a, b));
+      return modulo(a, b);
+    case OpCode::add:
+      return a + b;
+    case OpCode::subtract:
+      return a - b;
+    case OpCode::equal:
+      return std::abs(a - b) < kEqualTol ? 1.0 : 0.0;
+    case OpCode::not_equal:
+      return std::abs(a - b) < kEqualTol ? 0.0 : 1.0;
+    case OpCode::greater:
+      return a > b ? 1.0 : 0.0;
+    case OpCode::greater_equal:
+      return a >= b ? 1.0 : 0.0;
+    case OpCode::less:
+      return a < b ? 1.0 : 0.0;
+    case OpCode::less_equal:
+      return a <= b ? 1.0 : 0.0;
+    case OpCode::logical_and:
+      return a != 0.0 && b != 0.0 ? 1.0 : 0.0;
+    case OpCode::logical_or:
+      return a != 0.0 || b != 0.0 ? 1.0 : 0.0;
+    case OpCode::logical_xor:
+      return (a != 0.0) != (b != 0.0) ? 1.0 : 0.0;
+    case OpCode::atan:
+      return std::atan2(a, b) / deg;
+    default:
+      assert(false && "not a binary operator");
+      return 0.0;
+  }
+}
+
+double arc_function(std::string_view name, double (*f)(double), double x, const Place& place) {
+  if (!(x >= -1.0 && x <= 1.0))
+    fail(place, fmt::format("{}[{}]: argument must be in -1 ... 1", name, x));
+  return f(x) / deg;
+}
+
+double unary(OpCode code, double x, const Place& place) {
+  switch (code) {
+    case OpCode::negate:
+      return -x;
+    case OpCode::abs:
+      return std::abs(x);
+    case OpCode::acos:
+      return arc_function("ACOS", std::acos, x, place);
+    case OpCode::asin:
+      return arc_function("ASIN", std::asin, x, place);
+    case OpCode::cos:
+      return std::cos(x * deg);
+    case OpCode::exp:
+      return std::exp(x);
+    case OpCode::fix:
+      return std::floor(x);
+    case OpCode::fup:
+      return std::ceil(x);
+    case OpCode::ln:
+      if (x <= 0.0) fail(place, fmt::format("LN[{}]: argument must be > 0", x));
+      return std::log(x);
+    case OpCode::round:
+      return rounded(x);
+    case OpCode::sin:
+      return std::sin(x * deg);
+    case OpCode::sqrt:
+      if (x < 0.0) fail(place, fmt::format("SQRT[{}]: argument must be >= 0", x));
+      return std::sqrt(x);
+    case OpCode::tan:
+      return std::tan(x * deg);
+    default:
+      assert(false && "not a unary operator");
+      return 0.0;
+  }
+}
+
+bool is_binary(OpCode code) {
+  return (code >= OpCode::power && code <= OpCode::logical_xor) || code == OpCode::atan;
+}
+
+double named_value(const std::string& name, const Parameters& parameters, const Place& place) {
+  const std::optional<double> value = parameters.get(name);
+  if (!value) fail(place, fmt::format("parameter #<{}> is not defined", name));
+  return *value;
+}
+
+}  // namespace
+
+Parameters::Parameters(System system)
+    : system_(std::move(system)), numbered_(static_cast<std::size_t>(parameter::kLast) + 1, 0.0) {}
+
+double Parameters::get(int number) const {
+  assert(number >= 1 && number <= parameter::kLast);
+  if (parameter::is_read_only(number)) return system_.number(number);
+  return numbered_[static_cast<std::size_t>(number)];
+}
+
+std::optional<double> Parameters::get(const std::string& name) const {
+  if (const auto found = named_.find(name); found != named_.end()) return found->second;
+  return system_.name(name);
+}
+
+void Parameters::set(int number, double value) {
+  assert(number >= 1 && number <= parameter::kLast && !parameter::is_read_only(number));
+  double& slot = numbered_[static_cast<std::size_t>(number)];
+  old_numbers_.emplace_back(number, slot);
+  slot = value;
+}
+
+void Parameters::set(const std::string& name, double value) {
+  const auto found = named_.find(name);
+  old_names_.emplace_back(
+      name, found == named_.end() ? std::nullopt : std::optional<double>(found->second));
+  named_[name] = value;
+}
+
+void Parameters::commit() {
+  old_numbers_.clear();
+  old_names_.clear();
+}
+
+void Parameters::roll_back() {
+  for (; !old_numbers_.empty(); old_numbers_.pop_back()) {
+    const auto& [number, value] = old_numbers_.back();
+    numbered_[static_cast<std::size_t>(number)] = value;
+  }
+  for (; !old_names_.empty(); old_names_.pop_back()) {
+    const auto& [name, value] = old_names_.back();
+    if (value) {
+      named_[name] = *value;
+    } else {
+      named_.erase(name);
+    }
+  }
+}
+
+int parameter_number(double value, const Place& place) {
+  const double nearest = std::round(value);
+  if (!(std::abs(value - nearest) <= kIntegerTol)) {
+    fail(place, fmt::format("parameter number {} is not an integer", value));
+  }
+  if (nearest < 1.0 || nearest > parameter::kLast) {
+    fail(place, fmt::format("parameter number {}; must be in 1 ... {}", nearest, parameter::kLast));
+  }
+  return static_cast<int>(nearest);
+}
+
+double evaluate(const Value& value, const Block& block, const Parameters& parameters,
+                const std::string& file) {
+  if (value.is_constant()) return value.number;
+  Stack stack;
+  std::size_t top = 0;  // one above the topmost number
+  for (int i = value.begin; i < value.end; ++i) {
+    const Op& op = block.code[static_cast<std::size_t>(i)];
+    const auto here = [&] { return Place{file, block.line, op.column}; };
+    const auto name = [&]() -> const std::string& {
+      return block.names[static_cast<std::size_t>(op.name)];
+    };
+    if (op.code == OpCode::push) {
+      stack[top++] = op.value;
+    } else if (op.code == OpCode::named) {
+      stack[top++] = named_value(name(), parameters, here());
+    } else if (op.code == OpCode::has_name) {
+      stack[top++] = parameters.get(name()) ? 1.0 : 0.0;
+    } else if (op.code == OpCode::numbered) {
+      stack[top - 1] = parameters.get(parameter_number(stack[top - 1], here()));
+    } else if (op.code == OpCode::has_number) {
+      parameter_number(stack[top - 1], here());
+      stack[top - 1] = 1.0;
+    } else if (is_binary(op.code)) {
+      --top;
+      stack[top - 1] = binary(op.code, stack[top - 1], stack[top], here());
+    } else {
+      stack[top - 1] = unary(op.code, stack[top - 1], here());
+    }
+    if (!std::isfinite(stack[top - 1])) fail(here(), "the result is not a finite number");
+  }
+  assert(top == 1);
+  return stack[0];
+}
+
+std::string substitute(std::string_view text, const Parameters& parameters) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size();) {
+    std::size_t end = i + 1;
+    if (text[i] == '#' && end < text.size() && text[end] == '<') {
+      const std::size_t close = text.find('>', end);
+      if (close != std::string_view::npos) {
+        std::string name;
+        for (const char c : text.substr(end + 1, close - end - 1)) {
+          if (c != ' ' && c != '\t') name += c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+        }
+        const std::optional<double> value = parameters.get(name);
+        out += value ? fmt::format("{:.6f}", *value) : "######";
+        i = close + 1;
+        continue;
+      }
+    }
+    while (text[i] == '#' && end < text.size() && end - i <= 5 && text[end] >= '0' &&
+           text[end] <= '9') {
+      ++end;
+    }
+    if (end > i + 1) {
+      const int number = std::stoi(std::string(text.substr(i + 1, end - i - 1)));
+      const bool exists = number >= 1 && number <= parameter::kLast;
+      out += exists ? fmt::format("{:.6f}", parameters.get(number)) : "######";
+    } else {
+      out += text[i];
+    }
+    i = end;
+  }
+  return out;
+}
+
+}  // namespace servomill::controllers

@@ -1,0 +1,161 @@
+#include "controllers/gcode/request.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+
+#include "plant/vocabulary/axes.h"
+#include "plant/vocabulary/input_error.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr double kCodeTol = 1e-4;  // how far the number of a code may be from a code
+constexpr int kMostMCodes = 4;     // as LinuxCNC
+constexpr std::string_view kClaimedLetters = "DHIJKLPQR";
+
+struct Context {
+  const std::string& file;
+  int line;
+
+  [[noreturn]] void fail(int column, std::string message) const {
+    throw InputError({file, line, column}, std::move(message));
+  }
+};
+
+std::string name_of(char letter, const Code& code) { return code_name(letter, code.tenths); }
+
+const Code& look_up(const Context& context, char letter, double value, int column) {
+  const double tenths = std::round(10.0 * value);
+  const bool exact = std::abs(10.0 * value - tenths) <= 10.0 * kCodeTol;
+  const Code* code =
+      exact && std::abs(tenths) < 1e6 ? find_code(letter, static_cast<int>(tenths)) : nullptr;
+  if (code == nullptr)
+    context.fail(column, fmt::format("unknown {} code {}{}", letter, letter, value));
+  if (!code->supported) {
+    context.fail(column, fmt::format("{} is not supported yet", name_of(letter, *code)));
+  }
+  return *code;
+}
+
+void choose(const Context& context, Request& request, char letter, const Code& code, int column) {
+  Request::Chosen& chosen = request.codes[static_cast<std::size_t>(code.group)];
+  if (chosen.code != nullptr) {
+    context.fail(column, fmt::format("{} and {} in one block (same modal group)",
+                                     name_of(letter, *chosen.code), name_of(letter, code)));
+  }
+  chosen = {&code, column};
+}
+
+// Column of the first axis word, or 0.
+int first_axis_word(const Request& request) {
+  int first = 0;
+  for (const Axis axis : kAllAxes) {
+    const int column = request.word(letter(axis)).column;
+    if (column > 0 && (first == 0 || column < first)) first = column;
+  }
+  return first;
+}
+
+// The code other than a motion that takes the axis words: G10, G28, G92, G43.1 ...
+Request::Chosen axis_taker(const Request& request) {
+  for (const Group group : {Group::g_non_modal, Group::g_tool_length}) {
+    const Request::Chosen& chosen = request.of(group);
+    if (chosen.code != nullptr && chosen.code->uses_axes) return chosen;
+  }
+  return {};
+}
+
+Request::Chosen choose_motion(const Context& context, const Request& request, int modal_motion) {
+  const Request::Chosen programmed = request.of(Group::g_motion);
+  const Request::Chosen taker = axis_taker(request);
+  const bool cancel = programmed.code != nullptr && programmed.code->tenths == kNoMotion;
+  if (taker.code != nullptr) {
+    if (programmed.code != nullptr && !cancel) {
+      context.fail(programmed.column,
+                   fmt::format("{} and {} in one block: both use the axis words",
+                               name_of('G', *taker.code), name_of('G', *programmed.code)));
+    }
+    return {};
+  }
+  const int axis_column = first_axis_word(request);
+  if (cancel && axis_column > 0) context.fail(axis_column, "axis words with G80");
+  if (cancel) return {};
+  if (programmed.code != nullptr || axis_column == 0) return programmed;
+  if (modal_motion == kNoMotion) {
+    context.fail(axis_column, "axis words, but no G code is in force that uses them");
+  }
+  return {find_code('G', modal_motion), axis_column};
+}
+
+bool claims(const Request::Chosen& chosen, char letter) {
+  return chosen.code != nullptr && chosen.code->uses.find(letter) != std::string_view::npos;
+}
+
+std::string users_of(char letter) {
+  std::string names;
+  for (const Code& code : g_codes()) {
+    if (!code.supported || code.uses.find(letter) == std::string_view::npos) continue;
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of('G', code));
+  }
+  return names;
+}
+
+void check_claims(const Context& context, const Request& request) {
+  for (const char letter : kClaimedLetters) {
+    if (!request.has(letter)) continue;
+    bool claimed = claims(request.motion, letter);
+    for (const Request::Chosen& chosen : request.codes) claimed = claimed || claims(chosen, letter);
+    if (claimed) continue;
+    const std::string users = users_of(letter);
+    context.fail(request.word(letter).column,
+                 users.empty()
+                     ? fmt::format("no supported code uses the {} word", letter)
+                     : fmt::format("{} word without a code that uses it ({})", letter, users));
+  }
+}
+
+void add_code(const Context& context, Request& request, const Word& word, double value,
+              int& m_codes_seen) {
+  if (word.letter == 'M' && ++m_codes_seen > kMostMCodes) {
+    context.fail(word.column, fmt::format("more than {} M codes in one block", kMostMCodes));
+  }
+  const Code& code = look_up(context, word.letter, value, word.column);
+  choose(context, request, word.letter, code, word.column);
+}
+
+}  // namespace
+
+Request resolve(const Block& block, const Parameters& parameters, int modal_motion,
+                const std::string& file) {
+  const Context context{file, block.line};
+  Request request;
+  request.line = block.line;
+  int m_codes_seen = 0;
+  for (const Word& word : block.words) {
+    const double value = evaluate(word.value, block, parameters, file);
+    if (word.letter == 'G' || word.letter == 'M') {
+      add_code(context, request, word, value, m_codes_seen);
+    } else {
+      request.words[static_cast<std::size_t>(word.letter - 'A')] = {value, word.column};
+    }
+  }
+  request.motion = choose_motion(context, request, modal_motion);
+  check_claims(context, request);
+  return request;
+}
+
+void check_codes(const Block& block, const std::string& file) {
+  const Context context{file, block.line};
+  Request request;
+  int m_codes_seen = 0;
+  for (const Word& word : block.words) {
+    const bool is_code = word.letter == 'G' || word.letter == 'M';
+    if (is_code && word.value.is_constant()) {
+      add_code(context, request, word, word.value.number, m_codes_seen);
+    }
+  }
+}
+
+}  // namespace servomill::controllers

@@ -1,0 +1,51 @@
+/// Third stage: a block with numbers in place of expressions, checked against the tables of codes.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "controllers/gcode/block.h"
+#include "controllers/gcode/modal_groups.h"
+#include "controllers/gcode/parameters.h"
+
+namespace servomill::controllers {
+
+/// What a block asks for. At most one code of each group.
+struct Request {
+  struct Cell {
+    double value = 0.0;
+    int column = 0;  // 0: not in the block
+  };
+  struct Chosen {
+    const Code* code = nullptr;
+    int column = 0;
+  };
+
+  int line = 0;
+  std::array<Cell, 26> words;  // by letter; G and M are in `codes`
+  std::array<Chosen, static_cast<std::size_t>(Group::count)> codes;
+  Chosen motion;  // in this block, programmed or still in force; not G80
+
+  const Cell& word(char letter) const { return words[static_cast<std::size_t>(letter - 'A')]; }
+  bool has(char letter) const { return word(letter).column > 0; }
+  double operator[](char letter) const { return word(letter).value; }
+
+  const Chosen& of(Group group) const { return codes[static_cast<std::size_t>(group)]; }
+  /// Ten times the code of a group, or -1.
+  int code(Group group) const { return of(group).code == nullptr ? -1 : of(group).code->tenths; }
+  /// Ten times the motion code, or -1.
+  int motion_code() const { return motion.code == nullptr ? -1 : motion.code->tenths; }
+};
+
+inline constexpr int kNoMotion = 800;  // G80
+
+/// @param modal_motion  ten times the motion code in force
+/// @throws InputError for an unknown or unsupported code, two codes of a group, axis words that no
+/// code or more than one code claims, and words that belong to no code of the block
+Request resolve(const Block& block, const Parameters& parameters, int modal_motion,
+                const std::string& file);
+
+/// The part of `resolve` that needs no run: codes that are plain numbers.
+void check_codes(const Block& block, const std::string& file);
+
+}  // namespace servomill::controllers

@@ -1,0 +1,38 @@
+/// Tools and their offsets.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "plant/vocabulary/axes.h"
+
+namespace servomill::controllers {
+
+struct ToolEntry {
+  int number = 0;
+  int pocket = 0;
+  AxisWords offset = AxisWords::Zero();  // m, rad; length along Z is offset[2]
+  double diameter = 0.0;                 // m
+};
+
+class ToolTable {
+ public:
+  /// Reads LinuxCNC's format in mm and degrees: one tool a line, words T P X Y Z A B C D and, for
+  /// turning tools and unused here, I J Q; a ';' starts a comment.
+  /// @throws InputError with every faulty line
+  static ToolTable parse(std::string_view text, const std::string& file);
+
+  /// @throws InputError (without a place) for a second tool of the same number
+  void add(const ToolEntry& tool);
+
+  /// nullptr if there is no such tool.
+  const ToolEntry* find(int number) const;
+  bool empty() const { return tools_.empty(); }
+  std::size_t size() const { return tools_.size(); }
+
+ private:
+  std::map<int, ToolEntry> tools_;
+};
+
+}  // namespace servomill::controllers
