@@ -1,0 +1,25 @@
+/// What the path planner may ask of the joints, and how it may treat the programmed path.
+#pragma once
+
+#include "plant/vocabulary/axes.h"
+
+namespace servomill::controllers {
+
+/// Largest absolute values on each joint; all > 0 for a joint that moves.
+struct JointLimits {
+  Joints v = Joints::Zero();  // m/s, rad/s
+  Joints a = Joints::Zero();  // m/s^2, rad/s^2
+  Joints j = Joints::Zero();  // m/s^3, rad/s^3
+};
+
+struct PathOptions {
+  double tolerance = 10e-6;          // m, G64 without P
+  double exact_tolerance = 0.1e-6;   // m, how far G61 may leave the path where it does not stop
+  double exact_corner = 0.02;        // rad, G61 stops at sharper corners
+  double rotary_tolerance = 100e-6;  // rad, norm over the rotary joints; for G61 scaled alike
+  double rotary_radius = 0.1;        // m, turns rotary motion into path length
+  double feed_override = 1.0;        // factor on feeds
+  double rapid_override = 1.0;       // factor on the joint speeds of rapids
+};
+
+}  // namespace servomill::controllers

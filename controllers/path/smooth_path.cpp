@@ -1,0 +1,238 @@
+#include "controllers/path/smooth_path.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace servomill::controllers {
+namespace {
+
+constexpr std::size_t kMaxReach = 64;  // vertices on either side that a window may cover
+constexpr double kLeastPiece = 1e-12;  // m, knots closer than this are one
+constexpr double kMargin = 0.9;        // of the tolerance: room for moving arc points outward
+constexpr double kShrink = 0.85;       // step of the search for a window
+constexpr int kArcPasses = 3;          // each leaves (w/R)^2 of the error before
+
+struct Deviation {
+  Joints d0 = Joints::Zero(), d1 = Joints::Zero(), d2 = Joints::Zero(), d3 = Joints::Zero();
+};
+
+double linear_norm(const Joints& u) { return u.head<kLinearJoints>().norm(); }
+double rotary_norm(const Joints& u) { return u.tail<kJoints - kLinearJoints>().norm(); }
+
+class Smoother {
+ public:
+  explicit Smoother(std::vector<PathVertex> vertices) : v_(std::move(vertices)), n_(v_.size() - 1) {
+    for (const PathVertex& v : v_) target_.push_back(v.u);
+    measure();
+  }
+
+  SmoothPath run() {
+    choose_windows();
+    fit_windows();
+    if (std::any_of(v_.begin(), v_.end(), [](const PathVertex& v) { return v.arc >= 0; })) {
+      for (int pass = 0; pass < kArcPasses; ++pass) pull_arcs_outward();
+    }
+    return build();
+  }
+
+ private:
+  void measure() {
+    s_.assign(n_ + 1, 0.0);
+    d_.resize(n_);
+    dd_.assign(n_ + 1, Joints::Zero());
+    for (std::size_t k = 0; k < n_; ++k) {
+      const Joints chord = v_[k + 1].u - v_[k].u;
+      const double length = chord.norm();
+      assert(length > 0.0);
+      s_[k + 1] = s_[k] + length;
+      d_[k] = chord / length;
+    }
+    for (std::size_t i = 1; i < n_; ++i) dd_[i] = d_[i] - d_[i - 1];
+  }
+
+  // Deviation at vertex i if it and its neighbours all had the window w.
+  Joints deviation_with(std::size_t i, double w) const {
+    Joints sum = Joints::Zero();
+    const auto add = [&](std::size_t k) {
+      const double y = w - std::abs(s_[k] - s_[i]);
+      if (y <= 0.0) return false;
+      sum += dd_[k] * (y * y * y / (6.0 * w * w));
+      return true;
+    };
+    for (std::size_t k = i; k < n_ && add(k);) ++k;
+    for (std::size_t k = i; k > 1 && add(k - 1);) --k;
+    return sum;
+  }
+
+  // Widest window of each vertex on its own, from wide to narrow.
+  void choose_windows() {
+    w_.assign(n_ + 1, 0.0);
+    for (std::size_t i = 1; i < n_; ++i) {
+      const double tol_linear =
+          kMargin * std::min(v_[i].tolerance_linear, v_[i + 1].tolerance_linear);
+      const double tol_rotary =
+          kMargin * std::min(v_[i].tolerance_rotary, v_[i + 1].tolerance_rotary);
+      double w = std::min(s_[i], s_[n_] - s_[i]);
+      w = std::min(w, 6.0 * tol_linear / std::max(linear_norm(dd_[i]), 1e-30));
+      w = std::min(w, 6.0 * tol_rotary / std::max(rotary_norm(dd_[i]), 1e-30));
+      if (i > kMaxReach) w = std::min(w, s_[i] - s_[i - kMaxReach]);
+      if (i + kMaxReach < n_) w = std::min(w, s_[i + kMaxReach] - s_[i]);
+      const double alone = std::min(w, std::min(s_[i] - s_[i - 1], s_[i + 1] - s_[i]));
+      while (w > alone) {
+        const Joints D = deviation_with(i, w);
+        if (linear_norm(D) <= tol_linear && rotary_norm(D) <= tol_rotary) break;
+        w *= kShrink;
+      }
+      w_[i] = std::max(w, alone);
+    }
+    limit_slope();
+  }
+
+  void limit_slope() {
+    for (std::size_t i = 1; i <= n_; ++i) w_[i] = std::min(w_[i], w_[i - 1] + (s_[i] - s_[i - 1]));
+    for (std::size_t i = n_; i-- > 0;) w_[i] = std::min(w_[i], w_[i + 1] + (s_[i + 1] - s_[i]));
+    w_[n_] = 0.0;
+  }
+
+  // Calls f(begin, end, segment, first, last): windows first..last-1 are active on the piece.
+  template <class F>
+  void for_each_piece(F&& f) const {
+    std::size_t i_begin = 1, i_centre = 1, i_end = 1;  // next knot of each kind
+    std::size_t first = 1, last = 1, segment = 0;
+    double at = 0.0;
+    const auto knot = [&](std::size_t i, double x) { return i < n_ ? x : s_[n_]; };
+    while (s_[n_] - at > kLeastPiece) {
+      const double next = std::min({knot(i_begin, i_begin < n_ ? s_[i_begin] - w_[i_begin] : 0.0),
+                                    knot(i_centre, i_centre < n_ ? s_[i_centre] : 0.0),
+                                    knot(i_end, i_end < n_ ? s_[i_end] + w_[i_end] : 0.0), s_[n_]});
+      double to = std::max(next, at);
+      while (i_begin < n_ && s_[i_begin] - w_[i_begin] <= next) ++i_begin;
+      while (i_centre < n_ && s_[i_centre] <= next) ++i_centre;
+      while (i_end < n_ && s_[i_end] + w_[i_end] <= next) ++i_end;
+      if (s_[n_] - to <= kLeastPiece) to = s_[n_];
+      if (to - at <= kLeastPiece) continue;
+      const double middle = 0.5 * (at + to);
+      while (segment + 1 < n_ && s_[segment + 1] <= middle) ++segment;
+      while (first < n_ && s_[first] + w_[first] <= middle) ++first;
+      while (last < n_ && s_[last] - w_[last] < middle) ++last;
+      f(at, to, segment, first, std::max(first, last));
+      at = to;
+    }
+  }
+
+  // Deviation (2) and its derivatives at `x`, from the windows first..last-1.
+  Deviation deviation(double x, double middle, std::size_t first, std::size_t last) const {
+    Deviation D;
+    for (std::size_t i = first; i < last; ++i) {
+      const double w = w_[i];
+      if (std::abs(middle - s_[i]) >= w) continue;
+      const double side = middle < s_[i] ? 1.0 : -1.0;
+      const double y = std::max(w + side * (x - s_[i]), 0.0), K = 1.0 / (w * w);
+      D.d0 += dd_[i] * (K * y * y * y / 6.0);
+      D.d1 += dd_[i] * (side * K * y * y / 2.0);
+      D.d2 += dd_[i] * (K * y);
+      D.d3 += dd_[i] * (side * K);
+    }
+    return D;
+  }
+
+  // Ratio of the deviation on a piece to its tolerance, from the control points of the cubic.
+  double excess(const Deviation& D, double h, std::size_t segment) const {
+    const std::array<Joints, 4> control = {
+        D.d0, D.d0 + D.d1 * (h / 3.0), D.d0 + D.d1 * (2.0 * h / 3.0) + D.d2 * (h * h / 6.0),
+        D.d0 + D.d1 * h + D.d2 * (h * h / 2.0) + D.d3 * (h * h * h / 6.0)};
+    const PathVertex& to = v_[segment + 1];
+    double ratio = 0.0;
+    for (const Joints& c : control) {
+      ratio = std::max(ratio, linear_norm(c) / to.tolerance_linear);
+      ratio = std::max(ratio, rotary_norm(c) / to.tolerance_rotary);
+    }
+    return ratio;
+  }
+
+  // Narrows the windows until the deviation is within kMargin of the tolerance everywhere.
+  void fit_windows() {
+    std::vector<double> scale(n_ + 1);
+    for (bool fits = false; !fits;) {
+      fits = true;
+      std::fill(scale.begin(), scale.end(), 1.0);
+      for_each_piece([&](double from, double to, std::size_t segment, std::size_t first,
+                         std::size_t last) {
+        const double ratio =
+            excess(deviation(from, 0.5 * (from + to), first, last), to - from, segment) / kMargin;
+        if (ratio <= 1.0 + 1e-9) return;
+        fits = false;
+        const double factor = std::max(0.5, 0.99 / std::sqrt(ratio));
+        for (std::size_t i = first; i < last; ++i) scale[i] = std::min(scale[i], factor);
+      });
+      for (std::size_t i = 0; i <= n_; ++i) w_[i] *= scale[i];
+      limit_slope();
+    }
+  }
+
+  // Moves the points of arcs so that the smoothed curve, not the polygon, passes the circle. Fades
+  // out towards neighbours that are not on the same arc.
+  void pull_arcs_outward() {
+    std::vector<Joints> moved(n_ + 1);
+    for (std::size_t i = 0; i <= n_; ++i) {
+      moved[i] = v_[i].u;
+      if (v_[i].arc < 0 || w_[i] <= 0.0) continue;
+      std::size_t first = i, last = i + 1;
+      while (first > 1 && s_[first - 1] + w_[first - 1] > s_[i]) --first;
+      while (last < n_ && s_[last] - w_[last] < s_[i]) ++last;
+      const Joints error = v_[i].u + deviation(s_[i], s_[i], first, last).d0 - target_[i];
+      moved[i] -= fade(i) * error;
+    }
+    for (std::size_t i = 0; i <= n_; ++i) v_[i].u = moved[i];
+    measure();
+    for (std::size_t i = 1; i < n_; ++i) w_[i] = std::min({w_[i], s_[i], s_[n_] - s_[i]});
+    limit_slope();
+  }
+
+  double fade(std::size_t i) const {
+    const double reach = 2.0 * w_[i];
+    double distance = reach;
+    const auto look = [&](auto step) {
+      for (std::size_t k = i;; k = step(k)) {
+        if (std::abs(s_[k] - s_[i]) >= reach) return;
+        if (v_[k].arc == v_[i].arc) continue;
+        if (k != 0 && k != n_) distance = std::min(distance, std::abs(s_[k] - s_[i]));
+        return;  // another move, or the end of the path, where nothing has to be met
+      }
+    };
+    look([](std::size_t k) { return k - 1; });
+    look([](std::size_t k) { return k + 1; });
+    const double x = distance / reach;
+    return x * x * (3.0 - 2.0 * x);
+  }
+
+  SmoothPath build() const {
+    SmoothPath path;
+    path.s = s_;
+    path.pieces.reserve(3 * n_);
+    for_each_piece([&](double from, double to, std::size_t k, std::size_t first, std::size_t last) {
+      const Deviation D = deviation(from, 0.5 * (from + to), first, last);
+      assert(excess(D, to - from, k) <= 1.0);
+      path.pieces.push_back(
+          {from, v_[k].u + d_[k] * (from - s_[k]) + D.d0, d_[k] + D.d1, D.d2, D.d3, k});
+    });
+    return path;
+  }
+
+  std::vector<PathVertex> v_;
+  std::size_t n_;  // chords
+  std::vector<Joints> target_;
+  std::vector<double> s_, w_;
+  std::vector<Joints> d_, dd_;
+};
+
+}  // namespace
+
+SmoothPath smooth(std::vector<PathVertex> vertices) {
+  assert(vertices.size() >= 2);
+  return Smoother(std::move(vertices)).run();
+}
+
+}  // namespace servomill::controllers

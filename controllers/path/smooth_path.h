@@ -1,0 +1,58 @@
+/// A polyline in joint space, its corners rounded so that the third derivative is bounded.
+///
+/// The polyline over its length s is a straight line plus a ramp dd_i (s - s_i)_+ at each vertex,
+/// dd_i the change of direction. Each ramp is convolved with the triangle of half-width w_i,
+///
+///            K(x)                          w - |x|
+///        1/w  /\                   K(x) =  -------      |x| < w
+///            /  \                            w^2
+///        ___/    \___ x
+///          -w    w                                                                          (1)
+///
+/// and since ramps superpose, windows of neighbouring vertices may overlap:
+///
+///     q(s) = polyline(s) + sum_i dd_i e_i(s - s_i),   e_i(x) = (w_i - |x|)^3 / (6 w_i^2)    (2)
+///     q''  = sum_i dd_i K_i,                          q''' piecewise constant.
+///
+/// Between knots (s_i - w_i, s_i, s_i + w_i) q is a cubic. A lone corner is missed by |dd| w/6, a
+/// chain of chords of curvature k by k w^2/12. The windows are as wide as the tolerance allows, end
+/// within the path, and |w_i+1 - w_i| <= s_i+1 - s_i, which keeps |q'| <= 1.                   (3)
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "plant/vocabulary/axes.h"
+
+namespace servomill::controllers {
+
+/// One vertex. Rotary coordinates are multiplied by a radius, so that all five are metres.
+struct PathVertex {
+  Joints u = Joints::Zero();      // m
+  double tolerance_linear = 0.0;  // m, on the way to this vertex
+  double tolerance_rotary = 0.0;  // m
+  int arc = -1;  // interior point of that arc: may be moved outward so that the curve passes it
+};
+
+/// q(x) = c0 + c1 x + c2 x^2/2 + c3 x^3/6 for x = s - `s` from 0 to the next piece.
+struct CubicPiece {
+  double s = 0.0;
+  Joints c0, c1, c2, c3;
+  std::size_t segment = 0;  // chord of the polyline to which it belongs
+};
+
+struct SmoothPath {
+  std::vector<CubicPiece> pieces;
+  std::vector<double> s;  // of each vertex
+  double length() const { return s.back(); }
+  double end_of(std::size_t piece) const {
+    return piece + 1 < pieces.size() ? pieces[piece + 1].s : length();
+  }
+};
+
+/// @param vertices  at least two, neighbours apart
+/// Law: begins and ends exactly in the first and last vertex, with zero curvature; the distance to
+/// the polyline (of arcs: to the circle) is within the tolerance of the chord.
+SmoothPath smooth(std::vector<PathVertex> vertices);
+
+}  // namespace servomill::controllers

@@ -1,0 +1,58 @@
+#include "controllers/path/stretch_limits.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace servomill::controllers {
+namespace {
+
+constexpr double kCurveShareA = 0.7;  // of the acceleration, for curvature
+constexpr double kCurveShareJ = 0.7;  // of the jerk
+constexpr double kCrossShareJ = 0.5;  // of the jerk left, for 3 q'' v a
+
+}  // namespace
+
+StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimits& limits,
+                             const FeedLimit& feed) {
+  // q' is a parabola within the hull of three control points, q'' a line, q''' constant
+  const Joints &t0 = piece.c1, t1 = piece.c1 + piece.c2 * (0.5 * h);
+  const Joints t2 = piece.c1 + piece.c2 * h + piece.c3 * (0.5 * h * h);
+  const Joints d1 = t0.cwiseAbs().cwiseMax(t1.cwiseAbs()).cwiseMax(t2.cwiseAbs());
+  const Joints d2 = piece.c2.cwiseAbs().cwiseMax((piece.c2 + piece.c3 * h).cwiseAbs());
+  const Joints d3 = piece.c3.cwiseAbs();
+  const auto largest = [&](auto part) { return std::max({part(t0), part(t1), part(t2)}); };
+  const double linear = largest([](const Joints& t) { return t.head<kLinearJoints>().norm(); });
+  const double rotary =
+      largest([](const Joints& t) { return t.tail<kJoints - kLinearJoints>().norm(); });
+
+  StretchLimits out;
+  out.end = piece.s + h;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double v = kInfinity;
+  if (linear > 0.0) v = std::min(v, feed.linear / linear);
+  if (rotary > 0.0) v = std::min(v, feed.rotary / rotary);
+  for (int k = 0; k < kJoints; ++k) {
+    if (d1[k] > 0.0) v = std::min(v, limits.v[k] / d1[k]);
+    if (d2[k] > 0.0) v = std::min(v, std::sqrt(kCurveShareA * limits.a[k] / d2[k]));
+    if (d3[k] > 0.0) v = std::min(v, std::cbrt(kCurveShareJ * limits.j[k] / d3[k]));
+  }
+  double a = kInfinity;
+  for (int k = 0; k < kJoints; ++k) {
+    if (d1[k] > 0.0) a = std::min(a, (limits.a[k] - d2[k] * v * v) / d1[k]);
+    const double left = limits.j[k] - d3[k] * v * v * v;
+    if (d2[k] > 0.0) a = std::min(a, kCrossShareJ * left / (3.0 * d2[k] * v));
+  }
+  double j = kInfinity;
+  for (int k = 0; k < kJoints; ++k) {
+    if (d1[k] <= 0.0) continue;
+    j = std::min(j, (limits.j[k] - d3[k] * v * v * v - 3.0 * d2[k] * v * a) / d1[k]);
+  }
+  assert(v > 0.0 && a > 0.0 && j > 0.0 && v < kInfinity && a < kInfinity && j < kInfinity);
+  out.v = v;
+  out.a = a;
+  out.j = j;
+  return out;
+}
+
+}  // namespace servomill::controllers

@@ -1,0 +1,26 @@
+/// What the joint limits leave for the speed along a piece of the path.
+#pragma once
+
+#include <limits>
+
+#include "controllers/path/path_limits.h"
+#include "controllers/path/smooth_path.h"
+#include "controllers/path/time_law.h"
+
+namespace servomill::controllers {
+
+/// Programmed speed; rotary in metres like the path (see PathVertex).
+struct FeedLimit {
+  double linear = std::numeric_limits<double>::infinity();  // m/s, of X Y Z together
+  double rotary = std::numeric_limits<double>::infinity();  // m/s, of the rotary joints together
+};
+
+/// Limits of speed v, acceleration a and jerk j along a piece of length h such that on each joint
+///
+///   |q'| v <= V,   |q''| v^2 + |q'| a <= A,   |q'''| v^3 + 3 |q''| v a + |q'| j <= J      (1)
+///
+/// The speed may use a fixed share of A and J for the curvature; a and j get what is left.
+StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimits& limits,
+                             const FeedLimit& feed);
+
+}  // namespace servomill::controllers

@@ -1,0 +1,41 @@
+/// Speed along a path: as fast as its limits allow, with limited acceleration and jerk.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace servomill::controllers {
+
+/// Limits that hold on one stretch of the path, from the end of the one before to `end`.
+struct StretchLimits {
+  double end = 0.0;  // m
+  double v = 0.0;    // m/s
+  double a = 0.0;    // m/s^2, at every speed up to v
+  double j = 0.0;    // m/s^3, at every speed up to v and acceleration up to a
+};
+
+/// s(t) = s + v x + a x^2/2 + j x^3/6, x = t - `t`, until the next phase begins.
+struct Phase {
+  double t = 0.0, s = 0.0, v = 0.0, a = 0.0, j = 0.0;
+};
+
+struct TimeLaw {
+  std::vector<Phase> phases;
+  double duration = 0.0;  // s
+};
+
+/// Rest to rest over the stretches. Waypoints with zero acceleration stand where a limit of speed
+/// would be exceeded otherwise; between two of them the speed rises, stays and falls along S-curves
+/// under the least acceleration and jerk of the stretches that they cover.
+///
+///      v |        ______ limit            1. the highest rise-cruise-fall between two waypoints
+///        |   ____/      \                 2. where it exceeds a limit, the lowest such limit
+///        |  /    ^       \____               becomes waypoints, and both sides start again at 1
+///        | /   waypoint       \           3. a waypoint out of reach is lowered
+///        +---------------------- s
+///
+/// @param stretches  ends increasing, all limits > 0
+TimeLaw plan_speed(std::span<const StretchLimits> stretches);
+
+}  // namespace servomill::controllers

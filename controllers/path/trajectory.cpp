@@ -1,0 +1,338 @@
+#include "controllers/path/trajectory.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+
+#include "controllers/path/arc_sweep.h"
+#include "controllers/path/stretch_limits.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr double kLeastChord = 1e-9;    // m, points closer than this to the last are skipped
+constexpr double kLeastChain = 1e-12;   // m, below this there is no motion
+constexpr double kReversal = -0.5;      // cosine of the sharpest corner that is not a stop
+constexpr double kChordAngle = 0.1;     // rad, longest chord of an arc
+constexpr double kChordsPerWindow = 4;  // chords of an arc in the half-width of its window
+
+}  // namespace
+
+// Collects moves into chains and plans each when it ends.
+class Planner {
+ public:
+  Planner(const JointLayout& layout, const JointLimits& limits, const PathOptions& options,
+          const Joints& start)
+      : layout_(layout), options_(options) {
+    assert(options.tolerance > 0.0 && options.exact_tolerance > 0.0);
+    assert(options.rotary_tolerance > 0.0 && options.rotary_radius > 0.0);
+    assert(options.feed_override > 0.0 && options.rapid_override > 0.0);
+    scale_.setOnes();
+    scale_.tail<kJoints - kLinearJoints>().setConstant(options.rotary_radius);
+    limits_ = {limits.v.cwiseProduct(scale_), limits.a.cwiseProduct(scale_),
+               limits.j.cwiseProduct(scale_)};
+    out_.rotary_radius_ = options.rotary_radius;
+    out_.start_ = out_.end_ = start;
+    words_ = layout.words(start);
+    restart();
+  }
+
+  Trajectory run(std::span<const Move> moves) {
+    out_.moves_.reserve(moves.size());
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      const Move& move = moves[i];
+      out_.moves_.push_back({move.s_begin, move.s_end, move.line, move.kind == MoveKind::rapid});
+      switch (move.kind) {
+        case MoveKind::rapid:
+        case MoveKind::feed:
+        case MoveKind::arc:
+          add_motion(move, i);
+          break;
+        case MoveKind::dwell:
+          add_dwell(move, i);
+          break;
+        case MoveKind::tool:
+        case MoveKind::stop:
+        case MoveKind::end:
+          finish_chain();
+          break;
+        case MoveKind::spindle:
+        case MoveKind::coolant:
+        case MoveKind::message:
+          break;
+      }
+    }
+    finish_chain();
+    out_.duration_ = t_;
+    return std::move(out_);
+  }
+
+ private:
+  using Chain = Trajectory::Chain;
+
+  // What a move means for the chain.
+  struct Leg {
+    bool rapid = false, rotary_only = false;
+    bool stop_after = false, exact_corners = false;
+    Joints tangent_begin, tangent_end;  // unit, scaled
+  };
+
+  struct LegSpan {
+    std::size_t move = 0, first = 0, last = 0;  // vertices
+    FeedLimit feed;
+    bool rapid = false;
+  };
+
+  Joints scaled(const Joints& Q) const { return Q.cwiseProduct(scale_); }
+
+  void add_motion(const Move& move, std::size_t index) {
+    assert(move.kind == MoveKind::rapid || move.feed > 0.0);
+    const Joints Q_end = layout_.joints(move.end_machine);
+    const Joints u_end = scaled(Q_end);
+    const Joints step = u_end - u_;
+    if (move.kind != MoveKind::arc && step.isZero(0.0)) {
+      if (move.path_mode == PathMode::exact_stop) finish_chain();
+      return;
+    }
+    Leg leg;
+    leg.rapid = move.kind == MoveKind::rapid;
+    leg.stop_after = move.path_mode == PathMode::exact_stop;
+    leg.exact_corners = move.path_mode == PathMode::exact_path;
+    std::optional<ArcSweep> arc;
+    if (move.kind == MoveKind::arc) {
+      arc = arc_sweep(move, words_.head<3>());
+      leg.tangent_begin = arc_tangent(*arc, step, 0.0);
+      leg.tangent_end = arc_tangent(*arc, step, 1.0);
+    } else {
+      leg.rotary_only = step.head<kLinearJoints>().isZero(0.0);
+      leg.tangent_begin = leg.tangent_end = step.normalized();
+    }
+    if (last_ && must_stop(*last_, leg)) finish_chain();
+    LegSpan span{index, vertices_.size() - 1, 0, feed_limit(move, leg), leg.rapid};
+    if (arc) {
+      add_arc(*arc, move, step, static_cast<int>(index));
+    } else {
+      add_point(u_end, move, -1);
+    }
+    span.last = vertices_.size() - 1;
+    if (span.last > span.first) spans_.push_back(span);
+    last_move_ = index;
+    u_ = u_end;
+    Q_ = Q_end;
+    words_ = move.end_machine;
+    last_ = leg;
+    if (leg.stop_after) finish_chain();
+  }
+
+  Joints arc_tangent(const ArcSweep& arc, const Joints& step, double fraction) const {
+    Joints t = step;
+    t.head<kLinearJoints>() = linear_joints(arc.derivative(fraction));
+    return t.normalized();
+  }
+
+  // X Y Z in the order of the layout.
+  Eigen::Vector3d linear_joints(const Eigen::Vector3d& p) const {
+    AxisWords words = AxisWords::Zero();
+    words.head<3>() = p;
+    return layout_.joints(words).head<kLinearJoints>();
+  }
+
+  bool must_stop(const Leg& from, const Leg& to) const {
+    if (from.rapid != to.rapid || from.rotary_only != to.rotary_only) return true;
+    const double cosine = from.tangent_end.dot(to.tangent_begin);
+    if (cosine < kReversal) return true;
+    return (from.exact_corners || to.exact_corners) &&
+           (to.tangent_begin - from.tangent_end).norm() > options_.exact_corner;
+  }
+
+  FeedLimit feed_limit(const Move& move, const Leg& leg) const {
+    FeedLimit feed;
+    if (leg.rapid) return feed;
+    const double value = move.feed * options_.feed_override;
+    (leg.rotary_only ? feed.rotary : feed.linear) =
+        leg.rotary_only ? value * options_.rotary_radius : value;
+    return feed;
+  }
+
+  double tolerance_of(const Move& move) const {
+    if (move.path_mode != PathMode::continuous) return options_.exact_tolerance;
+    return move.path_tolerance > 0.0 ? move.path_tolerance : options_.tolerance;
+  }
+
+  void add_arc(const ArcSweep& arc, const Move& move, const Joints& step, int index) {
+    const double radius = std::max(arc.r_begin, arc.r_end), sweep = std::abs(arc.sweep);
+    const double window = std::sqrt(12.0 * tolerance_of(move) * radius);
+    const double chord = std::min(kChordAngle, window / kChordsPerWindow / radius);
+    const int n = std::max(1, static_cast<int>(std::ceil(sweep / chord)));
+    const Joints u_begin = u_;
+    for (int i = 1; i <= n; ++i) {
+      const double fraction = static_cast<double>(i) / n;
+      Joints u = u_begin + step * fraction;
+      u.head<kLinearJoints>() = linear_joints(arc.point(fraction));
+      if (i == n) u = u_begin + step;
+      add_point(u, move, i < n ? index : -1);
+    }
+  }
+
+  void add_point(const Joints& u, const Move& move, int arc) {
+    PathVertex vertex{u, tolerance_of(move), options_.rotary_tolerance, arc};
+    if (move.path_mode != PathMode::continuous) {
+      vertex.tolerance_rotary *= options_.exact_tolerance / options_.tolerance;
+    }
+    vertex.tolerance_rotary *= options_.rotary_radius;
+    skipped_ = (u - vertices_.back().u).norm() < kLeastChord;
+    if (!skipped_) vertices_.push_back(vertex);
+  }
+
+  void add_dwell(const Move& move, std::size_t index) {
+    assert(move.value >= 0.0);
+    finish_chain();
+    Chain chain;
+    chain.t = t_;
+    chain.duration = move.value;
+    chain.begin = chain.end = Q_;
+    chain.spans.push_back({0.0, 0.0, index});
+    t_ += chain.duration;
+    out_.chains_.push_back(std::move(chain));
+  }
+
+  void restart() {
+    Q_ = out_.end_;
+    u_ = scaled(Q_);
+    vertices_.assign(1, PathVertex{u_, 0.0, 0.0, -1});
+    spans_.clear();
+    last_.reset();
+    skipped_ = false;
+  }
+
+  void finish_chain() {
+    if (!last_) return;
+    if (skipped_) reach_end();
+    if (vertices_.size() > 1) {
+      Chain chain;
+      chain.t = t_;
+      chain.begin = out_.end_;
+      chain.end = Q_;
+      chain.path = smooth(std::move(vertices_));
+      chain.limits = limits_of(chain.path);
+      chain.law = plan_speed(chain.limits);
+      chain.duration = chain.law.duration;
+      for (const LegSpan& span : spans_) {
+        chain.spans.push_back({chain.path.s[span.first], chain.path.s[span.last], span.move});
+      }
+      t_ += chain.duration;
+      out_.chains_.push_back(std::move(chain));
+    }
+    out_.end_ = Q_;
+    restart();
+  }
+
+  // The end lies within kLeastChord of the last vertex, but not on it.
+  void reach_end() {
+    if ((u_ - vertices_.back().u).norm() <= kLeastChain) return;
+    vertices_.push_back({u_, options_.tolerance, options_.rotary_tolerance, -1});
+    const std::size_t last = vertices_.size() - 1;
+    if (spans_.empty()) spans_.push_back({last_move_, 0, last, FeedLimit{}, last_->rapid});
+    spans_.back().last = last;
+  }
+
+  std::vector<StretchLimits> limits_of(const SmoothPath& path) const {
+    JointLimits rapid = limits_;
+    rapid.v *= options_.rapid_override;
+    std::vector<StretchLimits> out;
+    out.reserve(path.pieces.size());
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < path.pieces.size(); ++i) {
+      const CubicPiece& piece = path.pieces[i];
+      while (k + 1 < spans_.size() && piece.segment >= spans_[k].last) ++k;
+      const double h = path.end_of(i) - piece.s;
+      out.push_back(stretch_limits(piece, h, spans_[k].rapid ? rapid : limits_, spans_[k].feed));
+      out.back().end = path.end_of(i);
+    }
+    return out;
+  }
+
+  const JointLayout& layout_;
+  PathOptions options_;
+  JointLimits limits_;  // scaled
+  Joints scale_;
+  Trajectory out_;
+  double t_ = 0.0;
+  // of the chain being collected
+  AxisWords words_;  // where it is, machine coordinates
+  Joints Q_, u_;     // the same, joints; scaled
+  std::vector<PathVertex> vertices_;
+  std::vector<LegSpan> spans_;
+  std::optional<Leg> last_;
+  std::size_t last_move_ = 0;
+  bool skipped_ = false;  // the last point was too close to the one before
+};
+
+Trajectory plan(std::span<const Move> moves, const JointLayout& layout, const Joints& start,
+                const JointLimits& limits, const PathOptions& options) {
+  return Planner(layout, limits, options, start).run(moves);
+}
+
+Trajectory::Sample Trajectory::rest(const Joints& Q, std::size_t move, bool at_end) const {
+  Sample out;
+  out.Q_ref = Q;
+  out.dQ_ref = out.ddQ_ref = out.dddQ_ref = Joints::Zero();
+  if (move >= moves_.size()) return out;
+  const MoveInfo& info = moves_[move];
+  out.s = at_end ? info.s_end : info.s_begin;
+  out.line = info.line;
+  out.move = move;
+  out.rapid = info.rapid;
+  return out;
+}
+
+Trajectory::Sample Trajectory::at(double t, Cursor& c) const {
+  if (chains_.empty()) return rest(start_, 0, false);
+  if (t <= 0.0) return rest(start_, chains_.front().spans.front().move, false);
+  if (t >= duration_) return rest(end_, chains_.back().spans.back().move, true);
+  if (c.chain >= chains_.size() || t < chains_[c.chain].t) c = {};
+  while (c.chain + 1 < chains_.size() && t >= chains_[c.chain + 1].t) c = {c.chain + 1, 0, 0, 0};
+  const Chain& chain = chains_[c.chain];
+  if (chain.path.pieces.empty()) return rest(chain.begin, chain.spans.front().move, false);
+
+  // position on the path
+  const double time = t - chain.t;
+  const std::vector<Phase>& phases = chain.law.phases;
+  if (time < phases[c.phase].t) c = {c.chain, 0, 0, 0};
+  while (c.phase + 1 < phases.size() && time >= phases[c.phase + 1].t) ++c.phase;
+  const Phase& p = phases[c.phase];
+  const double x = time - p.t;
+  const double s =
+      std::clamp(p.s + x * (p.v + x * (p.a / 2.0 + x * p.j / 6.0)), 0.0, chain.path.length());
+  const double v = std::max(p.v + x * (p.a + x * p.j / 2.0), 0.0), a = p.a + x * p.j;
+
+  // the path there
+  const std::vector<CubicPiece>& pieces = chain.path.pieces;
+  while (c.piece > 0 && s < pieces[c.piece].s) --c.piece;
+  while (c.piece + 1 < pieces.size() && s >= pieces[c.piece + 1].s) ++c.piece;
+  const CubicPiece& q = pieces[c.piece];
+  const double y = s - q.s;
+  const Joints d1 = q.c1 + y * (q.c2 + q.c3 * (y / 2.0)), d2 = q.c2 + q.c3 * y;
+  while (c.span > 0 && s < chain.spans[c.span].s_begin) --c.span;
+  while (c.span + 1 < chain.spans.size() && s >= chain.spans[c.span].s_end) ++c.span;
+  const Chain::Span& span = chain.spans[c.span];
+  const MoveInfo& info = moves_[span.move];
+
+  Sample out;
+  out.Q_ref = q.c0 + y * (q.c1 + y * (q.c2 / 2.0 + q.c3 * (y / 6.0)));
+  out.dQ_ref = d1 * v;
+  out.ddQ_ref = d2 * (v * v) + d1 * a;
+  out.dddQ_ref = q.c3 * (v * v * v) + d2 * (3.0 * v * a) + d1 * p.j;
+  for (Joints* part : {&out.Q_ref, &out.dQ_ref, &out.ddQ_ref, &out.dddQ_ref}) {
+    part->tail<kJoints - kLinearJoints>() /= rotary_radius_;
+  }
+  const double f = std::clamp((s - span.s_begin) / (span.s_end - span.s_begin), 0.0, 1.0);
+  out.s = info.s_begin + f * (info.s_end - info.s_begin);
+  out.line = info.line;
+  out.move = span.move;
+  out.rapid = info.rapid;
+  return out;
+}
+
+}  // namespace servomill::controllers

@@ -1,0 +1,85 @@
+/// The reference that the NC gives to the servo loops: canonical moves as a function of time.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "controllers/path/path_limits.h"
+#include "controllers/path/smooth_path.h"
+#include "controllers/path/time_law.h"
+#include "plant/vocabulary/move.h"
+
+namespace servomill::controllers {
+
+/// A planned program. Immutable; any number of readers, each with its own cursor.
+class Trajectory {
+ public:
+  struct Sample {
+    Joints Q_ref, dQ_ref, ddQ_ref, dddQ_ref;  // m, rad; per s, s^2, s^3
+    double s = 0.0;                           // m, arc length on the path of the original program
+    int line = 0;                             // of the original program
+    std::size_t move = 0;                     // index of the move
+    bool rapid = false;
+  };
+
+  /// Where the last sample was; makes forward reading O(1). Value-initialised: at the begin.
+  struct Cursor {
+    std::size_t chain = 0, phase = 0, piece = 0, span = 0;
+  };
+
+  double duration() const { return duration_; }  ///< s
+  const Joints& start() const { return start_; }
+  const Joints& end() const { return end_; }
+
+  /// Reference at time t (s). Before 0 it stands at the start, after the end at the end.
+  /// Neither allocates nor throws; reading backwards costs a search from the begin.
+  Sample at(double t, Cursor& cursor) const;
+
+  /// A part of the motion from rest to rest, or a dwell (without path).
+  struct Chain {
+    struct Span {  // one move on the path
+      double s_begin = 0.0, s_end = 0.0;
+      std::size_t move = 0;
+    };
+    double t = 0.0, duration = 0.0;  // s
+    SmoothPath path;                 // rotary joints times the rotary radius
+    TimeLaw law;
+    std::vector<StretchLimits> limits;  // of each piece
+    std::vector<Span> spans;
+    Joints begin, end;
+  };
+  const std::vector<Chain>& chains() const { return chains_; }
+  double rotary_radius() const { return rotary_radius_; }
+
+ private:
+  friend class Planner;
+  struct MoveInfo {
+    double s_begin = 0.0, s_end = 0.0;
+    int line = 0;
+    bool rapid = false;
+  };
+  Sample rest(const Joints& Q, std::size_t move, bool at_end) const;
+
+  Joints start_ = Joints::Zero(), end_ = Joints::Zero();
+  double duration_ = 0.0, rotary_radius_ = 1.0;
+  std::vector<Chain> chains_;
+  std::vector<MoveInfo> moves_;
+};
+
+/// Plans the motion of a program, without tool-centre-point control: the joint targets are
+/// `layout.joints(move.end_machine)`. The motion stops at the first and last move, dwell, M0, M1,
+/// tool change, after G61.1 moves, between rapid and feed, between rotary-only and other moves, at
+/// reversals (sharper than 120 degrees) and at the corners of G61.
+///
+/// Laws: on every joint |dQ| <= v, |ddQ| <= a, |dddQ| <= j; the path speed of X Y Z (of the rotary
+/// joints for rotary-only moves) never exceeds the feed; the path stays within the tolerance of the
+/// programmed one; the end of the program is reached exactly, at rest.                       (1)
+///
+/// @param moves   canonical moves; feed and arc moves have feed > 0
+/// @param start   joints before the first move (5; m, rad)
+/// @pre limits > 0 for the joints of the layout; tolerances and overrides > 0
+Trajectory plan(std::span<const Move> moves, const JointLayout& layout, const Joints& start,
+                const JointLimits& limits, const PathOptions& options = {});
+
+}  // namespace servomill::controllers
