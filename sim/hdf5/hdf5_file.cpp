@@ -1,0 +1,460 @@
+#include "sim/hdf5/hdf5_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <hdf5_hl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <type_traits>
+#include <utility>
+
+#include "plant/vocabulary/input_error.h"
+
+namespace servomill::sim {
+namespace {
+
+static_assert(std::is_same_v<hid_t, std::int64_t>);
+
+constexpr unsigned kDeflateLevel = 1;
+constexpr unsigned kCreationOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
+
+// The library prints its errors unless told not to; the setting belongs to the thread.
+void silence_library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+herr_t keep_first(unsigned depth, const H5E_error2_t* error, void* out) {
+  if (depth == 0 && error->desc != nullptr) *static_cast<std::string*>(out) = error->desc;
+  return 0;
+}
+
+// Why the last call failed: the system's words if it was the system.
+std::string library_reason() {
+  std::string text;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &text);
+  constexpr std::string_view kMark = "error message = '";
+  const std::size_t begin = text.find(kMark);
+  if (begin == std::string::npos) return text.empty() ? "unknown reason" : text;
+  const std::size_t end = text.find('\'', begin + kMark.size());
+  return text.substr(begin + kMark.size(), end - begin - kMark.size());
+}
+
+std::string system_reason() { return std::strerror(errno); }
+
+std::string file_name(hid_t object) {
+  std::array<char, 4096> name{};
+  return H5Fget_name(object, name.data(), name.size()) > 0 ? name.data() : "HDF5 file";
+}
+
+// `result` of a call that writes into the file of `object`.
+template <typename T>
+T written(T result, hid_t object) {
+  if (result >= 0) return result;
+  const std::string reason = library_reason();
+  throw SystemError(file_name(object), "cannot be written", reason);
+}
+
+// `result` of a call that touches no file and therefore cannot fail.
+Hdf5Handle handle(hid_t id) {
+  assert(id >= 0);
+  return Hdf5Handle(id);
+}
+
+Hdf5Handle text_type() {
+  Hdf5Handle type = handle(H5Tcopy(H5T_C_S1));
+  H5Tset_size(type.get(), H5T_VARIABLE);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  return type;
+}
+
+void write_attribute(hid_t object, const std::string& name, hid_t type, hid_t space,
+                     const void* data) {
+  if (written(H5Aexists(object, name.c_str()), object) > 0) {
+    written(H5Adelete(object, name.c_str()), object);
+  }
+  const Hdf5Handle attribute(
+      written(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), object));
+  written(H5Awrite(attribute.get(), type, data), object);
+}
+
+hid_t stored_type(Storage storage) {
+  switch (storage) {
+    case Storage::float64:
+      return H5T_IEEE_F64LE;
+    case Storage::float32:
+      return H5T_IEEE_F32LE;
+    case Storage::int32:
+      return H5T_STD_I32LE;
+  }
+  return -1;
+}
+
+Hdf5Handle group_creation(hid_t kind) {
+  Hdf5Handle list = handle(H5Pcreate(kind));
+  H5Pset_link_creation_order(list.get(), kCreationOrder);
+  return list;
+}
+
+}  // namespace
+
+Hdf5Handle::Hdf5Handle(Hdf5Handle&& other) noexcept : id_(std::exchange(other.id_, -1)) {}
+
+Hdf5Handle& Hdf5Handle::operator=(Hdf5Handle&& other) noexcept {
+  if (this != &other) {
+    reset();
+    id_ = std::exchange(other.id_, -1);
+  }
+  return *this;
+}
+
+void Hdf5Handle::reset() {
+  // a file that was closed has closed what was open in it
+  if (id_ >= 0 && H5Iis_valid(id_) > 0) H5Idec_ref(id_);
+  id_ = -1;
+}
+
+void Hdf5Object::attribute(const std::string& name, std::string_view text) {
+  assert(text.find('\0') == std::string_view::npos);
+  const std::string terminated(text);
+  const char* pointer = terminated.c_str();
+  const Hdf5Handle space = handle(H5Screate(H5S_SCALAR));
+  write_attribute(id_.get(), name, text_type().get(), space.get(), &pointer);
+}
+
+void Hdf5Object::attribute(const std::string& name, double value) {
+  const Hdf5Handle space = handle(H5Screate(H5S_SCALAR));
+  write_attribute(id_.get(), name, H5T_NATIVE_DOUBLE, space.get(), &value);
+}
+
+void Hdf5Object::attribute(const std::string& name, std::int64_t value) {
+  const Hdf5Handle space = handle(H5Screate(H5S_SCALAR));
+  write_attribute(id_.get(), name, H5T_NATIVE_INT64, space.get(), &value);
+}
+
+void Hdf5Object::attribute(const std::string& name, std::span<const double> values) {
+  const hsize_t size = values.size();
+  const Hdf5Handle space = handle(H5Screate_simple(1, &size, nullptr));
+  write_attribute(id_.get(), name, H5T_NATIVE_DOUBLE, space.get(), values.data());
+}
+
+void Hdf5Object::flush_file() { written(H5Fflush(id_.get(), H5F_SCOPE_GLOBAL), id_.get()); }
+
+void Hdf5Object::reserve(std::size_t bytes) {
+  const Hdf5Handle file(written(H5Iget_file_id(id_.get()), id_.get()));
+  hsize_t size = 0;
+  void* descriptor = nullptr;
+  written(H5Fget_filesize(file.get(), &size), file.get());
+  written(H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor), file.get());
+  const int status = fallocate(*static_cast<int*>(descriptor), FALLOC_FL_KEEP_SIZE,
+                               static_cast<off_t>(size), static_cast<off_t>(bytes));
+  if (status == 0 || errno == EOPNOTSUPP || errno == ENOSYS) return;
+  throw SystemError(file_name(id_.get()), "cannot be written", system_reason());
+}
+
+Hdf5Dataset::Hdf5Dataset(Hdf5Handle id, std::size_t columns, bool has_columns)
+    : Hdf5Object(std::move(id)), columns_(columns), has_columns_(has_columns) {}
+
+void Hdf5Dataset::make_scale(const std::string& name) {
+  written(H5DSset_scale(id_.get(), name.c_str()), id_.get());
+}
+
+void Hdf5Dataset::attach_scale(Hdf5Dataset& scale, unsigned dimension) {
+  written(H5DSattach_scale(id_.get(), scale.id_.get(), dimension), id_.get());
+}
+
+void Hdf5Dataset::append(const double* rows, std::size_t count) {
+  if (count == 0) return;
+  const int rank = has_columns_ ? 2 : 1;
+  const std::array<hsize_t, 2> begin = {rows_, 0};
+  const std::array<hsize_t, 2> block = {count, columns_};
+  const std::array<hsize_t, 2> size = {rows_ + count, columns_};
+  written(H5Dset_extent(id_.get(), size.data()), id_.get());
+  const Hdf5Handle in_file(written(H5Dget_space(id_.get()), id_.get()));
+  H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, begin.data(), nullptr, block.data(), nullptr);
+  const Hdf5Handle in_memory = handle(H5Screate_simple(rank, block.data(), nullptr));
+  written(H5Dwrite(id_.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(), H5P_DEFAULT, rows),
+          id_.get());
+  rows_ += count;
+}
+
+Hdf5Group Hdf5Group::group(const std::string& path) {
+  Hdf5Handle here(-1);
+  for (std::size_t begin = 0; begin < path.size();) {
+    const std::size_t end = std::min(path.find('/', begin), path.size());
+    const std::string name = path.substr(begin, end - begin);
+    begin = end + 1;
+    if (name.empty()) continue;
+    const hid_t in = here.get() < 0 ? id_.get() : here.get();
+    if (written(H5Lexists(in, name.c_str(), H5P_DEFAULT), in) > 0) {
+      here = Hdf5Handle(written(H5Gopen2(in, name.c_str(), H5P_DEFAULT), in));
+    } else {
+      const Hdf5Handle creation = group_creation(H5P_GROUP_CREATE);
+      here = Hdf5Handle(
+          written(H5Gcreate2(in, name.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT), in));
+    }
+  }
+  assert(here.get() >= 0);
+  return Hdf5Group(std::move(here));
+}
+
+Hdf5Dataset Hdf5Group::extendible(const std::string& name, std::size_t columns, bool has_columns,
+                                  std::size_t chunk_rows, Storage storage, const Meaning& meaning) {
+  const int rank = has_columns ? 2 : 1;
+  const std::array<hsize_t, 2> size = {0, columns};
+  const std::array<hsize_t, 2> most = {H5S_UNLIMITED, columns};
+  const std::array<hsize_t, 2> chunk = {chunk_rows, 1};
+  const Hdf5Handle space = handle(H5Screate_simple(rank, size.data(), most.data()));
+  const Hdf5Handle creation = handle(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_chunk(creation.get(), rank, chunk.data());
+  H5Pset_shuffle(creation.get());
+  H5Pset_deflate(creation.get(), kDeflateLevel);
+  // whole chunks are written at once and need no cache
+  const Hdf5Handle access = handle(H5Pcreate(H5P_DATASET_ACCESS));
+  H5Pset_chunk_cache(access.get(), 0, 0, H5D_CHUNK_CACHE_W0_DEFAULT);
+  Hdf5Handle id(written(H5Dcreate2(id_.get(), name.c_str(), stored_type(storage), space.get(),
+                                   H5P_DEFAULT, creation.get(), access.get()),
+                        id_.get()));
+  Hdf5Dataset dataset(std::move(id), columns, has_columns);
+  dataset.attribute("units", meaning.units);
+  dataset.attribute("long_name", meaning.long_name);
+  return dataset;
+}
+
+Hdf5Dataset Hdf5Group::labels(const std::string& name, std::string_view letters,
+                              const std::string& long_name) {
+  const hsize_t size = letters.size();
+  const Hdf5Handle space = handle(H5Screate_simple(1, &size, nullptr));
+  Hdf5Handle id(written(H5Dcreate2(id_.get(), name.c_str(), H5T_C_S1, space.get(), H5P_DEFAULT,
+                                   H5P_DEFAULT, H5P_DEFAULT),
+                        id_.get()));
+  written(H5Dwrite(id.get(), H5T_C_S1, H5S_ALL, H5S_ALL, H5P_DEFAULT, letters.data()), id_.get());
+  Hdf5Dataset dataset(std::move(id), 1, false);
+  dataset.attribute("units", "1");
+  dataset.attribute("long_name", long_name);
+  dataset.make_scale(name);
+  return dataset;
+}
+
+void Hdf5Group::scalar(const std::string& name, double value, const Meaning& meaning) {
+  const Hdf5Handle space = handle(H5Screate(H5S_SCALAR));
+  Hdf5Dataset dataset(
+      Hdf5Handle(written(H5Dcreate2(id_.get(), name.c_str(), H5T_IEEE_F64LE, space.get(),
+                                    H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                         id_.get())),
+      1, false);
+  written(H5Dwrite(dataset.id_.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value),
+          id_.get());
+  dataset.attribute("units", meaning.units);
+  dataset.attribute("long_name", meaning.long_name);
+}
+
+void Hdf5Group::list(const std::string& name, std::span<const double> values,
+                     const Meaning& meaning, const std::string& scale) {
+  const hsize_t size = values.size();
+  const Hdf5Handle space = handle(H5Screate_simple(1, &size, nullptr));
+  Hdf5Dataset dataset(
+      Hdf5Handle(written(H5Dcreate2(id_.get(), name.c_str(), H5T_IEEE_F64LE, space.get(),
+                                    H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                         id_.get())),
+      1, false);
+  written(
+      H5Dwrite(dataset.id_.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+      id_.get());
+  dataset.attribute("units", meaning.units);
+  dataset.attribute("long_name", meaning.long_name);
+  if (scale.empty()) {
+    dataset.make_scale(name);
+    return;
+  }
+  Hdf5Dataset of(Hdf5Handle(written(H5Dopen2(id_.get(), scale.c_str(), H5P_DEFAULT), id_.get())), 1,
+                 false);
+  dataset.attach_scale(of, 0);
+}
+
+OutputFile::OutputFile(std::string path, bool force)
+    : path_(std::move(path)), partial_path_(path_ + ".partial"), force_(force) {
+  refuse_existing(path_, "exists");
+  refuse_existing(partial_path_, "exists, left by a run that did not end");
+  silence_library();
+  const Hdf5Handle creation = group_creation(H5P_FILE_CREATE);
+  const Hdf5Handle access = handle(H5Pcreate(H5P_FILE_ACCESS));
+  // closing the file closes what was taken from it; the oldest format has no "open" mark that would
+  // make the file of a killed run unreadable
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  const unsigned flag = force_ ? H5F_ACC_TRUNC : H5F_ACC_EXCL;
+  file_ = Hdf5Handle(H5Fcreate(partial_path_.c_str(), flag, creation.get(), access.get()));
+  if (file_.get() < 0) throw SystemError(partial_path_, "cannot be made", library_reason());
+}
+
+OutputFile::~OutputFile() = default;
+
+void OutputFile::refuse_existing(const std::string& name, std::string_view why) const {
+  std::error_code ignored;
+  if (force_ || !std::filesystem::exists(name, ignored)) return;
+  throw InputError({name}, fmt::format("{}; use --force to overwrite", why));
+}
+
+Hdf5Group OutputFile::root() {
+  return Hdf5Group(Hdf5Handle(written(H5Gopen2(file_.get(), "/", H5P_DEFAULT), file_.get())));
+}
+
+void OutputFile::commit() {
+  assert(file_.get() >= 0);
+  written(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), file_.get());
+  const herr_t closed = H5Fclose(file_.get());
+  if (closed < 0) throw SystemError(partial_path_, "cannot be written", library_reason());
+  file_ = Hdf5Handle();
+
+  // the data must be on the disk before the name says that they are
+  const int descriptor = open(partial_path_.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
+  if (!synced) throw SystemError(partial_path_, "cannot be written", system_reason());
+  close(descriptor);
+  refuse_existing(path_, "exists");
+  if (std::rename(partial_path_.c_str(), path_.c_str()) != 0) {
+    throw SystemError(path_, "cannot be made", system_reason());
+  }
+}
+
+InputFile::InputFile(std::string path) : path_(std::move(path)) {
+  silence_library();
+  const int descriptor = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(fmt::format("cannot be read: {}", system_reason()));
+  close(descriptor);
+  if (H5Fis_hdf5(path_.c_str()) <= 0) fail("is not an HDF5 file");
+  file_ = Hdf5Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  if (file_.get() < 0) fail(fmt::format("cannot be read: {}", library_reason()));
+}
+
+void InputFile::fail(const std::string& message) const { throw InputError({path_}, message); }
+
+bool InputFile::has(const std::string& object) const {
+  for (std::size_t end = 0; end != std::string::npos;) {
+    end = object.find('/', end + 1);
+    const std::string above = object.substr(0, end);
+    if (above == "/" || above.empty()) continue;
+    if (H5Lexists(file_.get(), above.c_str(), H5P_DEFAULT) <= 0) return false;
+  }
+  return true;
+}
+
+Hdf5Handle InputFile::open(const std::string& object) const {
+  if (!has(object)) fail(fmt::format("has no '{}'", object));
+  Hdf5Handle id(H5Oopen(file_.get(), object.c_str(), H5P_DEFAULT));
+  if (id.get() < 0) fail(fmt::format("'{}' cannot be read: {}", object, library_reason()));
+  return id;
+}
+
+std::vector<std::string> InputFile::children(const std::string& group, bool groups) const {
+  const Hdf5Handle id = open(group);
+  if (H5Iget_type(id.get()) != H5I_GROUP) fail(fmt::format("'{}' is not a group", group));
+  H5G_info_t info;
+  H5Gget_info(id.get(), &info);
+  // files of others may not know the order of making
+  const Hdf5Handle creation(H5Gget_create_plist(id.get()));
+  unsigned order = 0;
+  H5Pget_link_creation_order(creation.get(), &order);
+  const H5_index_t index =
+      (order & H5P_CRT_ORDER_INDEXED) != 0 ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME;
+  std::vector<std::string> names;
+  for (hsize_t i = 0; i < info.nlinks; ++i) {
+    std::array<char, 1024> name{};
+    H5Lget_name_by_idx(id.get(), ".", index, H5_ITER_INC, i, name.data(), name.size(), H5P_DEFAULT);
+    const Hdf5Handle child(H5Oopen(id.get(), name.data(), H5P_DEFAULT));
+    if (H5Iget_type(child.get()) == (groups ? H5I_GROUP : H5I_DATASET))
+      names.push_back(name.data());
+  }
+  return names;
+}
+
+std::vector<std::string> InputFile::groups(const std::string& group) const {
+  return children(group, true);
+}
+
+std::vector<std::string> InputFile::datasets(const std::string& group) const {
+  return children(group, false);
+}
+
+std::vector<std::size_t> InputFile::shape(const std::string& dataset) const {
+  const Hdf5Handle id = open(dataset);
+  if (H5Iget_type(id.get()) != H5I_DATASET) fail(fmt::format("'{}' is not a dataset", dataset));
+  const Hdf5Handle space(H5Dget_space(id.get()));
+  std::vector<hsize_t> size(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.get())));
+  H5Sget_simple_extent_dims(space.get(), size.data(), nullptr);
+  return {size.begin(), size.end()};
+}
+
+std::vector<double> InputFile::values(const std::string& dataset) const {
+  std::size_t count = 1;
+  for (const std::size_t length : shape(dataset)) count *= length;
+  const Hdf5Handle id = open(dataset);
+  const Hdf5Handle type(H5Dget_type(id.get()));
+  const H5T_class_t kind = H5Tget_class(type.get());
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER) {
+    fail(fmt::format("'{}' does not hold numbers", dataset));
+  }
+  std::vector<double> out(count);
+  if (H5Dread(id.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0) {
+    fail(fmt::format("'{}' cannot be read: {}", dataset, library_reason()));
+  }
+  return out;
+}
+
+bool InputFile::has_attribute(const std::string& object, const std::string& name) const {
+  return H5Aexists(open(object).get(), name.c_str()) > 0;
+}
+
+Hdf5Handle InputFile::open_attribute(const std::string& object, const std::string& name) const {
+  const Hdf5Handle id = open(object);
+  Hdf5Handle attribute(H5Aopen(id.get(), name.c_str(), H5P_DEFAULT));
+  if (attribute.get() < 0) fail(fmt::format("'{}' has no attribute '{}'", object, name));
+  return attribute;
+}
+
+std::string InputFile::text(const std::string& object, const std::string& name) const {
+  const Hdf5Handle attribute = open_attribute(object, name);
+  const Hdf5Handle type(H5Aget_type(attribute.get()));
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) <= 0) {
+    fail(fmt::format("attribute '{}' of '{}' is not a text", name, object));
+  }
+  const Hdf5Handle memory(H5Tget_native_type(type.get(), H5T_DIR_DEFAULT));
+  char* pointer = nullptr;
+  if (H5Aread(attribute.get(), memory.get(), &pointer) < 0) {
+    fail(fmt::format("attribute '{}' of '{}' cannot be read", name, object));
+  }
+  std::string out = pointer == nullptr ? "" : pointer;
+  H5free_memory(pointer);
+  return out;
+}
+
+std::vector<double> InputFile::numbers(const std::string& object, const std::string& name) const {
+  const Hdf5Handle attribute = open_attribute(object, name);
+  const Hdf5Handle type(H5Aget_type(attribute.get()));
+  const H5T_class_t kind = H5Tget_class(type.get());
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER) {
+    fail(fmt::format("attribute '{}' of '{}' is not a number", name, object));
+  }
+  const Hdf5Handle space(H5Aget_space(attribute.get()));
+  std::vector<double> out(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get())));
+  if (H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, out.data()) < 0) {
+    fail(fmt::format("attribute '{}' of '{}' cannot be read", name, object));
+  }
+  return out;
+}
+
+double InputFile::number(const std::string& object, const std::string& name) const {
+  const std::vector<double> all = numbers(object, name);
+  if (all.size() != 1) {
+    fail(fmt::format("attribute '{}' of '{}' has {} numbers instead of one", name, object,
+                     all.size()));
+  }
+  return all.front();
+}
+
+}  // namespace servomill::sim
