@@ -30,9 +30,10 @@ class Smoother {
 
   SmoothPath run() {
     choose_windows();
-    fit_windows();
+    fit_windows(kMargin);
     if (std::any_of(v_.begin(), v_.end(), [](const PathVertex& v) { return v.arc >= 0; })) {
       for (int pass = 0; pass < kArcPasses; ++pass) pull_arcs_outward();
+      fit_windows(1.0);
     }
     return build();
   }
@@ -152,21 +153,21 @@ class Smoother {
     return ratio;
   }
 
-  // Narrows the windows until the deviation is within kMargin of the tolerance everywhere.
-  void fit_windows() {
+  // Narrows the windows until the deviation is within `share` of the tolerance everywhere.
+  void fit_windows(double share) {
     std::vector<double> scale(n_ + 1);
     for (bool fits = false; !fits;) {
       fits = true;
       std::fill(scale.begin(), scale.end(), 1.0);
-      for_each_piece([&](double from, double to, std::size_t segment, std::size_t first,
-                         std::size_t last) {
-        const double ratio =
-            excess(deviation(from, 0.5 * (from + to), first, last), to - from, segment) / kMargin;
-        if (ratio <= 1.0 + 1e-9) return;
-        fits = false;
-        const double factor = std::max(0.5, 0.99 / std::sqrt(ratio));
-        for (std::size_t i = first; i < last; ++i) scale[i] = std::min(scale[i], factor);
-      });
+      for_each_piece(
+          [&](double from, double to, std::size_t segment, std::size_t first, std::size_t last) {
+            const double ratio =
+                excess(deviation(from, 0.5 * (from + to), first, last), to - from, segment) / share;
+            if (ratio <= 1.0 + 1e-9) return;
+            fits = false;
+            const double factor = std::max(0.5, 0.99 / std::sqrt(ratio));
+            for (std::size_t i = first; i < last; ++i) scale[i] = std::min(scale[i], factor);
+          });
       for (std::size_t i = 0; i <= n_; ++i) w_[i] *= scale[i];
       limit_slope();
     }
@@ -214,7 +215,7 @@ class Smoother {
     path.pieces.reserve(3 * n_);
     for_each_piece([&](double from, double to, std::size_t k, std::size_t first, std::size_t last) {
       const Deviation D = deviation(from, 0.5 * (from + to), first, last);
-      assert(excess(D, to - from, k) <= 1.0);
+      assert(excess(D, to - from, k) <= 1.0 + 1e-6);
       path.pieces.push_back(
           {from, v_[k].u + d_[k] * (from - s_[k]) + D.d0, d_[k] + D.d1, D.d2, D.d3, k});
     });

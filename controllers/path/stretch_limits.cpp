@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kCurveShareA = 0.7;  // of the acceleration, for curvature
 constexpr double kCurveShareJ = 0.7;  // of the jerk
+constexpr double kSimilar = 1.1;      // speeds that are not worth a change
 constexpr double kCrossShareJ = 0.5;  // of the jerk left, for 3 q'' v a
 
 }  // namespace
@@ -52,6 +53,26 @@ StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimit
   out.v = v;
   out.a = a;
   out.j = j;
+  return out;
+}
+
+std::vector<StretchLimits> merge_similar(std::span<const StretchLimits> pieces) {
+  const auto alike = [](double x, double y) { return std::max(x, y) <= 2.0 * std::min(x, y); };
+  std::vector<StretchLimits> out;
+  double fastest = 0.0;  // of the stretch being merged
+  for (const StretchLimits& next : pieces) {
+    const double high = std::max(fastest, next.v);
+    if (!out.empty() && high <= kSimilar * std::min(out.back().v, next.v) &&
+        alike(out.back().a, next.a) && alike(out.back().j, next.j)) {
+      StretchLimits& last = out.back();
+      last = {next.end, std::min(last.v, next.v), std::min(last.a, next.a),
+              std::min(last.j, next.j)};
+      fastest = high;
+    } else {
+      out.push_back(next);
+      fastest = next.v;
+    }
+  }
   return out;
 }
 

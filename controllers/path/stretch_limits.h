@@ -2,6 +2,8 @@
 #pragma once
 
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "controllers/path/path_limits.h"
 #include "controllers/path/smooth_path.h"
@@ -22,5 +24,9 @@ struct FeedLimit {
 /// The speed may use a fixed share of A and J for the curvature; a and j get what is left.
 StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimits& limits,
                              const FeedLimit& feed);
+
+/// Joins neighbours whose speeds differ little under their least limits, so that the speed does not
+/// follow every small change of curvature or direction.
+std::vector<StretchLimits> merge_similar(std::span<const StretchLimits> pieces);
 
 }  // namespace servomill::controllers

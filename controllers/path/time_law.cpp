@@ -10,6 +10,7 @@ namespace servomill::controllers {
 namespace {
 
 constexpr double kOver = 1.0 + 1e-9;  // a limit counts as exceeded beyond this
+constexpr double kRounding = 2e-15;   // m, of positions along the path
 constexpr double kLeast = 1e-12;      // m, waypoints closer than this are one
 
 // S-curve from v0 up to v1 >= v0, acceleration zero at both ends. A fall is a rise read backwards.
@@ -133,7 +134,7 @@ class SpeedPlanner {
     const auto down = fall(l, r, peak);
     if (!down) return std::nullopt;
     Profile p{*up, *down, points_[l].s + up->length, points_[r].s - down->length};
-    if (p.x_up > p.x_down + 1e-13) return std::nullopt;
+    if (p.x_up > p.x_down + kRounding) return std::nullopt;
     return p;
   }
 
@@ -280,7 +281,7 @@ class SpeedPlanner {
       phase(x1, up.v0 + dv, a, 0.0, up.t_even);
       phase(x3 - T * (up.v1 - dv / 3.0), up.v1 - dv, a, -up.j, T);
       const double cruise = s_r - down.length - x3;
-      if (cruise > 1e-15) phase(x3, up.v1, 0.0, 0.0, cruise / up.v1);
+      if (cruise > kRounding) phase(x3, up.v1, 0.0, 0.0, cruise / up.v1);
       const double U = down.t_jerk, dw = 0.5 * down.j * U * U, b = down.j * U;
       const double y1 = s_r - down.length;
       phase(y1, down.v1, 0.0, -down.j, U);

@@ -250,7 +250,7 @@ class Planner {
       out.push_back(stretch_limits(piece, h, spans_[k].rapid ? rapid : limits_, spans_[k].feed));
       out.back().end = path.end_of(i);
     }
-    return out;
+    return merge_similar(out);
   }
 
   const JointLayout& layout_;

@@ -45,7 +45,7 @@ class Trajectory {
     double t = 0.0, duration = 0.0;  // s
     SmoothPath path;                 // rotary joints times the rotary radius
     TimeLaw law;
-    std::vector<StretchLimits> limits;  // of each piece
+    std::vector<StretchLimits> limits;  // of stretches of the path
     std::vector<Span> spans;
     Joints begin, end;
   };
