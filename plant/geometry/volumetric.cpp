@@ -49,8 +49,7 @@ class Rotation {
   double t2_, a_, b_;
 };
 
-Vector3d shift_of(const AxisWords& errors) { return errors.head<3>(); }
-Vector3d turn_of(const AxisWords& errors) { return errors.tail<3>(); }
+int lane_of(Axis direction) { return index_of(direction) + (is_linear(direction) ? 0 : 1); }
 
 Vector3d unit_vector(Axis axis) { return Vector3d::Unit(index_of(axis) % 3); }
 
@@ -105,51 +104,53 @@ VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
                                                    const ErrorModel& errors) {
   Prepared out;
   for (const Axis direction : kAllAxes) {
-    const int d = index_of(direction);
+    const int lane = lane_of(direction);
     const ErrorFunction& f = errors.component({direction, axis.axis, false});
     if (f.is_zero()) continue;
     out.has_components = true;
     out.has_angles = out.has_angles || !is_linear(direction);
-    out.polynomial.resize(std::max(out.polynomial.size(), f.polynomial.size()), AxisWords::Zero());
-    for (std::size_t i = 0; i < f.polynomial.size(); ++i) out.polynomial[i][d] = f.polynomial[i];
+    out.polynomial.resize(std::max(out.polynomial.size(), f.polynomial.size()), Screw::Zero());
+    for (std::size_t i = 0; i < f.polynomial.size(); ++i) out.polynomial[i][lane] = f.polynomial[i];
     for (const Harmonic& h : f.harmonics) {
-      out.harmonics.push_back({d, h.amplitude, h.omega(), h.phase});
+      out.harmonics.push_back({lane, h.amplitude, h.omega(), h.phase});
     }
-    for (const LinearTable& t : f.tables) out.tables.push_back({d, t});
+    for (const LinearTable& t : f.tables) out.tables.push_back({lane, t});
   }
-  out.location = errors.locations[static_cast<std::size_t>(index_of(axis.axis))];
+  for (const Axis direction : kAllAxes) {
+    out.location[lane_of(direction)] = errors.location({direction, axis.axis, true});
+  }
   out.has_location = !out.location.isZero(0.0);
   out.R_location = Rotation(turn_of(out.location)).matrix();
   if (is_linear(axis.axis)) out.direction = out.R_location * unit_vector(axis.axis);
   return out;
 }
 
-AxisWords VolumetricModel::values(const Prepared& errors, double q) {
-  AxisWords e = AxisWords::Zero();
+VolumetricModel::Screw VolumetricModel::values(const Prepared& errors, double q) {
+  Screw e = Screw::Zero();
   for (std::size_t i = errors.polynomial.size(); i-- > 0;) e = e * q + errors.polynomial[i];
   for (const auto& h : errors.harmonics) {
-    e[h.direction] += h.amplitude * std::sin(h.omega * q + h.phase);
+    e[h.lane] += h.amplitude * std::sin(h.omega * q + h.phase);
   }
-  for (const auto& t : errors.tables) e[t.direction] += t.table.value(q);
+  for (const auto& t : errors.tables) e[t.lane] += t.table.value(q);
   return e;
 }
 
-AxisWords VolumetricModel::derivatives(const Prepared& errors, double q) {
-  AxisWords e = AxisWords::Zero();
+VolumetricModel::Screw VolumetricModel::derivatives(const Prepared& errors, double q) {
+  Screw e = Screw::Zero();
   for (std::size_t i = errors.polynomial.size(); i-- > 1;) {
     e = e * q + static_cast<double>(i) * errors.polynomial[i];
   }
   for (const auto& h : errors.harmonics) {
-    e[h.direction] += h.amplitude * h.omega * std::cos(h.omega * q + h.phase);
+    e[h.lane] += h.amplitude * h.omega * std::cos(h.omega * q + h.phase);
   }
-  for (const auto& t : errors.tables) e[t.direction] += t.table.derivative(q);
+  for (const auto& t : errors.tables) e[t.lane] += t.table.derivative(q);
   return e;
 }
 
 template <bool kWithAxis>
 void VolumetricModel::apply_component_errors(const Prepared& errors, double q, ToolPose& P) {
   if (!errors.has_components) return;
-  const AxisWords e = values(errors, q);
+  const Screw e = values(errors, q);
   if (errors.has_angles) {
     const Rotation R(turn_of(e));
     P.p_WT = R * P.p_WT;
@@ -215,9 +216,9 @@ VolumetricError VolumetricModel::first_order_error(const Joints& Q, const Vector
   VolumetricError sum;
   for (std::size_t i = chain_.axes.size(); i-- > 0;) {
     const ChainAxis& a = chain_.axes[i];
-    const AxisWords component = values(errors_[i], Q[a.joint]);
+    const Screw component = values(errors_[i], Q[a.joint]);
     const JointMotion m = motion_at(a, Q[a.joint]);
-    const auto add_screw = [&](const AxisWords& screw) {
+    const auto add_screw = [&](const Screw& screw) {
       sum.dp_W += shift_of(screw) + turn_of(screw).cross(P.p_WT - a.centre);
       sum.dk_W += turn_of(screw).cross(P.k_W);
     };
@@ -256,7 +257,7 @@ PoseJacobian VolumetricModel::jacobian(const Joints& Q, const Vector3d& p_ST) co
     const ChainAxis& a = chain_.axes[i];
     const Prepared& errors = errors_[i];
     const JointMotion m = motion_at(a, Q[a.joint]);
-    const AxisWords e = values(errors, Q[a.joint]), de = derivatives(errors, Q[a.joint]);
+    const Screw e = values(errors, Q[a.joint]), de = derivatives(errors, Q[a.joint]);
     const auto apply_components = [&] {
       const Rotation R(turn_of(e));
       tool.turn(R.matrix());

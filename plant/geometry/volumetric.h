@@ -68,31 +68,36 @@ class VolumetricModel {
   static constexpr int kMaxNewtonSteps = 20;
 
  private:
+  // EX. EY. EZ. 0 EA. EB. EC. 0: two halves, so that neither straddles a vector register.
+  using Screw = Eigen::Matrix<double, 8, 1>;
+
   // Errors of one axis, laid out for evaluation: all six polynomials are one of vectors.
   struct Prepared {
     struct PreparedHarmonic {
-      int direction;
+      int lane;
       double amplitude, omega, phase;  // m or rad, 1/m or 1, rad
     };
     struct PreparedTable {
-      int direction;
+      int lane;
       LinearTable table;
     };
     bool is_zero() const { return !has_components && !has_location; }
 
     bool has_components = false, has_angles = false, has_location = false;
-    std::vector<AxisWords> polynomial;  // c0, c1, ... (6; EX. EY. EZ. EA. EB. EC.)
+    std::vector<Screw> polynomial;  // c0, c1, ...
     std::vector<PreparedHarmonic> harmonics;
     std::vector<PreparedTable> tables;
-    AxisWords location = AxisWords::Zero();
+    Screw location = Screw::Zero();
     Eigen::Matrix3d R_location = Eigen::Matrix3d::Identity();  // of L
     Eigen::Vector3d direction =
         Eigen::Vector3d::Zero();  // of a linear axis: L T(q) L^-1 is a shift
   };
 
+  static Eigen::Vector3d shift_of(const Screw& e) { return e.head<3>(); }
+  static Eigen::Vector3d turn_of(const Screw& e) { return e.segment<3>(4); }
   static Prepared prepare(const ChainAxis& axis, const ErrorModel& errors);
-  static AxisWords values(const Prepared& errors, double q);
-  static AxisWords derivatives(const Prepared& errors, double q);
+  static Screw values(const Prepared& errors, double q);
+  static Screw derivatives(const Prepared& errors, double q);
   template <bool kWithAxis>
   static void apply_component_errors(const Prepared& errors, double q, ToolPose& P);
   template <bool kWithAxis>
