@@ -91,21 +91,34 @@ TEST(Chain, AgreesWithTheDualRotaryTableOfLi) {
   }
 }
 
-// First example of [L]: the segment turns A from 2.1 to 4.0 degrees and C by 4.7 degrees.
-TEST(Chain, PutsTheToolOnTheFirstPointOfLi) {
+// PAPERS.md [L], example 1 with the centre at the origin: joints interpolated linearly between the
+// two posts leave the chord by 0.156 mm.
+TEST(Chain, BendsTheFirstSegmentOfLiAsJointInterpolationDoes) {
   MachineChain chain = chain_of("[w C' A' b X Y Z t]");
   for (const Axis a : {Axis::A, Axis::C}) chain.at(a).sense = Sense::table;
-  const Vector3d P = Vector3d(-191.4037, 11.3508, 7.6182) * mm;
-  const Vector3d u = Vector3d(0.00639, -0.036377, 0.99927).normalized();
-  Joints Q = Joints::Zero();
-  Q[3] = std::atan2(std::hypot(u.x(), u.y()), u.z());
-  Q[4] = std::atan2(u.x(), u.y());
-  EXPECT_NEAR(Q[3], 2.1 * deg, 0.05 * deg);  // printed with two digits
-  const auto S = inverse_fixed_rotary(chain, P, Q, Vector3d::Zero());
-  ASSERT_TRUE(S);
-  const ToolPose back = forward(chain, *S, Vector3d::Zero());
-  EXPECT_LT((back.p_WT - P).norm(), kRoundTrip);
-  EXPECT_LT((back.k_W - u).norm(), kRounding);
+  const Vector3d P_0 = Vector3d(-191.4037, 11.3508, 7.6182) * mm;
+  const Vector3d P_1 = Vector3d(-191.4057, 13.5159, 7.9093) * mm;
+  const auto post = [&](const Vector3d& P, const Vector3d& direction) {
+    const Vector3d u = direction.normalized();
+    Joints Q = Joints::Zero();
+    Q[3] = std::atan2(std::hypot(u.x(), u.y()), u.z());
+    Q[4] = std::atan2(u.x(), u.y());
+    Q = inverse_fixed_rotary(chain, P, Q, Vector3d::Zero()).value();
+    const ToolPose back = forward(chain, Q, Vector3d::Zero());
+    EXPECT_LT((back.p_WT - P).norm(), kRoundTrip);
+    EXPECT_LT((back.k_W - u).norm(), kRounding);
+    return Q;
+  };
+  const Joints Q_0 = post(P_0, {0.00639, -0.036377, 0.99927});
+  const Joints Q_1 = post(P_1, {0.006393, -0.068922, 0.99960});
+  EXPECT_NEAR(std::remainder(Q_1[4] - Q_0[4], 360 * deg) / deg, 4.7, 0.05);  // as printed
+  double peak = 0.0;
+  for (int i = 0; i <= 200; ++i) {
+    const double t = i / 200.0;
+    const Vector3d p = forward(chain, Q_0 + t * (Q_1 - Q_0), Vector3d::Zero()).p_WT;
+    peak = std::max(peak, (p - (P_0 + t * (P_1 - P_0))).norm());
+  }
+  EXPECT_NEAR(peak / mm, 0.156, 0.0005);  // as printed
 }
 
 TEST(ChainLaws, ForwardOfInverseIsIdentityForEveryStructure) {

@@ -1,0 +1,49 @@
+/// A prepared model does not touch the heap: it is evaluated in the tick.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "plant/geometry/volumetric.h"
+#include "tests/plant/geometry/random_errors.h"
+
+namespace {
+int allocations = 0;
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+
+namespace servomill::plant {
+namespace {
+
+TEST(VolumetricModel, DoesNotAllocate) {
+  Uniform random(41);
+  ErrorModel errors = random_errors(random, 1e-4);
+  errors.component("EXX"_err) = linear_table({-1.0, 0.0, 1.0}, {1e-5, 0.0, 1e-5});
+  // three orthogonal linear axes, and two with a rotary one between
+  for (const char* text : {"[w C' B' X b Y Z t]", "[w C' X b B Z t]"}) {
+    const MachineChain chain = make_chain(parse_structure(text));
+    const VolumetricModel model(chain, errors);
+    const Joints Q = random_joints(chain, random);
+    const Eigen::Vector3d p_ST(0.0, 0.0, -0.1);
+    const int before = allocations;
+    const Eigen::Vector3d p_WT = model.forward(Q, p_ST).p_WT;
+    const Eigen::Vector3d dp = model.error(Q, p_ST).dp_W;
+    const Eigen::Vector3d first = model.first_order_error(Q, p_ST).dp_W;
+    const Eigen::Vector3d offset = model.joint_offset(Q, p_ST);
+    const auto inverse = model.inverse(p_WT, Q, p_ST);
+    EXPECT_EQ(allocations, before) << text;
+    EXPECT_TRUE(inverse && dp.allFinite() && first.allFinite() && offset.allFinite());
+    ::operator delete(::operator new(1));  // the counter counts
+    EXPECT_EQ(allocations, before + 1);
+  }
+}
+
+}  // namespace
+}  // namespace servomill::plant
