@@ -194,6 +194,7 @@ class Interpreter::Machine {
   ArcCentre arc_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end, bool clockwise);
   int arc_turns(bool clockwise) const;
   AxisWords programmed_end() const;
+  AxisWords machine_end() const;
   double move_feed(const AxisWords& end, double length) const;
   void require_feed() const;
 
@@ -619,12 +620,10 @@ void Interpreter::Machine::go_home(int first_parameter) {
   for (int i = 0; i < kAxisWords; ++i) {
     target[i] = from_parameter_unit(i, parameters_.get(first_parameter + i));
   }
-  const AxisWords home = state_.to_work(target);
+  const AxisWords home = state_.target_to_work(target);
   const bool some = has_any_axis();
-  if (some) {
-    const AxisWords via = programmed_end();
-    move_to(MoveKind::rapid, via, (via - state_.position).head<3>().norm(), 0.0);
-  }
+  const AxisWords via = programmed_end();  // without axis words: where it stands
+  move_to(MoveKind::rapid, via, (via - state_.position).head<3>().norm(), 0.0);
   AxisWords end = state_.position;
   for (int i = 0; i < kAxisWords; ++i) {
     if (!some || has_axis(i)) end[i] = home[i];
@@ -697,14 +696,25 @@ void Interpreter::Machine::motion() {
 }
 
 AxisWords Interpreter::Machine::programmed_end() const {
-  const bool is_machine = request().code(Group::g_non_modal) == 530;
-  AxisWords end = is_machine ? state_.to_machine(state_.position) : state_.position;
+  if (request().code(Group::g_non_modal) == 530) return machine_end();
+  AxisWords end = state_.position;
   for (int i = 0; i < kAxisWords; ++i) {
-    if (!has_axis(i)) continue;
-    const bool add = state_.is_incremental && !is_machine;
-    end[i] = add ? end[i] + axis_word(i) : axis_word(i);
+    if (has_axis(i)) end[i] = axis_word(i) + (state_.is_incremental ? end[i] : 0.0);
   }
-  return is_machine ? state_.to_work(end) : end;
+  return end;
+}
+
+// X and Y turn together, so a G53 with one of them keeps the other in machine coordinates.
+AxisWords Interpreter::Machine::machine_end() const {
+  AxisWords target = state_.to_machine(state_.position);
+  for (int i = 0; i < kAxisWords; ++i) {
+    if (has_axis(i)) target[i] = axis_word(i);
+  }
+  AxisWords end = state_.target_to_work(target);
+  for (int i = kLinearJoints; i < kAxisWords; ++i) {
+    if (!has_axis(i)) end[i] = state_.position[i];
+  }
+  return end;
 }
 
 void Interpreter::Machine::require_feed() const {

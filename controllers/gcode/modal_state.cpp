@@ -31,4 +31,10 @@ AxisWords ModalState::to_work(const AxisWords& machine) const {
   return turned(machine - work_offset - tool_offset, cos_rotation, -sin_rotation) - shift;
 }
 
+AxisWords ModalState::target_to_work(const AxisWords& machine) const {
+  AxisWords work = to_work(machine);
+  work.tail<3>() += tool_offset.tail<3>();
+  return work;
+}
+
 }  // namespace servomill::controllers

@@ -49,6 +49,9 @@ struct ModalState {
   AxisWords rotated(const AxisWords& v) const;
   AxisWords to_machine(const AxisWords& work) const;
   AxisWords to_work(const AxisWords& machine) const;
+  /// Work coordinates of a point that a program gives in machine coordinates (G53, G28, G30). As
+  /// in LinuxCNC the tool offset of rotary axes, which next to nobody has, is left out.
+  AxisWords target_to_work(const AxisWords& machine) const;
 };
 
 }  // namespace servomill::controllers
