@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kMaxReach = 64;  // vertices on either side that a window may cover
 constexpr double kLeastPiece = 1e-12;  // m, knots closer than this are one
-constexpr double kMargin = 0.9;        // of the tolerance: room for moving arc points outward
+constexpr double kArcMargin = 0.9;     // of the tolerance: room for moving arc points outward
+constexpr double kFits = 1e-9;         // rounding of the deviation, of the tolerance
 constexpr double kShrink = 0.85;       // step of the search for a window
 constexpr int kArcPasses = 3;          // each leaves (w/R)^2 of the error before
 
@@ -29,9 +30,12 @@ class Smoother {
   }
 
   SmoothPath run() {
-    choose_windows();
-    fit_windows(kMargin);
-    if (std::any_of(v_.begin(), v_.end(), [](const PathVertex& v) { return v.arc >= 0; })) {
+    const bool arcs =
+        std::any_of(v_.begin(), v_.end(), [](const PathVertex& v) { return v.arc >= 0; });
+    const double share = arcs ? kArcMargin : 1.0;
+    choose_windows(share);
+    fit_windows(share);
+    if (arcs) {
       for (int pass = 0; pass < kArcPasses; ++pass) pull_arcs_outward();
       fit_windows(1.0);
     }
@@ -68,13 +72,13 @@ class Smoother {
   }
 
   // Widest window of each vertex on its own, from wide to narrow.
-  void choose_windows() {
+  void choose_windows(double share) {
     w_.assign(n_ + 1, 0.0);
     for (std::size_t i = 1; i < n_; ++i) {
       const double tol_linear =
-          kMargin * std::min(v_[i].tolerance_linear, v_[i + 1].tolerance_linear);
+          share * std::min(v_[i].tolerance_linear, v_[i + 1].tolerance_linear);
       const double tol_rotary =
-          kMargin * std::min(v_[i].tolerance_rotary, v_[i + 1].tolerance_rotary);
+          share * std::min(v_[i].tolerance_rotary, v_[i + 1].tolerance_rotary);
       double w = std::min(s_[i], s_[n_] - s_[i]);
       w = std::min(w, 6.0 * tol_linear / std::max(linear_norm(dd_[i]), 1e-30));
       w = std::min(w, 6.0 * tol_rotary / std::max(rotary_norm(dd_[i]), 1e-30));
@@ -163,7 +167,7 @@ class Smoother {
           [&](double from, double to, std::size_t segment, std::size_t first, std::size_t last) {
             const double ratio =
                 excess(deviation(from, 0.5 * (from + to), first, last), to - from, segment) / share;
-            if (ratio <= 1.0 + 1e-9) return;
+            if (ratio <= 1.0 + kFits) return;
             fits = false;
             const double factor = std::max(0.5, 0.99 / std::sqrt(ratio));
             for (std::size_t i = first; i < last; ++i) scale[i] = std::min(scale[i], factor);
@@ -215,7 +219,7 @@ class Smoother {
     path.pieces.reserve(3 * n_);
     for_each_piece([&](double from, double to, std::size_t k, std::size_t first, std::size_t last) {
       const Deviation D = deviation(from, 0.5 * (from + to), first, last);
-      assert(excess(D, to - from, k) <= 1.0 + 1e-6);
+      assert(excess(D, to - from, k) <= 1.0 + kFits);
       path.pieces.push_back(
           {from, v_[k].u + d_[k] * (from - s_[k]) + D.d0, d_[k] + D.d1, D.d2, D.d3, k});
     });

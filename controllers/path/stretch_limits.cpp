@@ -7,10 +7,11 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr double kCurveShareA = 0.7;  // of the acceleration, for curvature
-constexpr double kCurveShareJ = 0.7;  // of the jerk
-constexpr double kSimilar = 1.1;      // speeds that are not worth a change
-constexpr double kCrossShareJ = 0.5;  // of the jerk left, for 3 q'' v a
+constexpr double kCurveShareA = 0.7;    // of the acceleration, for curvature
+constexpr double kCurveShareJ = 0.7;    // of the jerk
+constexpr double kSimilar = 1.1;        // speeds on curves that are not worth a change
+constexpr double kSimilarFeed = 1.001;  // the same for programmed speeds
+constexpr double kCrossShareJ = 0.5;    // of the jerk left, for 3 q'' v a
 
 }  // namespace
 
@@ -33,6 +34,7 @@ StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimit
   double v = kInfinity;
   if (linear > 0.0) v = std::min(v, feed.linear / linear);
   if (rotary > 0.0) v = std::min(v, feed.rotary / rotary);
+  const double programmed = v;
   for (int k = 0; k < kJoints; ++k) {
     if (d1[k] > 0.0) v = std::min(v, limits.v[k] / d1[k]);
     if (d2[k] > 0.0) v = std::min(v, std::sqrt(kCurveShareA * limits.a[k] / d2[k]));
@@ -51,6 +53,7 @@ StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimit
   }
   assert(v > 0.0 && a > 0.0 && j > 0.0 && v < kInfinity && a < kInfinity && j < kInfinity);
   out.v = v;
+  out.programmed = v >= programmed;
   out.a = a;
   out.j = j;
   return out;
@@ -62,11 +65,13 @@ std::vector<StretchLimits> merge_similar(std::span<const StretchLimits> pieces) 
   double fastest = 0.0;  // of the stretch being merged
   for (const StretchLimits& next : pieces) {
     const double high = std::max(fastest, next.v);
-    if (!out.empty() && high <= kSimilar * std::min(out.back().v, next.v) &&
-        alike(out.back().a, next.a) && alike(out.back().j, next.j)) {
+    const double similar = next.programmed ? kSimilarFeed : kSimilar;
+    if (!out.empty() && out.back().programmed == next.programmed &&
+        high <= similar * std::min(out.back().v, next.v) && alike(out.back().a, next.a) &&
+        alike(out.back().j, next.j)) {
       StretchLimits& last = out.back();
       last = {next.end, std::min(last.v, next.v), std::min(last.a, next.a),
-              std::min(last.j, next.j)};
+              std::min(last.j, next.j), next.programmed};
       fastest = high;
     } else {
       out.push_back(next);

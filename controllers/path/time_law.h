@@ -9,10 +9,11 @@ namespace servomill::controllers {
 
 /// Limits that hold on one stretch of the path, from the end of the one before to `end`.
 struct StretchLimits {
-  double end = 0.0;  // m
-  double v = 0.0;    // m/s
-  double a = 0.0;    // m/s^2, at every speed up to v
-  double j = 0.0;    // m/s^3, at every speed up to v and acceleration up to a
+  double end = 0.0;         // m
+  double v = 0.0;           // m/s
+  double a = 0.0;           // m/s^2, at every speed up to v
+  double j = 0.0;           // m/s^3, at every speed up to v and acceleration up to a
+  bool programmed = false;  // v is the programmed speed, not a limit of the machine
 };
 
 /// s(t) = s + v x + a x^2/2 + j x^3/6, x = t - `t`, until the next phase begins.

@@ -1,0 +1,21 @@
+/// Does a program stay within the travel of the machine?
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/move.h"
+
+namespace servomill::controllers {
+
+/// Every move that leaves the travel, one fault a joint, arcs with their extreme points.
+/// @param start         joints before the first move (5; m, rad)
+/// @param lower, upper  (5; m, rad), infinite for an endless axis; the bounds belong to the travel
+/// @param file          of the program, for the place of the faults
+std::vector<Fault> travel_faults(std::span<const Move> moves, const JointLayout& layout,
+                                 const Joints& start, const Joints& lower, const Joints& upper,
+                                 const std::string& file);
+
+}  // namespace servomill::controllers
