@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -26,8 +27,12 @@ static_assert(std::is_same_v<hid_t, std::int64_t>);
 constexpr unsigned kDeflateLevel = 1;
 constexpr unsigned kCreationOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
 
-// The library prints its errors unless told not to; the setting belongs to the thread.
-void silence_library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+// The library prints its errors unless told not to, and when the process ends it closes again what
+// it could not close before, which crashes after a failed write.
+void prepare_library() {
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 herr_t keep_first(unsigned depth, const H5E_error2_t* error, void* out) {
   if (depth == 0 && error->desc != nullptr) *static_cast<std::string*>(out) = error->desc;
@@ -81,6 +86,39 @@ void write_attribute(hid_t object, const std::string& name, hid_t type, hid_t sp
   const Hdf5Handle attribute(
       written(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), object));
   written(H5Awrite(attribute.get(), type, data), object);
+}
+
+int descriptor_of(hid_t file) {
+  void* descriptor = nullptr;
+  written(H5Fget_vfd_handle(file, H5P_DEFAULT, &descriptor), file);
+  return *static_cast<int*>(descriptor);
+}
+
+// Size with all that the library has not written yet.
+std::uint64_t file_size(hid_t file) {
+  hsize_t size = 0;
+  written(H5Fget_filesize(file, &size), file);
+  return size;
+}
+
+// The library writes the superblock, which says where the file ends, after all that lies before
+// that end. A process killed in between would leave a file that refuses to be read to its end, so
+// we write that number first. (HDF5 File Format Specification, superblock version 0: "End of File
+// Address", 8 bytes, least significant first.)
+void announce_end(hid_t file) {
+  constexpr off_t kVersionOffset = 8;
+  constexpr off_t kEndOffset = 40;
+  const int descriptor = descriptor_of(file);
+  std::uint8_t version = 1;
+  if (pread(descriptor, &version, 1, kVersionOffset) != 1 || version != 0) return;
+  const std::uint64_t size = file_size(file);
+  std::array<std::uint8_t, 8> bytes{};
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    bytes[i] = static_cast<std::uint8_t>(size >> (8 * i));
+  }
+  const bool done = ftruncate(descriptor, static_cast<off_t>(size)) == 0 &&
+                    pwrite(descriptor, bytes.data(), bytes.size(), kEndOffset) == 8;
+  if (!done) throw SystemError(file_name(file), "cannot be written", system_reason());
 }
 
 hid_t stored_type(Storage storage) {
@@ -143,16 +181,17 @@ void Hdf5Object::attribute(const std::string& name, std::span<const double> valu
   write_attribute(id_.get(), name, H5T_NATIVE_DOUBLE, space.get(), values.data());
 }
 
-void Hdf5Object::flush_file() { written(H5Fflush(id_.get(), H5F_SCOPE_GLOBAL), id_.get()); }
+void Hdf5Object::flush_file() {
+  const Hdf5Handle file(written(H5Iget_file_id(id_.get()), id_.get()));
+  announce_end(file.get());
+  written(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), file.get());
+}
 
 void Hdf5Object::reserve(std::size_t bytes) {
   const Hdf5Handle file(written(H5Iget_file_id(id_.get()), id_.get()));
-  hsize_t size = 0;
-  void* descriptor = nullptr;
-  written(H5Fget_filesize(file.get(), &size), file.get());
-  written(H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor), file.get());
-  const int status = fallocate(*static_cast<int*>(descriptor), FALLOC_FL_KEEP_SIZE,
-                               static_cast<off_t>(size), static_cast<off_t>(bytes));
+  const auto size = static_cast<off_t>(file_size(file.get()));
+  const int status =
+      fallocate(descriptor_of(file.get()), FALLOC_FL_KEEP_SIZE, size, static_cast<off_t>(bytes));
   if (status == 0 || errno == EOPNOTSUPP || errno == ENOSYS) return;
   throw SystemError(file_name(id_.get()), "cannot be written", system_reason());
 }
@@ -214,6 +253,11 @@ Hdf5Dataset Hdf5Group::extendible(const std::string& name, std::size_t columns, 
   H5Pset_chunk(creation.get(), rank, chunk.data());
   H5Pset_shuffle(creation.get());
   H5Pset_deflate(creation.get(), kDeflateLevel);
+  // a run killed while it extends a dataset must not leave rows that look like values
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  if (storage != Storage::int32) {
+    H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &nothing);
+  }
   // whole chunks are written at once and need no cache
   const Hdf5Handle access = handle(H5Pcreate(H5P_DATASET_ACCESS));
   H5Pset_chunk_cache(access.get(), 0, 0, H5D_CHUNK_CACHE_W0_DEFAULT);
@@ -281,7 +325,7 @@ OutputFile::OutputFile(std::string path, bool force)
     : path_(std::move(path)), partial_path_(path_ + ".partial"), force_(force) {
   refuse_existing(path_, "exists");
   refuse_existing(partial_path_, "exists, left by a run that did not end");
-  silence_library();
+  prepare_library();
   const Hdf5Handle creation = group_creation(H5P_FILE_CREATE);
   const Hdf5Handle access = handle(H5Pcreate(H5P_FILE_ACCESS));
   // closing the file closes what was taken from it; the oldest format has no "open" mark that would
@@ -323,7 +367,7 @@ void OutputFile::commit() {
 }
 
 InputFile::InputFile(std::string path) : path_(std::move(path)) {
-  silence_library();
+  prepare_library();
   const int descriptor = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) fail(fmt::format("cannot be read: {}", system_reason()));
   close(descriptor);

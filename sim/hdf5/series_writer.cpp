@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 namespace servomill::sim {
@@ -26,7 +27,7 @@ SeriesWriter::SeriesWriter(Hdf5Group group, SeriesLayout layout)
   for (const ColumnLabels& labels : layout_.labels) {
     scales.push_back(group_.labels(labels.name, labels.letters, labels.long_name));
   }
-  add_channel({layout_.index, layout_.index_meaning, "", Storage::float64}, scales);
+  add_channel({layout_.index, layout_.index_meaning, "", Storage::float64, 0.0}, scales);
   for (const Channel& channel : layout_.channels) add_channel(channel, scales);
 
   // all memory
@@ -59,7 +60,7 @@ void SeriesWriter::add_channel(const Channel& channel, std::vector<Hdf5Dataset>&
     dataset.attach_scale(columns_.front().dataset, 0);
   }
   if (has_columns) dataset.attach_scale(scales[labels], 1);
-  columns_.push_back({std::move(dataset), width_, columns});
+  columns_.push_back({std::move(dataset), width_, columns, channel.quantum});
   width_ += columns;
 }
 
@@ -82,14 +83,22 @@ void SeriesWriter::finish() {
   if (rows_ > 0) write_block();
 }
 
+void SeriesWriter::gather(const Column& column, std::size_t rows) {
+  double* out = gathered_.data();
+  for (std::size_t row = 0; row < rows; ++row) {
+    out = std::copy_n(block_.data() + row * width_ + column.offset, column.columns, out);
+  }
+  if (column.quantum <= 0.0) return;
+  for (double* value = gathered_.data(); value != out; ++value) {
+    *value = std::nearbyint(*value / column.quantum) * column.quantum;
+  }
+}
+
 void SeriesWriter::write_block() {
   const std::size_t rows = std::exchange(rows_, 0);
   group_.reserve(reserved_bytes_);
   for (Column& column : columns_) {
-    double* out = gathered_.data();
-    for (std::size_t row = 0; row < rows; ++row) {
-      out = std::copy_n(block_.data() + row * width_ + column.offset, column.columns, out);
-    }
+    gather(column, rows);
     column.dataset.append(gathered_.data(), rows);
   }
   group_.flush_file();

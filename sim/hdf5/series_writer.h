@@ -24,6 +24,7 @@ struct Channel {
   Meaning meaning;
   std::string labels;  // name of its ColumnLabels; empty: one number a row
   Storage storage = Storage::float64;
+  double quantum = 0.0;  // > 0: rounded to multiples of it; a power of two halves the file
 };
 
 /// What a SeriesWriter records. The index is the dimension that all share and the first number of a
@@ -36,6 +37,8 @@ struct SeriesLayout {
   std::size_t chunk_rows = 4096;
 };
 
+/// The file must outlive the writer.
+///
 /// A row is a flat list of numbers: the index, then the channels in the order of the layout.
 class SeriesWriter {
  public:
@@ -64,10 +67,12 @@ class SeriesWriter {
     Hdf5Dataset dataset;
     std::size_t offset;  // in a row
     std::size_t columns;
+    double quantum;
   };
 
   void add_channel(const Channel& channel, std::vector<Hdf5Dataset>& scales);
   void write_block();
+  void gather(const Column& column, std::size_t rows);
 
   Hdf5Group group_;
   SeriesLayout layout_;

@@ -7,13 +7,26 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <optional>
+#include <new>
 
 #include "plant/vocabulary/input_error.h"
+
+namespace {
+std::size_t allocations = 0;
+}
+// not inlined, or the compiler takes malloc and delete for a pair that does not match
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace servomill::sim {
 namespace {
@@ -80,6 +93,28 @@ TEST_F(SeriesFile, HasEveryRowWhateverTheBlock) {
   }
 }
 
+TEST_F(SeriesFile, RoundsAChannelToItsQuantum) {
+  constexpr double kQuantum = 0x1p-20;
+  {
+    OutputFile out(path("out.h5"), false);
+    SeriesLayout rounded;
+    rounded.channels = {{"a", {"mm", "rounded"}, "", Storage::float64, kQuantum},
+                        {"b", {"mm", "exact"}, ""}};
+    SeriesWriter writer(out.root().group("servo"), rounded);
+    for (const double value : {0.1, -0.1, 1e6 / 3.0}) writer.append(std::array{0.0, value, value});
+    writer.finish();
+    out.commit();
+  }
+  const InputFile in(path("out.h5"));
+  const auto a = in.values("/servo/a");
+  const auto b = in.values("/servo/b");
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    EXPECT_EQ(std::remainder(a[n], kQuantum), 0.0);
+    EXPECT_LE(std::abs(a[n] - b[n]), kQuantum / 2);
+    EXPECT_NE(a[n], b[n]);
+  }
+}
+
 TEST_F(SeriesFile, WritesTheRestWhenLeftEarly) {
   {
     OutputFile out(path("out.h5"), false);
@@ -87,6 +122,18 @@ TEST_F(SeriesFile, WritesTheRestWhenLeftEarly) {
     for (std::size_t n = 0; n < 6; ++n) writer.append(row(n));
   }
   expect_rows(InputFile(path("out.h5.partial")), "/servo", 6);
+}
+
+TEST_F(SeriesFile, AllocatesNothingWhileABlockFills) {
+  constexpr std::size_t kBlock = 512;
+  OutputFile out(path("out.h5"), false);
+  const std::size_t first = allocations;
+  SeriesWriter writer(out.root().group("servo"), layout(kBlock));
+  EXPECT_GT(allocations, first);  // the count works
+  for (std::size_t n = 0; n < kBlock; ++n) writer.append(row(n));
+  const std::size_t before = allocations;
+  for (std::size_t n = kBlock; n < 2 * kBlock - 1; ++n) writer.append(row(n));
+  EXPECT_EQ(allocations, before);
 }
 
 TEST_F(SeriesFile, OpensInH5pyAndXarray) {
@@ -179,7 +226,7 @@ TEST_F(SeriesFile, KilledAtAnyMomentKeepsTheBlocksBefore) {
     }
     close(pipe_ends[1]);
     std::size_t flushed = 0;
-    const std::size_t wanted = kBlock * static_cast<std::size_t>(1 + 37 * kill_number);
+    const std::size_t wanted = kBlock * static_cast<std::size_t>(1 + 11 * kill_number);
     while (flushed < wanted) {
       ASSERT_EQ(read(pipe_ends[0], &flushed, sizeof flushed), ssize_t{sizeof flushed});
     }
