@@ -207,7 +207,12 @@ void Reader::note(const Value& value, const std::string& name, std::string_view 
 
 void Reader::check_type(const Value*& value, std::string_view key, Value::Type type) {
   if (value == nullptr || value->type == type) return;
-  note(*value, joined_key(path_, key), fmt::format("must be {}", type_name(type)));
+  const std::string name = joined_key(path_, key);
+  std::string rule = fmt::format("must be {}", type_name(type));
+  if (type == Value::Type::list && value->type == Value::Type::table) {
+    rule += fmt::format("; write [[{}]] for an item that is a table", name);
+  }
+  note(*value, name, rule);
   value = nullptr;
 }
 

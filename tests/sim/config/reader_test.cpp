@@ -188,7 +188,8 @@ TEST(Gallery, WrongTypes) {
   EXPECT_EQ(faults("nc = 3", [](Reader& r) { r.table_or_empty("nc").real("Kv", kRate); }),
             "s.toml:1:6: error: nc = 3; must be a table");
   EXPECT_EQ(faults("[case]\nname = 'x'", [](Reader& r) { r.tables("case"); }),
-            "s.toml:1:1: error: case = {...}; must be a list");
+            "s.toml:1:1: error: case = {...}; must be a list; write [[case]] for an item that is a "
+            "table");
   EXPECT_EQ(faults("case = []", [](Reader& r) { r.tables("case"); }),
             "s.toml:1:8: error: case = []; must have at least one item");
   EXPECT_EQ(faults("case = [{ name = 'x' }, 2]",
