@@ -112,7 +112,9 @@ VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
     out.polynomial.resize(std::max(out.polynomial.size(), f.polynomial.size()), Screw::Zero());
     for (std::size_t i = 0; i < f.polynomial.size(); ++i) out.polynomial[i][lane] = f.polynomial[i];
     for (const Harmonic& h : f.harmonics) {
-      out.harmonics.push_back({lane, h.amplitude, h.omega(), h.phase});
+      const bool same_wave = !out.harmonics.empty() && out.harmonics.back().omega == h.omega() &&
+                             out.harmonics.back().phase == h.phase;
+      out.harmonics.push_back({lane, h.amplitude, h.omega(), h.phase, same_wave});
     }
     for (const LinearTable& t : f.tables) out.tables.push_back({lane, t});
   }
@@ -128,8 +130,10 @@ VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
 VolumetricModel::Screw VolumetricModel::values(const Prepared& errors, double q) {
   Screw e = Screw::Zero();
   for (std::size_t i = errors.polynomial.size(); i-- > 0;) e = e * q + errors.polynomial[i];
+  double sine = 0.0;
   for (const auto& h : errors.harmonics) {
-    e[h.lane] += h.amplitude * std::sin(h.omega * q + h.phase);
+    if (!h.same_wave) sine = std::sin(h.omega * q + h.phase);
+    e[h.lane] += h.amplitude * sine;
   }
   for (const auto& t : errors.tables) e[t.lane] += t.table.value(q);
   return e;

@@ -76,6 +76,7 @@ class VolumetricModel {
     struct PreparedHarmonic {
       int lane;
       double amplitude, omega, phase;  // m or rad, 1/m or 1, rad
+      bool same_wave;                  // as the harmonic before: its sine is taken again
     };
     struct PreparedTable {
       int lane;

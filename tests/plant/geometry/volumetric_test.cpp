@@ -109,6 +109,22 @@ TEST(Straightness, MovesTheToolOfEitherSideAlike) {
   }
 }
 
+TEST(Straightness, OfAllKindsOfTermsIsTheValueOfItsFunctions) {
+  ErrorModel errors;
+  errors.component("EXX"_err) = polynomial({1e-5, 2e-5}) + harmonic(30 * um, 62 * mm, 0.2);
+  errors.component("EYX"_err) = harmonic(150 * um, 62 * mm) + harmonic(20 * um, 10 * mm, 0.2);
+  errors.component("EZX"_err) =
+      harmonic(-70 * um, 10 * mm, 0.2) + linear_table({-0.1, 0.0, 0.1}, {1e-5, -2e-5, 4e-5});
+  const VolumetricModel model(chain_of("[w X b Y Z t]"), errors);
+  for (int i = -30; i <= 30; ++i) {
+    const double x = 3.7 * mm * i;
+    const Vector3d d = model.joint_offset({x, 0.1, 0.2, 0.0, 0.0}, Vector3d::Zero());
+    const Vector3d e{errors.component("EXX"_err).value(x), errors.component("EYX"_err).value(x),
+                     errors.component("EZX"_err).value(x)};
+    EXPECT_LT((d - e).norm(), kRounding);
+  }
+}
+
 TEST(RotationOfAnError, IsTheExponentialOfItsVector) {
   // A quarter turn about (1, 1, 0) carries z to (1, -1, 0)/sqrt(2); EAX = EBX.
   const double e = std::numbers::pi / 2.0 / std::numbers::sqrt2;
