@@ -22,6 +22,9 @@ using Stack = std::array<double, kLongestLine + 1>;
   throw InputError(place, std::move(message));
 }
 
+// In extended precision, as LinuxCNC has it: TAN[90] is then the same huge number.
+constexpr long double kDegree = 3.14159265358979323846264338327950288L / 180.0L;
+
 double rounded(double x) { return std::trunc(x + (x < 0.0 ? -0.5 : 0.5)); }
 
 double modulo(double a, double b) {
@@ -96,7 +99,7 @@ double unary(OpCode code, double x, const Place& place) {
     case OpCode::asin:
       return arc_function("ASIN", std::asin, x, place);
     case OpCode::cos:
-      return std::cos(x * deg);
+      return static_cast<double>(std::cos(x * kDegree));
     case OpCode::exp:
       return std::exp(x);
     case OpCode::fix:
@@ -109,12 +112,12 @@ double unary(OpCode code, double x, const Place& place) {
     case OpCode::round:
       return rounded(x);
     case OpCode::sin:
-      return std::sin(x * deg);
+      return static_cast<double>(std::sin(x * kDegree));
     case OpCode::sqrt:
       if (x < 0.0) fail(place, fmt::format("SQRT[{}]: argument must be >= 0", x));
       return std::sqrt(x);
     case OpCode::tan:
-      return std::tan(x * deg);
+      return static_cast<double>(std::tan(x * kDegree));
     default:
       assert(false && "not a unary operator");
       return 0.0;

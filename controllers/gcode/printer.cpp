@@ -1,0 +1,292 @@
+#include "controllers/gcode/printer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "controllers/gcode/arc_geometry.h"
+#include "controllers/gcode/modal_state.h"
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr int kSignificant = 12;           // digits of F, S and P
+constexpr std::size_t kLongestText = 200;  // of a message; a line holds at most 255 characters
+
+std::string trim_zeros(std::string text) {
+  if (text.find('.') != std::string::npos) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+  }
+  return text == "-0" ? "0" : text;
+}
+
+// Fixed point with so many significant digits; programs know no exponents.
+std::string significant(double x) {
+  const int magnitude = x == 0.0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(x))));
+  return trim_zeros(fmt::format("{:.{}f}", x, std::clamp(kSignificant - 1 - magnitude, 0, 30)));
+}
+
+// A coordinate on the grid of the printed decimals, counted in its smallest step.
+class Grid {
+ public:
+  explicit Grid(int decimals) : decimals_(decimals), scale_(std::pow(10.0, decimals)) {}
+  double step_count(double x) const { return std::round(x * scale_); }
+  std::string text(double steps) const {
+    return trim_zeros(fmt::format("{:.{}f}", steps / scale_, decimals_));
+  }
+
+ private:
+  int decimals_;
+  double scale_;
+};
+
+std::string work_system_code(int system) {
+  return system <= 6 ? fmt::format("G{}", 53 + system) : fmt::format("G59.{}", system - 6);
+}
+
+std::string path_code(const Move& move) {
+  if (move.path_mode == PathMode::exact_path) return "G61";
+  if (move.path_mode == PathMode::exact_stop) return "G61.1";
+  if (move.path_tolerance == 0.0) return "G64";
+  return fmt::format("G64 P{}", significant(move.path_tolerance / mm));
+}
+
+std::string one_line(std::string_view text) {
+  std::string out;
+  for (const char c : text.substr(0, kLongestText)) {
+    out += c == '(' ? '[' : c == ')' ? ']' : c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return out;
+}
+
+class Printer {
+ public:
+  explicit Printer(const PrintOptions& options)
+      : options_(options), linear_(options.decimals_mm), rotary_(options.decimals_deg) {}
+
+  PrintedProgram print(std::span<const Move> moves, std::string_view header) {
+    print_header(header);
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      index_ = static_cast<int>(i);
+      print_move(moves[i]);
+      before_ = moves[i].end;
+      machine_before_ = moves[i].end_machine;
+    }
+    index_ = -1;
+    if (moves.empty() || moves.back().kind != MoveKind::end) line("M30");
+    return std::move(out_);
+  }
+
+ private:
+  using Steps = std::array<double, kAxisWords>;
+
+  void line(std::string_view text) {
+    out_.text += text;
+    out_.text += '\n';
+    out_.move_of_line.push_back(index_);
+  }
+
+  void print_header(std::string_view header) {
+    while (!header.empty()) {
+      const std::size_t end = std::min(header.find('\n'), header.size());
+      line(fmt::format("({})", one_line(header.substr(0, end))));
+      header.remove_prefix(std::min(end + 1, header.size()));
+    }
+    line("G21 G90 G91.1 G94 G17 G40 G80");
+  }
+
+  void print_move(const Move& move) {
+    switch (move.kind) {
+      case MoveKind::rapid:
+      case MoveKind::feed:
+      case MoveKind::arc:
+        return print_motion(move);
+      case MoveKind::dwell:
+        print_modes(move);
+        return line(fmt::format("G4 P{}", significant(move.value)));
+      case MoveKind::tool:
+        return line(fmt::format("T{} M6", move.number));
+      case MoveKind::spindle:
+        return print_spindle(move);
+      case MoveKind::coolant:
+        return print_coolant(move.number);
+      case MoveKind::stop:
+        return line(fmt::format("M{}", move.number));
+      case MoveKind::end:
+        return line("M30");
+      case MoveKind::message:
+        return line(fmt::format("({},{})", move.number == kPrintMessage ? "PRINT" : "MSG",
+                                one_line(move.text)));
+    }
+  }
+
+  void print_spindle(const Move& move) {
+    const std::string S = significant(move.value / rpm);
+    const bool new_speed = S != S_;
+    if (new_speed) line("S" + S);
+    S_ = S;
+    if (!new_speed || move.direction != direction_) {
+      line(move.direction > 0 ? "M3" : move.direction < 0 ? "M4" : "M5");
+    }
+    direction_ = move.direction;
+  }
+
+  void print_coolant(int wanted) {
+    if ((coolant_ & ~wanted) != 0 || wanted == 0) {
+      line("M9");
+      coolant_ = 0;
+    }
+    const bool again = coolant_ == wanted;
+    for (const auto& [bit, code] : {std::pair(kMist, "M7"), std::pair(kFlood, "M8")}) {
+      if ((wanted & bit) != 0 && (again || (coolant_ & bit) == 0)) {
+        line(code);
+        if (again) break;
+      }
+    }
+    coolant_ = wanted;
+  }
+
+  // What holds for motion: work system, tool offset, path control, feed mode.
+  void print_modes(const Move& move) {
+    change(work_, work_system_code(move.work_offset), true);
+    if (move.tool_offset == kOtherToolOffset) {
+      throw InputError({{}, move.line, 0},
+                       "a tool offset of G43.1 or G43.2 cannot be printed; use G43 H");
+    }
+    change(tool_, move.tool_offset == 0 ? "G49" : fmt::format("G43 H{}", move.tool_offset), true);
+    change(path_, path_code(move), false);
+    const bool is_inverse = move.feed_mode == FeedMode::inverse_time;
+    if (change(feed_mode_, is_inverse ? "G93" : "G94", false)) F_.clear();
+  }
+
+  bool change(std::string& now, const std::string& wanted, bool moves_origin) {
+    if (now == wanted) return false;
+    now = wanted;
+    line(wanted);
+    if (moves_origin) steps_.reset();
+    return true;
+  }
+
+  Steps steps_of(const AxisWords& end) const {
+    Steps steps{};
+    for (int i = 0; i < kAxisWords; ++i) {
+      steps[static_cast<std::size_t>(i)] =
+          i < kLinearJoints ? linear_.step_count(end[i] / mm) : rotary_.step_count(end[i] / deg);
+    }
+    return steps;
+  }
+
+  std::string axis_words(const Steps& steps) const {
+    std::string text;
+    for (const Axis axis : kAllAxes) {
+      const auto i = static_cast<std::size_t>(index_of(axis));
+      const bool of_machine = options_.axes.find(letter(axis)) != std::string::npos;
+      const bool wanted = steps_ ? steps[i] != (*steps_)[i] : of_machine || steps[i] != 0.0;
+      if (!wanted) continue;
+      text +=
+          fmt::format(" {}{}", letter(axis), (is_linear(axis) ? linear_ : rotary_).text(steps[i]));
+    }
+    return text;
+  }
+
+  // I, J or K that put the centre on the grid, seen from the start as it was printed; absolute if
+  // the start is not known, behind a change of offset.
+  std::string centre_words(const Move& move) const {
+    std::string text;
+    for (int k = 1; k <= 2; ++k) {
+      const int i = (move.arc.normal_axis + k) % 3;
+      const double start = steps_ ? (*steps_)[static_cast<std::size_t>(i)] : 0.0;
+      text += fmt::format(" {}{}", "IJK"[i],
+                          linear_.text(linear_.step_count(move.arc.centre[i] / mm) - start));
+    }
+    return text;
+  }
+
+  // Does an arc print with equal ends although it is much less than a full circle?
+  bool vanishes(const Move& move, const Steps& steps) const {
+    const int first = (move.arc.normal_axis + 1) % 3, second = (move.arc.normal_axis + 2) % 3;
+    if (!steps_) return false;
+    const Steps& start = *steps_;
+    const auto same = [&](int i) {
+      return start[static_cast<std::size_t>(i)] == steps[static_cast<std::size_t>(i)];
+    };
+    if (!same(first) || !same(second)) return false;
+    const auto in_plane = [&](const auto& v) { return Eigen::Vector2d(v[first], v[second]); };
+    const double angle = swept_angle(in_plane(before_), in_plane(move.end),
+                                     in_plane(move.arc.centre), move.arc.turns > 0 ? 1 : -1);
+    return angle < std::numbers::pi && std::abs(move.arc.turns) == 1;
+  }
+
+  // F in force for this move, in 1/min under G93.
+  double feed_value(const Move& move) const {
+    const double length = move.s_end - move.s_begin;
+    const bool moves_xyz = move.kind == MoveKind::arc || length > 0.0;
+    if (move.feed_mode == FeedMode::units_per_minute) {
+      return move.feed / (moves_xyz ? mm_per_min : deg_per_min);
+    }
+    const double way = moves_xyz ? length : (move.end_machine - machine_before_).tail<3>().norm();
+    return way > 0.0 ? move.feed * minute / way : 1.0;
+  }
+
+  std::string feed_word(const Move& move) {
+    const std::string F = significant(feed_value(move));
+    if (move.feed_mode == FeedMode::units_per_minute && F == F_) return {};
+    F_ = F;
+    return " F" + F;
+  }
+
+  void print_motion(const Move& move) {
+    print_modes(move);
+    const Steps steps = steps_of(move.end);
+    const bool is_arc = move.kind == MoveKind::arc && !vanishes(move, steps);
+    if (is_arc) {
+      static constexpr std::array<std::string_view, 3> kPlanes = {"G19", "G18", "G17"};
+      change(plane_, std::string(kPlanes[static_cast<std::size_t>(move.arc.normal_axis)]), false);
+    }
+    std::string text = is_arc                         ? move.arc.turns > 0 ? "G3" : "G2"
+                       : move.kind == MoveKind::rapid ? "G0"
+                                                      : "G1";
+    const std::string words = axis_words(steps);
+    text += words;
+    if (is_arc) {
+      text += centre_words(move);
+      if (std::abs(move.arc.turns) > 1) text += fmt::format(" P{}", std::abs(move.arc.turns));
+    } else if (words.empty()) {
+      text += " X" + linear_.text(steps[0]);  // a motion without axis words would be none
+    }
+    if (move.kind != MoveKind::rapid) text += feed_word(move);
+    const bool is_absolute = is_arc && !steps_;
+    if (is_absolute) line("G90.1");
+    line(text);
+    if (is_absolute) line("G91.1");
+    steps_ = steps;
+  }
+
+  const PrintOptions& options_;
+  Grid linear_;
+  Grid rotary_;
+  PrintedProgram out_;
+  int index_ = -1;
+  AxisWords before_ = AxisWords::Zero();  // end of the move before
+  AxisWords machine_before_ = AxisWords::Zero();
+  std::optional<Steps> steps_;  // what was printed for it; nullopt: name all axes
+  std::string work_, tool_, path_, plane_ = "G17", feed_mode_ = "G94", F_, S_ = "0";
+  int direction_ = 0;
+  int coolant_ = 0;
+};
+
+}  // namespace
+
+PrintedProgram print_program(std::span<const Move> moves, const PrintOptions& options,
+                             std::string_view header) {
+  return Printer(options).print(moves, header);
+}
+
+}  // namespace servomill::controllers

@@ -1,0 +1,34 @@
+/// Canonical moves back to program text.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "plant/vocabulary/move.h"
+
+namespace servomill::controllers {
+
+struct PrintOptions {
+  int decimals_mm = 7;          // of X Y Z I J K
+  int decimals_deg = 7;         // of A B C
+  std::string axes = "XYZABC";  // axes of the machine; others are printed only if they move
+};
+
+struct PrintedProgram {
+  std::string text;
+  std::vector<int> move_of_line;  // for line k (from 1) at k - 1: index of its move, -1 for none
+};
+
+/// Program that interprets to the same moves, to print precision, under the same work offsets,
+/// tools and start: millimetres, absolute, incremental arc centres, G94 or G93 as the moves say.
+/// Words that do not change are left out; the first motion, and the first after a change of work
+/// or tool offset, names all axes. Ends with M30, whether the moves end with `end` or not.
+/// An arc so short that its ends print alike becomes a line (it would read as a full circle).
+/// @param header  becomes comments, one a line
+/// @throws InputError for a tool offset that does not come from the tool table (G43.1, G43.2)
+PrintedProgram print_program(std::span<const Move> moves, const PrintOptions& options,
+                             std::string_view header);
+
+}  // namespace servomill::controllers

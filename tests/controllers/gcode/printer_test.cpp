@@ -1,0 +1,162 @@
+#include "controllers/gcode/printer.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/controllers/gcode/program.h"
+
+namespace servomill::controllers {
+namespace {
+
+// Half a step of the seventh decimal, and the rounding of an arc centre seen from a rounded start.
+constexpr double kPrintTol = 0.6e-7 * mm;        // m
+constexpr double kPrintAngleTol = 0.6e-7 * deg;  // rad
+// Inverse time: the rate is printed with 12 digits, but the length it multiplies has rounded ends.
+constexpr double kFeedTol = 1e-4;  // relative, moves of 1e-3 mm and more
+
+ProgramSetup wide_setup() {
+  ProgramSetup setup = usual_setup();
+  setup.work_offset[0] = axes(1, 2, 3, 4, 5, 6);
+  setup.work_offset[1] = axes(-10, 20, 30, 0, 0, 90);
+  setup.work_rotation[1] = 0.25;
+  setup.start = axes(5, 6, 7, 8, 9, 10);
+  return setup;
+}
+
+std::vector<Move> reread(const std::vector<Move>& moves, const ProgramSetup& setup) {
+  return interpret(print_program(moves, {}, "printed").text, "printed.nc", setup);
+}
+
+void expect_same(const Move& a, const Move& b) {
+  EXPECT_EQ(a.kind, b.kind);
+  if (is_motion(a.kind)) {
+    EXPECT_LE((a.end - b.end).head<3>().cwiseAbs().maxCoeff(), kPrintTol);
+    EXPECT_LE((a.end - b.end).tail<3>().cwiseAbs().maxCoeff(), kPrintAngleTol);
+    EXPECT_LE((a.end_machine - b.end_machine).head<3>().cwiseAbs().maxCoeff(), 2 * kPrintTol);
+    EXPECT_EQ(a.path_mode, b.path_mode);
+    EXPECT_NEAR(a.path_tolerance, b.path_tolerance, kExact);
+    EXPECT_EQ(a.work_offset, b.work_offset);
+    EXPECT_EQ(a.tool_offset, b.tool_offset);
+  }
+  if (a.kind == MoveKind::feed || a.kind == MoveKind::arc) {
+    EXPECT_EQ(a.feed_mode, b.feed_mode);
+    EXPECT_NEAR(a.feed, b.feed, kFeedTol * a.feed);
+  }
+  if (a.kind == MoveKind::arc) {
+    EXPECT_EQ(a.arc.normal_axis, b.arc.normal_axis);
+    EXPECT_EQ(a.arc.turns, b.arc.turns);
+    EXPECT_LE((a.arc.centre - b.arc.centre).cwiseAbs().maxCoeff(), kPrintTol);
+  }
+  EXPECT_NEAR(a.value, b.value, 1e-11 * std::abs(a.value));
+  EXPECT_EQ(a.number, b.number);
+  EXPECT_EQ(a.direction, b.direction);
+  EXPECT_EQ(a.text, b.text);
+}
+
+void expect_round_trip(const std::string& text, const ProgramSetup& setup) {
+  const std::vector<Move> moves = interpret(text, "p.nc", setup);
+  const std::vector<Move> again = reread(moves, setup);
+  ASSERT_EQ(moves.size(), again.size()) << text << print_program(moves, {}, "").text;
+  for (std::size_t i = 0; i < moves.size(); ++i) expect_same(moves[i], again[i]);
+  if (testing::Test::HasFailure()) FAIL() << text << "----\n" << print_program(moves, {}, "").text;
+}
+
+TEST(Printer, WritesWhatAPersonWouldWrite) {
+  const PrintedProgram printed = print_program(
+      interpret(
+          "T1 M6\nG43 H1\nS1000 M3\nG64 P0.02\nG0 X1 Y2\nG1 Z-1 F300\nX5\nG2 X7 I1\nG4 P0.5\nM2",
+          "p.nc", usual_setup()),
+      {.axes = "XYZ"}, "square part\nside 1");
+  EXPECT_EQ(
+      printed.text,
+      "(square part)\n(side 1)\nG21 G90 G91.1 G94 G17 G40 G80\nT1 M6\nS1000\nM3\nG54\nG43 H1\n"
+      "G64 P0.02\nG0 X1 Y2 Z-100\nG1 Z-1 F300\nG1 X5\nG2 X7 I1 J0\nG4 P0.5\nM5\nM30\n");
+  EXPECT_EQ(printed.move_of_line,
+            (std::vector<int>{-1, -1, -1, 0, 1, 2, 3, 3, 3, 3, 4, 5, 6, 7, 8, 9}));
+}
+
+TEST(Printer, DecimalsRoundAndUnchangedWordsAreLeftOut) {
+  const auto moves = moves_of("G1 X1.23456 Y-0.00001 F60\nX1.23449");
+  EXPECT_EQ(print_program(moves, {.decimals_mm = 3, .decimals_deg = 3, .axes = "XYZ"}, "").text,
+            "G21 G90 G91.1 G94 G17 G40 G80\nG54\nG49\nG64\nG1 X1.235 Y0 Z0 F60\nG1 X1.234\nM30\n");
+}
+
+TEST(Printer, ShortArcDoesNotBecomeAFullCircle) {
+  const auto moves =
+      moves_of("G1 X10 F60\nG3 X9.9999999 Y0.0014142 I-10\nG3 X10 Y0 I-9.9999999 J-0.0014142");
+  const std::string text =
+      print_program(std::span(moves).first(2), {.decimals_mm = 2, .axes = "XYZ"}, "").text;
+  EXPECT_NE(text.find("G1 X10\n"), std::string::npos) << text;
+  // the long way round stays an arc
+  EXPECT_NE(print_program(moves, {.decimals_mm = 2, .axes = "XYZ"}, "").text.find("G3"),
+            std::string::npos);
+}
+
+TEST(Printer, RefusesToolOffsetsOutsideTheTable) {
+  const auto moves = moves_of("G43.1 Z5\nG0 X1");
+  try {
+    print_program(moves, {}, "");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "<input>:2: error: a tool offset of G43.1 or G43.2 cannot be printed; use G43 H");
+  }
+}
+
+TEST(Printer, RoundTripOfEveryFeature) {
+  expect_round_trip(
+      "(MSG,hello #1)\nS500\nM3\nM3\nM7\nM8\nM9\nM9\nT3 M6\nM4\nG61\nG0 X1\nG61.1 G1 Y2 F100\nG64\n"
+      "G1 X1\nG1 X1\nG55\nG2 X30 Y0 R40\nG43 H1\nG3 I5 Z1 P3\nG18 G2 X35 Z3 R50 A5\nG19 G3 Y3 Z9 "
+      "R-20\n"
+      "G93 G1 X1 F30\nC7 F2\nG94\nG1 B7 F200\nX5\nG49\nG53 G0 X0 Y0\nG4 P0.125\nM1\nM0\nM5\nM30\n",
+      wide_setup());
+}
+
+std::string random_program(std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-50.0, 50.0);
+  const auto number = [&] { return fmt::format("{:.9f}", uniform(random)); };
+  std::string text = "F500 G0 X1 Y1 Z1\n";
+  for (int i = 0; i < 30; ++i) {
+    switch (random() % 9) {
+      case 0:
+        text += fmt::format("G5{}\n", 4 + random() % 2);
+        break;
+      case 1:
+        text += random() % 2 == 0 ? "G43 H3\n" : "G49\n";
+        break;
+      case 2:
+        text += fmt::format("G0 X{} C{}\n", number(), number());
+        break;
+      case 3:
+        text +=
+            fmt::format("G{} G3 I{} J{} K{} P{}\n", 17, number(), number(), 0, 1 + random() % 3);
+        text.replace(text.rfind(" K0"), 3, "");
+        break;
+      case 4: {
+        const std::string end = number();
+        text += fmt::format("G18 G91 G2 X{} Z1 R{} A{}\nG90\n", end, 60.0, number());
+        break;
+      }
+      case 5:
+        text += fmt::format("G93 G1 X{} A{} F{:.6f}\nG94 F{:.4f}\n", number(), number(),
+                            1.0 + std::abs(uniform(random)), 100 + uniform(random));
+        break;
+      case 6:
+        text += fmt::format("G64 P{:.5f}\n", std::abs(uniform(random)));
+        break;
+      default:
+        text += fmt::format("G1 X{} Y{} Z{} B{}\n", number(), number(), number(), number());
+    }
+  }
+  return text + "M2\n";
+}
+
+TEST(Printer, RoundTripOfRandomPrograms) {
+  std::mt19937 random(7);
+  for (int k = 0; k < 200; ++k) expect_round_trip(random_program(random), wide_setup());
+}
+
+}  // namespace
+}  // namespace servomill::controllers
