@@ -9,8 +9,9 @@
 
 namespace servomill::controllers {
 
-/// Longest line that is accepted, counted in characters without the line end.
-inline constexpr std::size_t kLongestLine = 255;
+/// Longest line that is accepted, counted in characters without the line end, as LinuxCNC's
+/// stand-alone interpreter has it.
+inline constexpr std::size_t kLongestLine = 252;
 
 /// A line as the parser wants it: blanks removed (also within numbers, as RS274/NGC has it), upper
 /// case, each comment replaced by one '(' so that its place is known.

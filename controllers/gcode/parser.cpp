@@ -106,9 +106,7 @@ void Parser::parse(std::string_view line, int number, Block& block) {
   block.line = number_ = number;
   block_ = &block;
   at_ = comments_taken_ = 0;
-  while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t')) {
-    line.remove_suffix(1);
-  }
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   const std::size_t first = line.find_first_not_of(" \t");
   if (block_delete_ && first != std::string_view::npos && line[first] == '/') {
     block.deleted = true;

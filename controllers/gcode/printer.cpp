@@ -17,7 +17,7 @@ namespace servomill::controllers {
 namespace {
 
 constexpr int kSignificant = 12;           // digits of F, S and P
-constexpr std::size_t kLongestText = 200;  // of a message; a line holds at most 255 characters
+constexpr std::size_t kLongestText = 200;  // of a message; a line holds at most 252 characters
 
 std::string trim_zeros(std::string text) {
   if (text.find('.') != std::string::npos) {

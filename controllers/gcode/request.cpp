@@ -41,6 +41,11 @@ const Code& look_up(const Context& context, char letter, double value, int colum
 
 void choose(const Context& context, Request& request, char letter, const Code& code, int column) {
   Request::Chosen& chosen = request.codes[static_cast<std::size_t>(code.group)];
+  // G80 cancels nothing that its own block programs: G0 G17 G40 G80 is how many programs begin
+  if (code.group == Group::g_motion && chosen.code != nullptr) {
+    if (code.tenths == kNoMotion) return;
+    if (chosen.code->tenths == kNoMotion) chosen.code = nullptr;
+  }
   if (chosen.code != nullptr) {
     context.fail(column, fmt::format("{} and {} in one block (same modal group)",
                                      name_of(letter, *chosen.code), name_of(letter, code)));

@@ -24,8 +24,9 @@ TEST(ErrorGallery, Characters) {
       {"G0 X1 ?", "1:7: error: unexpected '?'; a word starts with one of ABCDFGHIJKLMPQRSTXYZ"},
       {"G0 X1 U2", "1:7: error: unexpected 'U'; a word starts with one of ABCDFGHIJKLMPQRSTXYZ"},
   });
-  EXPECT_EQ(fault_of("G0 X" + std::string(252, '1')),
-            "p.nc:1:256: error: line of 256 characters; at most 255 are allowed");
+  EXPECT_EQ(fault_of("G0 X1" + std::string(248, ' ')),
+            "p.nc:1:253: error: line of 253 characters; at most 252 are allowed");
+  EXPECT_EQ(fault_of("G0 X1" + std::string(247, ' ')), "");
 }
 
 TEST(ErrorGallery, Values) {

@@ -197,6 +197,11 @@ TEST(Block, WithAnErrorChangesNothing) {
   EXPECT_EQ(move->kind, MoveKind::feed);
 }
 
+TEST(Block, G80YieldsToTheMotionOfItsBlock) {
+  EXPECT_EQ(last_move("G0 G17 G40 G80 X1\nX2").kind, MoveKind::rapid);
+  EXPECT_EQ(last_move("G80 G1 X1 F60").kind, MoveKind::feed);
+}
+
 TEST(Program, EndsAtM2OrAtTheSecondPercent) {
   EXPECT_EQ(interpret("G0 X1\nM30\nnonsense (\n", "p.nc", {}).size(), 2u);
   EXPECT_EQ(interpret("\n%\nG0 X1\n%\nnonsense (\n", "p.nc", {}).size(), 1u);
