@@ -108,7 +108,7 @@ class Interpreter::Machine {
     }
     state_.tool = setup_.tool;
     load_work_system(setup_.work_system);
-    state_.position = state_.to_work(setup_.start);
+    state_.position = state_.from_account(setup_.start);
     parameters_.commit();
   }
 
@@ -169,6 +169,7 @@ class Interpreter::Machine {
   void units();
   void cutter_compensation() {}
   void tool_length();
+  void set_table_offset(bool is_added);
   void work_system();
   void path_control();
   void distance();
@@ -468,37 +469,42 @@ void Interpreter::Machine::plane() {
 
 void Interpreter::Machine::units() {
   const int code = request().code(Group::g_units);
-  if (code >= 0) state_.unit = code == 200 ? inch : mm;
+  if (code >= 0) state_.set_unit(code == 200 ? inch : mm);
 }
 
 void Interpreter::Machine::tool_length() {
   const int code = request().code(Group::g_tool_length);
   if (code < 0) return;
-  const AxisWords machine = state_.to_machine(state_.position);
+  const AxisWords machine = state_.to_account(state_.position);
   if (code == 490) {
-    state_.tool_offset.setZero();
+    state_.set_tool_offset(AxisWords::Zero());
     state_.tool_offset_number = 0;
   } else if (code == 431) {
+    AxisWords offset = state_.tool_account;
     for (int i = 0; i < kAxisWords; ++i) {
-      if (has_axis(i)) state_.tool_offset[i] = axis_word(i);
+      if (has_axis(i)) offset[i] = axis_word(i);
     }
+    state_.set_tool_offset(offset);
     state_.tool_offset_number = kOtherToolOffset;
   } else {
-    const bool has_H = request().has('H');
-    if (code == 432 && !has_H) {
-      fail(request().of(Group::g_tool_length).column, "G43.2 needs an H word");
-    }
-    int number = has_H ? integer('H') : state_.tool;
-    if (number == 0) number = state_.tool;
-    const AxisWords& offset = tool_named(has_H ? 'H' : 'T', number).offset;
-    state_.tool_offset = code == 432 ? AxisWords(state_.tool_offset + offset) : offset;
-    state_.tool_offset_number = code == 432 ? kOtherToolOffset : number;
+    set_table_offset(code == 432);
   }
-  state_.position = state_.to_work(machine);
+  state_.position = state_.from_account(machine);
+}
+
+// G43 and G43.2
+void Interpreter::Machine::set_table_offset(bool is_added) {
+  const bool has_H = request().has('H');
+  if (is_added && !has_H) fail(request().of(Group::g_tool_length).column, "G43.2 needs an H word");
+  int number = has_H ? integer('H') : state_.tool;
+  if (number == 0) number = state_.tool;
+  const AxisWords& offset = tool_named(has_H ? 'H' : 'T', number).offset;
+  state_.set_tool_offset(is_added ? AxisWords(state_.tool_account + offset) : offset);
+  state_.tool_offset_number = is_added ? kOtherToolOffset : number;
 }
 
 void Interpreter::Machine::load_work_system(int system) {
-  const AxisWords machine = state_.to_machine(state_.position);
+  const AxisWords machine = state_.to_account(state_.position);
   state_.work_system = system;
   for (int i = 0; i < kAxisWords; ++i) {
     state_.work_offset[i] =
@@ -506,7 +512,7 @@ void Interpreter::Machine::load_work_system(int system) {
   }
   state_.set_rotation(parameters_.get(parameter::work_rotation(system)) * deg);
   parameters_.set(parameter::kWorkSystem, system);
-  state_.position = state_.to_work(machine);
+  state_.position = state_.from_account(machine);
 }
 
 void Interpreter::Machine::work_system() {
@@ -600,7 +606,7 @@ void Interpreter::Machine::set_current_position(int system) {
   }
   other.set_rotation(parameters_.get(parameter::work_rotation(system)) * deg);
   AxisWords excess = AxisWords::Zero();
-  const AxisWords present = other.to_work(state_.to_machine(state_.position));
+  const AxisWords present = other.from_account(state_.to_account(state_.position));
   for (int i = 0; i < kAxisWords; ++i) {
     if (has_axis(i)) excess[i] = present[i] - axis_word(i);
   }
@@ -611,8 +617,13 @@ void Interpreter::Machine::set_current_position(int system) {
   refresh_if_active(system);
 }
 
+// As LinuxCNC: the position is carried over as if there were no G92 offset. That makes a
+// difference only if the rotation changes while there is one.
 void Interpreter::Machine::refresh_if_active(int system) {
-  if (system == state_.work_system) load_work_system(system);
+  if (system != state_.work_system) return;
+  const AxisWords point = state_.rotated(state_.position) + state_.work_offset;
+  load_work_system(system);
+  state_.position = state_.unrotated(point - state_.work_offset);
 }
 
 void Interpreter::Machine::go_home(int first_parameter) {
@@ -632,7 +643,7 @@ void Interpreter::Machine::go_home(int first_parameter) {
 }
 
 void Interpreter::Machine::store_home(int first_parameter) {
-  const AxisWords machine = state_.to_machine(state_.position);
+  const AxisWords machine = state_.to_account(state_.position);
   for (int i = 0; i < kAxisWords; ++i) {
     parameters_.set(first_parameter + i, in_parameter_unit(i, machine[i]));
   }
@@ -706,7 +717,7 @@ AxisWords Interpreter::Machine::programmed_end() const {
 
 // X and Y turn together, so a G53 with one of them keeps the other in machine coordinates.
 AxisWords Interpreter::Machine::machine_end() const {
-  AxisWords target = state_.to_machine(state_.position);
+  AxisWords target = state_.to_account(state_.position);
   for (int i = 0; i < kAxisWords; ++i) {
     if (has_axis(i)) target[i] = axis_word(i);
   }

@@ -7,8 +7,7 @@
 /// modes, (18) G10 G28 G30 G52 G92, (19) motion, (20) M0 M1 M2 M30. Parameters set in a block take
 /// effect after all its words are read. A block with an error changes nothing.
 ///
-/// Different from LinuxCNC on purpose: a tool offset keeps its length when G20 or G21 follows it
-/// (there, G53, G28 and G49 then take its number for the new unit); M6 leaves the position as it
+/// Different from LinuxCNC on purpose: M6 leaves the position as it
 /// is; M48 M49 do nothing, since no operator turns the override; all messages of a block are given,
 /// not only its last; a G0 or G1 without axis words gives no move; Q of G64 is accepted and unused
 /// (it allows, and does not ask for, the merging of short lines).

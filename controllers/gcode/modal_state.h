@@ -16,11 +16,16 @@ inline constexpr int kMist = 1, kFlood = 2;  // bits of `Move::number` of a cool
 
 /// Positions are SI. Machine coordinates = R (position + shift) + work_offset + tool_offset, where
 /// R turns X and Y by the rotation of the work system.
+///
+/// LinuxCNC keeps its own account of the position with a tool offset whose number it does not
+/// convert when G20 or G21 follows. That account is kept here as well (`tool_account`), for it
+/// decides where G53, G28 and moves behind a change of tool offset end.
 struct ModalState {
   AxisWords position = AxisWords::Zero();  // in work coordinates
   AxisWords shift = AxisWords::Zero();     // G92, G52
   AxisWords work_offset = AxisWords::Zero();
   AxisWords tool_offset = AxisWords::Zero();
+  AxisWords tool_account = AxisWords::Zero();
   double cos_rotation = 1.0;
   double sin_rotation = 0.0;
   int work_system = 1;
@@ -46,9 +51,16 @@ struct ModalState {
   double s = 0.0;  // m, length of the XYZ path so far
 
   void set_rotation(double angle);
+  void set_tool_offset(const AxisWords& offset);
+  void set_unit(double new_unit);
   AxisWords rotated(const AxisWords& v) const;
+  AxisWords unrotated(const AxisWords& v) const;
+
+  /// Where the machine is when the work coordinates are these.
   AxisWords to_machine(const AxisWords& work) const;
-  AxisWords to_work(const AxisWords& machine) const;
+  /// The same with `tool_account`, and back.
+  AxisWords to_account(const AxisWords& work) const;
+  AxisWords from_account(const AxisWords& machine) const;
   /// Work coordinates of a point that a program gives in machine coordinates (G53, G28, G30). As
   /// in LinuxCNC the tool offset of rotary axes, which next to nobody has, is left out.
   AxisWords target_to_work(const AxisWords& machine) const;

@@ -229,6 +229,15 @@ double evaluate(const Value& value, const Block& block, const Parameters& parame
   return stack[0];
 }
 
+namespace {
+
+// As LinuxCNC shows it: what counts as equal to zero reads as zero.
+std::string shown(double value) {
+  return fmt::format("{:.6f}", std::abs(value) < kEqualTol ? 0.0 : value);
+}
+
+}  // namespace
+
 std::string substitute(std::string_view text, const Parameters& parameters) {
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
@@ -241,7 +250,7 @@ std::string substitute(std::string_view text, const Parameters& parameters) {
           if (c != ' ' && c != '\t') name += c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
         }
         const std::optional<double> value = parameters.get(name);
-        out += value ? fmt::format("{:.6f}", *value) : "######";
+        out += value ? shown(*value) : "######";
         i = close + 1;
         continue;
       }
@@ -253,7 +262,7 @@ std::string substitute(std::string_view text, const Parameters& parameters) {
     if (end > i + 1) {
       const int number = std::stoi(std::string(text.substr(i + 1, end - i - 1)));
       const bool exists = number >= 1 && number <= parameter::kLast;
-      out += exists ? fmt::format("{:.6f}", parameters.get(number)) : "######";
+      out += exists ? shown(parameters.get(number)) : "######";
     } else {
       out += text[i];
     }
