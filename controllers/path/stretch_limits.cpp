@@ -7,11 +7,12 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr double kCurveShareA = 0.7;    // of the acceleration, for curvature
-constexpr double kCurveShareJ = 0.7;    // of the jerk
+constexpr double kCurveShare = 0.3;
+constexpr double kSharpShare = 0.3;
+constexpr double kSharp = 0.3;
 constexpr double kSimilar = 1.1;        // speeds on curves that are not worth a change
 constexpr double kSimilarFeed = 1.001;  // the same for programmed speeds
-constexpr double kCrossShareJ = 0.5;    // of the jerk left, for 3 q'' v a
+constexpr double kCrossShareJ = 0.7;    // of the jerk left, for 3 q'' v a
 
 }  // namespace
 
@@ -35,11 +36,15 @@ StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimit
   if (linear > 0.0) v = std::min(v, feed.linear / linear);
   if (rotary > 0.0) v = std::min(v, feed.rotary / rotary);
   const double programmed = v;
+  double straight = v, curve_a = kInfinity, curve_j = kInfinity;  // m/s, by curvature alone
   for (int k = 0; k < kJoints; ++k) {
-    if (d1[k] > 0.0) v = std::min(v, limits.v[k] / d1[k]);
-    if (d2[k] > 0.0) v = std::min(v, std::sqrt(kCurveShareA * limits.a[k] / d2[k]));
-    if (d3[k] > 0.0) v = std::min(v, std::cbrt(kCurveShareJ * limits.j[k] / d3[k]));
+    if (d1[k] > 0.0) straight = std::min(straight, limits.v[k] / d1[k]);
+    if (d2[k] > 0.0) curve_a = std::min(curve_a, std::sqrt(limits.a[k] / d2[k]));
+    if (d3[k] > 0.0) curve_j = std::min(curve_j, std::cbrt(limits.j[k] / d3[k]));
   }
+  const bool sharp = std::min(curve_a, curve_j) < kSharp * straight;
+  const double share = sharp ? kSharpShare : kCurveShare;
+  v = std::min({straight, std::sqrt(share) * curve_a, std::cbrt(share) * curve_j});
   double a = kInfinity;
   for (int k = 0; k < kJoints; ++k) {
     if (d1[k] > 0.0) a = std::min(a, (limits.a[k] - d2[k] * v * v) / d1[k]);

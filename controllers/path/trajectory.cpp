@@ -14,6 +14,7 @@ namespace {
 constexpr double kLeastChord = 1e-9;    // m, points closer than this to the last are skipped
 constexpr double kLeastChain = 1e-12;   // m, below this there is no motion
 constexpr double kReversal = -0.5;      // cosine of the sharpest corner that is not a stop
+constexpr double kLongLeg = 3.0;        // windows, below it corners share their curvature
 constexpr double kChordAngle = 0.1;     // rad, longest chord of an arc
 constexpr double kChordsPerWindow = 4;  // chords of an arc in the half-width of its window
 
@@ -76,6 +77,9 @@ class Planner {
     bool rapid = false, rotary_only = false;
     bool stop_after = false, exact_corners = false;
     Joints tangent_begin, tangent_end;  // unit, scaled
+    double length = 0.0;                // m, scaled
+    double tolerance = 0.0;             // m
+    double feed = 0.0;                  // m/s along the scaled path
   };
 
   struct LegSpan {
@@ -108,6 +112,9 @@ class Planner {
       leg.rotary_only = step.head<kLinearJoints>().isZero(0.0);
       leg.tangent_begin = leg.tangent_end = step.normalized();
     }
+    leg.length = arc ? std::abs(arc->sweep) * arc->r_end : step.norm();
+    leg.tolerance = tolerance_of(move);
+    leg.feed = speed_along(leg, move);
     if (last_ && must_stop(*last_, leg)) finish_chain();
     LegSpan span{index, vertices_.size() - 1, 0, feed_limit(move, leg), leg.rapid};
     if (arc) {
@@ -142,8 +149,44 @@ class Planner {
     if (from.rapid != to.rapid || from.rotary_only != to.rotary_only) return true;
     const double cosine = from.tangent_end.dot(to.tangent_begin);
     if (cosine < kReversal) return true;
-    return (from.exact_corners || to.exact_corners) &&
-           (to.tangent_begin - from.tangent_end).norm() > options_.exact_corner;
+    const Joints turn = to.tangent_begin - from.tangent_end;
+    if (from.exact_corners || to.exact_corners) return turn.norm() > options_.exact_corner;
+    return stopping_is_faster(from, to, turn);
+  }
+
+  // Programmed speed along the scaled path, where it goes straight.
+  double speed_along(const Leg& leg, const Move& move) const {
+    const Joints d = leg.tangent_begin.cwiseAbs();
+    const FeedLimit feed = feed_limit(move, leg);
+    double v = limits_.v.cwiseQuotient(d.cwiseMax(1e-12)).minCoeff();
+    const double linear = d.head<kLinearJoints>().norm();
+    const double rotary = d.tail<kJoints - kLinearJoints>().norm();
+    if (linear > 0.0) v = std::min(v, feed.linear / linear);
+    if (rotary > 0.0) v = std::min(v, feed.rotary / rotary);
+    return v;
+  }
+
+  // Does rounding a lone corner between long legs take longer than stopping in it? Compares the
+  // time lost against passing at speed v: T for the stop, with T the time of the ramp from v to 0;
+  // T_c (v - v_c)/v + 2 w (1/v_c - 1/v) for passing a window of half-width w at v_c.
+  bool stopping_is_faster(const Leg& from, const Leg& to, const Joints& turn) const {
+    const double linear = turn.head<kLinearJoints>().norm();
+    const double w = 6.0 * std::min(from.tolerance, to.tolerance) / std::max(linear, 1e-12);
+    const double L = std::min(from.length, to.length);
+    if (L < kLongLeg * w) return false;
+    const Joints d = from.tangent_end.cwiseAbs().cwiseMax(to.tangent_begin.cwiseAbs());
+    const double a = limits_.a.cwiseQuotient(d.cwiseMax(1e-12)).minCoeff();
+    const double j = limits_.j.cwiseQuotient(d.cwiseMax(1e-12)).minCoeff();
+    const double peak = std::pow(L * std::sqrt(j) / 2.0, 2.0 / 3.0);  // rest to rest on the leg
+    const double v = std::min({from.feed, to.feed, peak});
+    const Joints bend = turn.cwiseAbs().cwiseMax(1e-12);
+    const double v_c = std::min(std::cbrt(limits_.j.cwiseQuotient(bend).minCoeff() * w * w),
+                                std::sqrt(limits_.a.cwiseQuotient(bend).minCoeff() * w));
+    if (v_c >= v) return false;
+    const auto ramp = [&](double dv) {
+      return dv * j > a * a ? dv / a + a / j : 2.0 * std::sqrt(dv / j);
+    };
+    return ramp(v) < ramp(v - v_c) * (v - v_c) / v + 2.0 * w * (1.0 / v_c - 1.0 / v);
   }
 
   FeedLimit feed_limit(const Move& move, const Leg& leg) const {

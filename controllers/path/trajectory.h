@@ -70,7 +70,8 @@ class Trajectory {
 /// Plans the motion of a program, without tool-centre-point control: the joint targets are
 /// `layout.joints(move.end_machine)`. The motion stops at the first and last move, dwell, M0, M1,
 /// tool change, after G61.1 moves, between rapid and feed, between rotary-only and other moves, at
-/// reversals (sharper than 120 degrees) and at the corners of G61.
+/// reversals (sharper than 120 degrees), at the corners of G61, and at corners of G64 that a stop
+/// passes sooner than a rounding within the tolerance.
 ///
 /// Laws: on every joint |dQ| <= v, |ddQ| <= a, |dddQ| <= j; the path speed of X Y Z (of the rotary
 /// joints for rotary-only moves) never exceeds the feed; the path stays within the tolerance of the

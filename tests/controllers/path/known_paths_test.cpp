@@ -103,9 +103,10 @@ TEST(Overrides, ScaleFeedsAndRapidsApart) {
   EXPECT_NEAR(rapid.plan(half_rapid, quick).duration(), 1.6, 0.01);
 }
 
-Program square_corner(double feed) {
+Program corner(double angle, double feed) {
   Program program;
-  program.line(0.05, 0, 0, feed).line(0.05, 0.05, 0, feed);
+  program.line(0.05, 0, 0, feed);
+  program.line(0.05 + 0.05 * std::cos(angle), 0.05 * std::sin(angle), 0, feed);
   return program;
 }
 
@@ -117,24 +118,32 @@ double distance_to_corner(const Trajectory& path) {
   return least;
 }
 
-TEST(Corner, IsRoundedByTheTolerance) {
-  for (const double tolerance : {1 * um, 10 * um, 100 * um}) {
-    PathOptions options;
-    options.tolerance = tolerance;
-    const double off = distance_to_corner(square_corner(0.1).plan(options));
-    EXPECT_LE(off, tolerance * (1 + kRounding));
-    EXPECT_GE(off, tolerance * 0.99);  // samples need not meet the closest point
-  }
-}
-
-TEST(Corner, IsFasterWithMoreTolerance) {
-  double last = 1e9;
+TEST(Corner, OfNinetyDegreesIsRoundedByTheTolerance) {
   for (const double tolerance : {1 * um, 10 * um, 100 * um, 1 * mm}) {
     PathOptions options;
     options.tolerance = tolerance;
-    const double time = square_corner(0.1).plan(options).duration();
-    EXPECT_LT(time, last);
-    last = time;
+    // at 1 mm/s rounding is faster than stopping
+    const double off = distance_to_corner(corner(90 * deg, 1 * mm).plan(options));
+    EXPECT_NEAR(off, tolerance, 0.01 * tolerance);  // samples need not meet the closest point
+  }
+}
+
+TEST(Corner, IsExactWhereAStopIsFasterThanRounding) {
+  const Trajectory path = corner(90 * deg, 0.1).plan();
+  EXPECT_EQ(path.chains().size(), 2U);
+  EXPECT_EQ(path.chains()[0].end[0], 0.05);
+}
+
+TEST(Corner, IsNotSlowerWithMoreTolerance) {
+  for (const double angle : {10 * deg, 45 * deg, 90 * deg}) {
+    double last = 1e9;
+    for (const double tolerance : {0.1 * um, 1 * um, 10 * um, 100 * um, 1 * mm}) {
+      PathOptions options;
+      options.tolerance = tolerance;
+      const double time = corner(angle, 0.05).plan(options).duration();
+      EXPECT_LE(time, last * 1.01) << angle << " " << tolerance;  // the choice is an estimate
+      last = time;
+    }
   }
 }
 
@@ -217,7 +226,7 @@ TEST(Circle, IsSlowedToItsAccelerationLimit) {
     if (std::abs(x.s - 0.03 - std::numbers::pi * R) < 0.5 * mm) middle = x.dQ_ref.norm();
   });
   EXPECT_LE(middle, std::sqrt(2.0 * R));
-  EXPECT_GE(middle, 0.75 * std::sqrt(2.0 * R));  // share of the acceleration and merging of speeds
+  EXPECT_GE(middle, 0.5 * std::sqrt(2.0 * R));  // share of the acceleration and merging of speeds
 }
 
 // The imposed curve of paper [G]: 150 um over 62 mm at 1394 mm/min, cut into blocks.

@@ -245,16 +245,40 @@ double chain_bound(const std::vector<Station>& path, double length, const JointL
   return time + 2.0 * (length - s) / std::sqrt(u);
 }
 
+// Least time from rest to rest over a distance on one axis.
+double rest_to_rest(double d, double v, double a, double j) {
+  const auto ramp = [&](double dv) {
+    return dv * j > a * a ? dv / a + a / j : 2.0 * std::sqrt(dv / j);
+  };
+  if (v * ramp(v) <= d) return d / v + ramp(v);
+  double low = 0.0, high = v;
+  for (int i = 0; i < 60; ++i) {
+    const double peak = 0.5 * (low + high);
+    (peak * ramp(peak) <= d ? low : high) = peak;
+  }
+  return low > 0.0 ? 2.0 * ramp(low) : 0.0;
+}
+
+double joint_bound(const Trajectory::Chain& chain, const JointLimits& limits) {
+  const Joints d = (chain.end - chain.begin).cwiseAbs();
+  double time = 0.0;
+  for (int k = 0; k < kJoints; ++k) {
+    time = std::max(time, rest_to_rest(d[k], limits.v[k], limits.a[k], limits.j[k]));
+  }
+  return time;
+}
+
 }  // namespace
 
 double time_bound(const Trajectory& trajectory, const std::vector<Move>& moves,
                   const JointLimits& limits, const PathOptions& options) {
   double time = 0.0;
   for (const Trajectory::Chain& chain : trajectory.chains()) {
-    time += chain.path.pieces.empty()
-                ? chain.duration
-                : chain_bound(stations(chain, moves, limits, options, trajectory.rotary_radius()),
-                              chain.path.length(), limits);
+    time += chain.path.pieces.empty() ? chain.duration
+                                      : std::max(joint_bound(chain, limits),
+                                                 chain_bound(stations(chain, moves, limits, options,
+                                                                      trajectory.rotary_radius()),
+                                                             chain.path.length(), limits));
   }
   return time;
 }

@@ -13,8 +13,9 @@
 namespace servomill::controllers::test {
 namespace {
 
-constexpr double kRounding = 1e-7;  // of a limit, rounding of sums over windows
-constexpr double kSkipped = 2e-9;   // m, blocks shorter than 1 nm are joined to the next
+constexpr double kRounding = 1e-7;    // of a limit, rounding of sums over windows
+constexpr double kBoundGrid = 0.005;  // of the bound, its grid of 500 points a chain
+constexpr double kSkipped = 2e-9;     // m, blocks shorter than 1 nm are joined to the next
 
 unsigned program_count() {
   const char* text = std::getenv("SERVOMILL_RANDOM_PROGRAMS");
@@ -106,7 +107,7 @@ TEST(RandomPrograms, KeepEveryLimitAndReachTheEnd) {
   const JointLimits limits = machine_limits();
   const PathOptions options;
   const unsigned count = program_count();
-  double sum = 0.0, largest = 0.0;
+  double sum = 0.0, largest = 0.0, time = 0.0, bounds = 0.0;
   std::size_t moves = 0;
   Extremes all;
   for (unsigned seed = 0; seed < count; ++seed) {
@@ -129,7 +130,9 @@ TEST(RandomPrograms, KeepEveryLimitAndReachTheEnd) {
     const auto nearly = path.at(path.duration() - 1e-7, cursor);
     EXPECT_LE((nearly.Q_ref - end.Q_ref).norm(), 1e-12);
     const double bound = time_bound(path, program.moves(), limits, options);
-    EXPECT_GE(path.duration(), bound * 0.999);
+    EXPECT_GE(path.duration(), bound * (1.0 - kBoundGrid));
+    time += path.duration();
+    bounds += bound;
     sum += path.duration() / bound;
     largest = std::max(largest, path.duration() / bound);
     moves += program.moves().size();
@@ -140,10 +143,10 @@ TEST(RandomPrograms, KeepEveryLimitAndReachTheEnd) {
     if (HasFailure()) break;
   }
   fmt::print(
-      "{} programs, {} moves: motion time / time-optimal without jerk limit: mean {:.3f}, "
-      "largest {:.3f}\nlargest use of a {:.6f}, j {:.6f}, j from differences {:.6f}, tolerance "
+      "{} programs, {} moves: motion time / lower bound: mean {:.3f}, largest {:.3f}, of "
+      "the sums {:.3f}\nlargest use of a {:.6f}, j {:.6f}, j from differences {:.6f}, tolerance "
       "{:.6f}\n",
-      count, moves, sum / count, largest, all.a, all.j, all.fd_j, all.deviation);
+      count, moves, sum / count, largest, time / bounds, all.a, all.j, all.fd_j, all.deviation);
 }
 
 }  // namespace
