@@ -7,9 +7,6 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr double kCurveShare = 0.3;
-constexpr double kSharpShare = 0.3;
-constexpr double kSharp = 0.3;
 constexpr double kSimilar = 1.1;        // speeds on curves that are not worth a change
 constexpr double kSimilarFeed = 1.001;  // the same for programmed speeds
 constexpr double kCrossShareJ = 0.7;    // of the jerk left, for 3 q'' v a
@@ -17,7 +14,7 @@ constexpr double kCrossShareJ = 0.7;    // of the jerk left, for 3 q'' v a
 }  // namespace
 
 StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimits& limits,
-                             const FeedLimit& feed) {
+                             const FeedLimit& feed, double curve_share) {
   // q' is a parabola within the hull of three control points, q'' a line, q''' constant
   const Joints &t0 = piece.c1, t1 = piece.c1 + piece.c2 * (0.5 * h);
   const Joints t2 = piece.c1 + piece.c2 * h + piece.c3 * (0.5 * h * h);
@@ -42,9 +39,7 @@ StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimit
     if (d2[k] > 0.0) curve_a = std::min(curve_a, std::sqrt(limits.a[k] / d2[k]));
     if (d3[k] > 0.0) curve_j = std::min(curve_j, std::cbrt(limits.j[k] / d3[k]));
   }
-  const bool sharp = std::min(curve_a, curve_j) < kSharp * straight;
-  const double share = sharp ? kSharpShare : kCurveShare;
-  v = std::min({straight, std::sqrt(share) * curve_a, std::cbrt(share) * curve_j});
+  v = std::min({straight, std::sqrt(curve_share) * curve_a, std::cbrt(curve_share) * curve_j});
   double a = kInfinity;
   for (int k = 0; k < kJoints; ++k) {
     if (d1[k] > 0.0) a = std::min(a, (limits.a[k] - d2[k] * v * v) / d1[k]);

@@ -21,9 +21,11 @@ struct FeedLimit {
 ///
 ///   |q'| v <= V,   |q''| v^2 + |q'| a <= A,   |q'''| v^3 + 3 |q''| v a + |q'| j <= J      (1)
 ///
-/// The speed may use a fixed share of A and J for the curvature; a and j get what is left.
+/// @param curve_share  of A and J that the speed may spend on curvature (0 to 1); a and j get what
+/// is
+///                     left. Long curves gain from a large one, dense corners from a small one.
 StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimits& limits,
-                             const FeedLimit& feed);
+                             const FeedLimit& feed, double curve_share);
 
 /// Joins neighbours whose speeds differ little under their least limits, so that the speed does not
 /// follow every small change of curvature or direction.

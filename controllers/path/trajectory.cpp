@@ -1,6 +1,7 @@
 #include "controllers/path/trajectory.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <optional>
@@ -11,11 +12,12 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr double kLeastChord = 1e-9;    // m, points closer than this to the last are skipped
-constexpr double kLeastChain = 1e-12;   // m, below this there is no motion
-constexpr double kReversal = -0.5;      // cosine of the sharpest corner that is not a stop
-constexpr double kLongLeg = 3.0;        // windows, below it corners share their curvature
-constexpr double kChordAngle = 0.1;     // rad, longest chord of an arc
+constexpr double kLeastChord = 1e-9;   // m, points closer than this to the last are skipped
+constexpr double kLeastChain = 1e-12;  // m, below this there is no motion
+constexpr double kReversal = -0.5;     // cosine of the sharpest corner that is not a stop
+constexpr double kLongLeg = 3.0;       // windows, below it corners share their curvature
+constexpr std::array<double, 3> kCurveShares = {0.25, 0.5, 0.8};  // tried on each chain
+constexpr double kChordAngle = 0.1;                               // rad, longest chord of an arc
 constexpr double kChordsPerWindow = 4;  // chords of an arc in the half-width of its window
 
 }  // namespace
@@ -258,8 +260,7 @@ class Planner {
       chain.begin = out_.end_;
       chain.end = Q_;
       chain.path = smooth(std::move(vertices_));
-      chain.limits = limits_of(chain.path);
-      chain.law = plan_speed(chain.limits);
+      plan_fastest(chain);
       chain.duration = chain.law.duration;
       for (const LegSpan& span : spans_) {
         chain.spans.push_back({chain.path.s[span.first], chain.path.s[span.last], span.move});
@@ -280,7 +281,18 @@ class Planner {
     spans_.back().last = last;
   }
 
-  std::vector<StretchLimits> limits_of(const SmoothPath& path) const {
+  void plan_fastest(Chain& chain) const {
+    for (const double share : kCurveShares) {
+      std::vector<StretchLimits> limits = limits_of(chain.path, share);
+      TimeLaw law = plan_speed(limits);
+      if (!chain.limits.empty() && law.duration >= chain.law.duration) continue;
+      chain.limits = std::move(limits);
+      chain.law = std::move(law);
+      if (chain.path.pieces.size() == 1) return;  // a straight line has no curvature
+    }
+  }
+
+  std::vector<StretchLimits> limits_of(const SmoothPath& path, double curve_share) const {
     JointLimits rapid = limits_;
     rapid.v *= options_.rapid_override;
     std::vector<StretchLimits> out;
@@ -290,7 +302,8 @@ class Planner {
       const CubicPiece& piece = path.pieces[i];
       while (k + 1 < spans_.size() && piece.segment >= spans_[k].last) ++k;
       const double h = path.end_of(i) - piece.s;
-      out.push_back(stretch_limits(piece, h, spans_[k].rapid ? rapid : limits_, spans_[k].feed));
+      out.push_back(
+          stretch_limits(piece, h, spans_[k].rapid ? rapid : limits_, spans_[k].feed, curve_share));
       out.back().end = path.end_of(i);
     }
     return merge_similar(out);

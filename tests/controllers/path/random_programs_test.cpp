@@ -19,7 +19,7 @@ constexpr double kSkipped = 2e-9;     // m, blocks shorter than 1 nm are joined 
 
 unsigned program_count() {
   const char* text = std::getenv("SERVOMILL_RANDOM_PROGRAMS");
-  return text != nullptr ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : 300U;
+  return text != nullptr ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : 150U;
 }
 
 double tolerance_of(const Move& move, const PathOptions& options) {
