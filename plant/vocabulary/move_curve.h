@@ -1,0 +1,37 @@
+/// A canonical move as a curve in machine coordinates: straight in all axes, or an arc or helix.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "plant/vocabulary/axes.h"
+#include "plant/vocabulary/move.h"
+
+namespace servomill {
+
+/// Position over t in [0, 1]; t is proportional to the arc length (for arcs whose end radius
+/// differs from the first one, to the angle).
+class MoveCurve {
+ public:
+  MoveCurve() = default;
+  /// @param from  machine coordinates where the move begins (6; m, rad)
+  /// @pre is_motion(move.kind)
+  MoveCurve(const AxisWords& from, const Move& move);
+
+  AxisWords at(double t) const;
+
+  /// Length of the path of X, Y, Z (m).
+  double length() const { return length_; }
+
+  /// t in [0, 1] of the point of the curve of X, Y, Z that is closest to p (3; m). For helices the
+  /// axial distance does not count in the choice of the angle.
+  double closest(const Eigen::Vector3d& p) const;
+
+ private:
+  AxisWords from_ = AxisWords::Zero(), to_ = AxisWords::Zero();
+  bool is_arc_ = false;
+  int u_ = 0, v_ = 1;  // axes of the plane of an arc
+  double cu_ = 0.0, cv_ = 0.0, r0_ = 0.0, r1_ = 0.0, phi0_ = 0.0, sweep_ = 0.0;
+  double length_ = 0.0;
+};
+
+}  // namespace servomill

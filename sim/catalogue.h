@@ -1,0 +1,17 @@
+/// What there is, as text for people: derived from the tables that the program itself uses.
+#pragma once
+
+#include <string>
+
+namespace servomill::sim {
+
+/// Every strategy with its keys, units, defaults and words.
+std::string describe_strategies();
+
+/// Every quantity that a comparison can hold.
+std::string describe_quantities();
+
+/// `title` of a scenario or `name` of a machine; the fault if it cannot be read.
+std::string title_of(const std::string& path);
+
+}  // namespace servomill::sim

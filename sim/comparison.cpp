@@ -1,0 +1,288 @@
+#include "sim/comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "sim/scenario.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUmPerMm = 1000.0;
+constexpr double kMsPerS = 1000.0;
+
+constexpr std::array<QuantityInfo, 9> kQuantities = {{
+    {"imposed_curve_residual", "um",
+     "trajectory (scale) minus that of the base case minus the imposed displacement, at equal s",
+     true, "XYZ", true, true, true},
+    {"brought_out", "%", "1 - largest imposed_curve_residual / largest imposed displacement", true,
+     "XYZ", false, true, true},
+    {"response_time", "ms",
+     "delay that explains the imposed_curve_residual best, by least squares over its samples", true,
+     "XYZ", false, true, true},
+    {"trajectory_difference", "um", "trajectory (scale) minus that of the base case, at equal s",
+     true, "XYZ", true, true, false},
+    {"following_error", "um", "set point minus position that the NC reads", true, "XYZ", true,
+     false, false},
+    {"tool_deviation", "um", "true minus nominal tool centre point at equal s, in the workpiece",
+     true, "XYZ", true, false, false},
+    {"contour_error", "um", "distance of the true tool centre point to the nominal path", false, "",
+     true, false, false},
+    {"cycle_time", "s", "duration of the program that the NC runs", false, "", false, false, false},
+    {"blocks", "1", "motion blocks of the program that the NC runs", false, "", false, false,
+     false},
+}};
+
+// Reads a column of another case at a given arc length; s is asked for in rising order.
+class AlongPath {
+ public:
+  AlongPath(const Series& series, std::size_t column)
+      : series_(series), column_(column), s_(*series.column("s")) {}
+
+  double at(double s) {
+    const std::size_t rows = series_.rows();
+    while (row_ + 1 < rows && series_.at(row_ + 1, s_) <= s) ++row_;
+    if (row_ + 1 == rows) return series_.at(row_, column_);
+    const double s0 = series_.at(row_, s_), s1 = series_.at(row_ + 1, s_);
+    const double weight = std::clamp((s - s0) / (s1 - s0), 0.0, 1.0);
+    return (1.0 - weight) * series_.at(row_, column_) + weight * series_.at(row_ + 1, column_);
+  }
+
+ private:
+  const Series& series_;
+  std::size_t column_, s_;
+  std::size_t row_ = 0;
+};
+
+// The samples of a case that a quantity looks at: feed motion in the sections asked for.
+std::vector<std::size_t> samples_of(const CaseData& one, const std::vector<std::string>& sections) {
+  const Series& series = *one.servo;
+  const std::size_t rapid = *series.column("rapid"), section = *series.column("section");
+  std::vector<bool> wanted(one.sections.size(), sections.empty());
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (std::find(sections.begin(), sections.end(), one.sections[i]) != sections.end()) {
+      wanted[i] = true;
+    }
+  }
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < series.rows(); ++row) {
+    const auto index = static_cast<std::size_t>(series.at(row, section));
+    if (series.at(row, rapid) == 0.0 && index < wanted.size() && wanted[index]) rows.push_back(row);
+  }
+  return rows;
+}
+
+double statistic_of(const std::string& statistic, const std::vector<double>& values) {
+  if (values.empty()) return kNone;
+  const auto n = static_cast<double>(values.size());
+  if (statistic == "mean" || statistic == "rms") {
+    double sum = 0.0;
+    for (const double v : values) sum += statistic == "mean" ? v : v * v;
+    return statistic == "mean" ? sum / n : std::sqrt(sum / n);
+  }
+  if (statistic == "range") {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return *high - *low;
+  }
+  double largest = 0.0;  // max: by magnitude; a NaN is not swallowed
+  for (const double v : values) {
+    if (!(std::abs(v) <= largest)) largest = std::abs(v);
+  }
+  return largest;
+}
+
+// meas(case) - meas(base) at equal s, um
+std::vector<double> trajectory_difference(const CaseData& one, const CaseData& base, char axis,
+                                          const std::vector<std::size_t>& rows) {
+  const auto column = one.servo->column("meas_linear", axis);
+  const auto base_column = base.servo->column("meas_linear", axis);
+  if (!column || !base_column || base.servo->rows() == 0) return {};
+  const std::size_t s = *one.servo->column("s");
+  AlongPath nominal(*base.servo, *base_column);
+  std::vector<double> out;
+  out.reserve(rows.size());
+  for (const std::size_t row : rows) {
+    out.push_back((one.servo->at(row, *column) - nominal.at(one.servo->at(row, s))) * kUmPerMm);
+  }
+  return out;
+}
+
+std::vector<double> column_of(const CaseData& one, std::string_view name, char label,
+                              const std::vector<std::size_t>& rows) {
+  const auto column = one.servo->column(name, label);
+  if (!column) return {};
+  std::vector<double> out;
+  out.reserve(rows.size());
+  for (const std::size_t row : rows) out.push_back(one.servo->at(row, *column));
+  return out;
+}
+
+// tau with residual = -tau d(imposed)/dt in the least-squares sense, ms
+double response_time(const CaseData& one, char axis, const std::vector<std::size_t>& rows,
+                     const std::vector<double>& residual) {
+  const auto imposed = one.servo->column("imposed_linear", axis);
+  const std::size_t time = *one.servo->column("time");
+  if (!imposed || residual.size() != rows.size()) return kNone;
+  double re = 0.0, ee = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::size_t row = rows[i];
+    if (row == 0 || row + 1 >= one.servo->rows()) continue;
+    const double de = (one.servo->at(row + 1, *imposed) - one.servo->at(row - 1, *imposed)) /
+                      (one.servo->at(row + 1, time) - one.servo->at(row - 1, time));
+    re += residual[i] * de;
+    ee += de * de;
+  }
+  return ee > 0.0 ? -re / ee * kMsPerS : kNone;
+}
+
+double evaluate(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
+  if (spec.name == "cycle_time") return one.duration;
+  if (spec.name == "blocks") return one.blocks;
+  if (!one.finished || (base != nullptr && !base->finished)) return kNone;
+  const auto rows = samples_of(one, spec.sections);
+  if (spec.name == "following_error") {
+    return statistic_of(spec.statistic, column_of(one, "following_error_linear", spec.axis, rows));
+  }
+  if (spec.name == "tool_deviation") {
+    return statistic_of(spec.statistic, column_of(one, "tool_deviation", spec.axis, rows));
+  }
+  if (spec.name == "contour_error") {
+    return statistic_of(spec.statistic, column_of(one, "contour_error", '\0', rows));
+  }
+  assert(base != nullptr);
+  std::vector<double> difference = trajectory_difference(one, *base, spec.axis, rows);
+  if (spec.name == "trajectory_difference") return statistic_of(spec.statistic, difference);
+
+  const std::vector<double> imposed = column_of(one, "imposed_linear", spec.axis, rows);
+  if (imposed.size() != difference.size()) return kNone;
+  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= imposed[i];
+  if (spec.name == "imposed_curve_residual") return statistic_of(spec.statistic, difference);
+  if (spec.name == "response_time") return response_time(one, spec.axis, rows, difference);
+  assert(spec.name == "brought_out");
+  return 100.0 * (1.0 - statistic_of("max", difference) / statistic_of("max", imposed));
+}
+
+const CaseData* find(std::span<const CaseData> cases, std::string_view name) {
+  for (const CaseData& one : cases) {
+    if (one.name == name) return &one;
+  }
+  return nullptr;
+}
+
+std::string number(double value) {
+  if (!std::isfinite(value)) return "-";
+  const double size = std::abs(value);
+  const int decimals = size >= 100.0 ? 1 : size >= 10.0 ? 2 : size >= 0.1 ? 3 : 4;
+  return fmt::format("{:.{}f}", value, decimals);
+}
+
+std::string json_text(const std::string& text) {
+  return text.empty() ? "null" : fmt::format("\"{}\"", json_escaped(text));
+}
+
+}  // namespace
+
+std::span<const QuantityInfo> quantities() { return kQuantities; }
+
+std::vector<std::string_view> quantity_names() {
+  std::vector<std::string_view> out;
+  for (const QuantityInfo& info : kQuantities) out.push_back(info.name);
+  return out;
+}
+
+const QuantityInfo& quantity_info(std::string_view name) {
+  const auto found = std::find_if(kQuantities.begin(), kQuantities.end(),
+                                  [&](const QuantityInfo& info) { return info.name == name; });
+  assert(found != kQuantities.end());
+  return *found;
+}
+
+std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
+                                   std::span<const CaseData> cases) {
+  std::vector<ComparisonRow> rows;
+  for (const QuantitySpec& spec : specs) {
+    const CaseData* base = spec.base.empty() ? nullptr : find(cases, spec.base);
+    for (const std::string& name : spec.cases) {
+      const CaseData* one = find(cases, name);
+      ComparisonRow row;
+      row.case_name = name;
+      row.quantity = spec.name;
+      if (spec.axis != '\0') row.axis = std::string(1, spec.axis);
+      row.statistic = spec.statistic;
+      row.sections = fmt::format("{}", fmt::join(spec.sections, ", "));
+      row.unit = quantity_info(spec.name).unit;
+      row.reference = spec.reference;
+      row.kind = spec.kind;
+      const bool missing = one == nullptr || (!spec.base.empty() && base == nullptr);
+      row.value = missing ? kNone : evaluate(spec, *one, base);
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+std::string format_table(std::span<const ComparisonRow> rows) {
+  using Line = std::array<std::string, 8>;
+  std::vector<Line> lines = {
+      {"quantity", "axis", "statistic", "section", "case", "value", "paper", "kind"}};
+  for (const ComparisonRow& row : rows) {
+    lines.push_back({row.quantity, row.axis, row.statistic, row.sections, row.case_name,
+                     number(row.value) + " " + (row.unit == "1" ? "" : row.unit), row.reference,
+                     row.kind});
+  }
+  std::array<std::size_t, 8> width{};
+  for (const Line& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i) width[i] = std::max(width[i], line[i].size());
+  }
+  std::string out;
+  std::string last_group;
+  for (std::size_t n = 0; n < lines.size(); ++n) {
+    Line& line = lines[n];
+    const std::string group = line[0] + line[1] + line[2] + line[3];
+    if (group == last_group) {
+      for (std::size_t i = 0; i < 4; ++i) line[i].clear();  // said once a group
+    }
+    last_group = group;
+    std::string text;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      text += i == 5 ? fmt::format("{:>{}}  ", line[i], width[i])
+                     : fmt::format("{:<{}}  ", line[i], width[i]);
+    }
+    text.erase(text.find_last_not_of(' ') + 1);
+    out += text + '\n';
+    if (n == 0) out += std::string(text.size(), '-') + '\n';
+  }
+  return out;
+}
+
+std::string json_escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < 0x20) {
+      out += fmt::format("\\u{:04x}", static_cast<int>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string to_json(const ComparisonRow& row) {
+  return fmt::format(
+      R"({{"case": {}, "quantity": {}, "axis": {}, "statistic": {}, "sections": {}, "value": {}, )"
+      R"("unit": {}, "reference": {}, "kind": {}}})",
+      json_text(row.case_name), json_text(row.quantity), json_text(row.axis),
+      json_text(row.statistic), json_text(row.sections),
+      std::isfinite(row.value) ? fmt::format("{:.9g}", row.value) : "null", json_text(row.unit),
+      json_text(row.reference), json_text(row.kind));
+}
+
+}  // namespace servomill::sim

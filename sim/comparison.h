@@ -1,0 +1,63 @@
+/// Comparison of cases along the programmed path: what a scenario asks of its recorded signals.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/series.h"
+
+namespace servomill::sim {
+
+struct QuantitySpec;
+
+/// A quantity that a scenario may ask for.
+struct QuantityInfo {
+  std::string_view name;
+  std::string_view unit;
+  std::string_view help;
+  bool needs_axis = false;
+  std::string_view axes = {};  // letters allowed
+  bool has_statistic = false;
+  bool needs_base = false;     // another case to compare with
+  bool needs_imposed = false;  // the scenario's imposed error model
+};
+
+std::span<const QuantityInfo> quantities();
+std::vector<std::string_view> quantity_names();
+const QuantityInfo& quantity_info(std::string_view name);
+
+/// What is known of one case that ran.
+struct CaseData {
+  std::string name;
+  const Series* servo = nullptr;
+  std::vector<std::string> sections;  // of the original program
+  double duration = 0.0;              // s, of the program that the NC ran
+  double blocks = 0.0;                // motion blocks of that program
+  bool finished = true;
+};
+
+/// One line of the printed comparison.
+struct ComparisonRow {
+  std::string case_name, quantity, axis, statistic, unit, reference, kind;
+  std::string sections;
+  double value = 0.0;  // NaN where the case stopped or the samples are missing
+};
+
+/// Evaluates all quantities, in the order of the scenario. Cases are compared at equal arc length
+/// on the original path, samples of rapid moves left out.
+std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
+                                   std::span<const CaseData> cases);
+
+/// The table as text, aligned.
+std::string format_table(std::span<const ComparisonRow> rows);
+
+/// Text as it may stand between the quotes of a JSON string.
+std::string json_escaped(std::string_view text);
+
+/// One JSON object with the keys case, quantity, axis, statistic, sections, value, unit, reference,
+/// kind; null where there is none.
+std::string to_json(const ComparisonRow& row);
+
+}  // namespace servomill::sim

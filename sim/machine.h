@@ -1,0 +1,62 @@
+/// Everything a scenario says about a machine: plant, NC, encoders. SI, complete, checked.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "controllers/servo/cascade.h"
+#include "plant/drives/feed_drive.h"
+#include "plant/kinematics/chain.h"
+#include "plant/sensing/encoder.h"
+#include "plant/vocabulary/axes.h"
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/ticks.h"
+
+namespace servomill::sim {
+
+/// Periods of the loops in base ticks; every one is a whole multiple of the base period.
+struct LoopPeriods {
+  double base = 10e-6;  // s
+  Tick position = 20;
+  Tick velocity = 20;
+  Tick current = 10;
+  double seconds(Tick ticks) const { return static_cast<double>(ticks) * base; }
+};
+
+/// Nominal-position filter of the NC: length in position periods; 0: none.
+struct NominalFilter {
+  bool triangle = false;
+  Tick length = 0;
+};
+
+struct NcSettings {
+  LoopPeriods periods;
+  std::array<controllers::CascadeParams, kJoints> cascade;
+  Joints v_max = Joints::Zero(), a_max = Joints::Zero(), j_max = Joints::Zero();  // SI per joint
+  Joints rapid = Joints::Zero();                                                  // m/s, rad/s
+  Joints lower = Joints::Zero(), upper = Joints::Zero();                          // m, rad; travel
+  double path_tolerance = 10e-6;         // m, for G64 without P
+  double rotary_tolerance = 1e-4;        // rad
+  double following_error_limit = 10e-3;  // m or rad; beyond it the machine stops
+  NominalFilter filter;
+  std::array<Place, kJoints> gain_place;  // where Kv or the axis' own was written, for messages
+  bool check_stability = true;            // refuse gains with which the linear loop diverges
+};
+
+struct MachineSettings {
+  std::string name;
+  plant::MachineChain chain;
+  std::array<plant::FeedDriveParams, kJoints> drives;
+  std::array<plant::Encoder, kJoints> scale;  // position encoder of the slide or table
+  std::array<plant::Encoder, kJoints> motor;  // rad
+  Tick scale_delay = 0;
+  NcSettings nc;
+
+  std::array<bool, kJoints> present() const {
+    std::array<bool, kJoints> out{};
+    for (int j = 0; j < kJoints; ++j) out[static_cast<std::size_t>(j)] = chain.layout.has(j);
+    return out;
+  }
+};
+
+}  // namespace servomill::sim

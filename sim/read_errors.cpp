@@ -1,0 +1,134 @@
+#include "sim/read_errors.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim {
+namespace {
+
+using plant::ErrorFunction;
+using plant::ErrorName;
+
+// Units of one error: of its value (um or urad) and of its axis' coordinate (mm or deg).
+struct Units {
+  bool value_is_length, travel_is_length;
+  std::string value(std::string_view what) const {
+    return fmt::format("{}_{}", what, value_is_length ? "um" : "urad");
+  }
+  std::string travel(std::string_view what) const {
+    return fmt::format("{}_{}", what, travel_is_length ? "mm" : "deg");
+  }
+  Quantity value_quantity() const { return value_is_length ? kLength : kAngle; }
+  Quantity travel_quantity() const { return travel_is_length ? kLength : kAngle; }
+};
+
+Units units_of(const ErrorName& name) { return {is_linear(name.direction), is_linear(name.axis)}; }
+
+ErrorFunction read_harmonic(Reader& table, const Units& units) {
+  const double amplitude = table.real(units.value("amplitude"), units.value_quantity());
+  const double period = table.real(units.travel("period"), units.travel_quantity(), {above(0.0)});
+  const double phase = table.real_or("phase_deg", 0.0, kAngle);
+  return period > 0.0 ? plant::harmonic(amplitude, period, phase) : ErrorFunction{};
+}
+
+// Coefficients c_n in value unit per travel unit^n; SI inside.
+ErrorFunction read_polynomial(Reader& table, const Units& units) {
+  const std::string key = units.value("polynomial");
+  auto coefficients = table.reals(key, units.value_quantity());
+  const double travel = units.travel_is_length ? mm : deg;
+  double scale = 1.0;
+  for (double& c : coefficients) {
+    c *= scale;
+    scale /= travel;
+  }
+  return plant::polynomial(std::move(coefficients));
+}
+
+ErrorFunction read_table(Reader& table, const Units& units) {
+  auto at = table.reals(units.travel("at"), units.travel_quantity());
+  auto values = table.reals(units.value("value"), units.value_quantity());
+  if (const auto fault = plant::table_fault(at, values)) {
+    table.fault(*fault);
+    return {};
+  }
+  return plant::linear_table(std::move(at), std::move(values));
+}
+
+ErrorFunction read_function(Reader& table, const Units& units) {
+  ErrorFunction sum;
+  if (table.has(units.value("constant"))) {
+    sum = sum + plant::constant(table.real(units.value("constant"), units.value_quantity()));
+  }
+  if (table.has(units.value("polynomial"))) sum = sum + read_polynomial(table, units);
+  if (table.has("harmonic")) {
+    if (table.is("harmonic", Value::Type::list)) {
+      for (Reader& one : table.tables("harmonic")) sum = sum + read_harmonic(one, units);
+    } else {
+      Reader one = table.table("harmonic");
+      sum = sum + read_harmonic(one, units);
+    }
+  }
+  if (table.has("table")) {
+    Reader points = table.table("table");
+    sum = sum + read_table(points, units);
+  }
+  return sum;
+}
+
+// A location error: a number with its unit in a text, or a table with one key.
+double read_location(Reader& model, std::string_view key, const ErrorName& name) {
+  const Units units = units_of(name);
+  if (!model.is(key, Value::Type::table)) return model.real(key, units.value_quantity());
+  Reader table = model.table(key);
+  if (!units.value_is_length && table.has("um_per_m"))
+    return table.real("um_per_m", kNumber) * urad;
+  return table.real(units.value("constant"), units.value_quantity());
+}
+
+}  // namespace
+
+plant::ErrorModel read_errors(Reader& model, const JointLayout& layout) {
+  plant::ErrorModel errors;
+  std::map<std::string, std::string> aliases;
+  std::set<std::string> known;
+  for (const std::string& key : model.keys()) {
+    std::optional<ErrorName> name;
+    try {
+      name = plant::parse_error_name(key, layout, {});
+    } catch (const InputError& error) {
+      model.raw(key);
+      model.fault(key, error.faults().front().message);
+      continue;
+    }
+    known.insert(key);
+    if (name->is_location) {
+      errors.location(*name) = read_location(model, key, *name);
+    } else if (model.is(key, Value::Type::text)) {
+      aliases[key] = model.text(key);
+    } else {
+      Reader table = model.table(key);
+      errors.component(*name) = read_function(table, units_of(*name));
+    }
+  }
+  for (const auto& [key, other] : aliases) {
+    const auto target = plant::error_name_of(other);
+    if (!target || !known.contains(other) || aliases.contains(other) || target->is_location) {
+      model.fault(key, "must be the name of an error of this model that has a function of its own");
+      continue;
+    }
+    const auto name = *plant::error_name_of(key);
+    if (units_of(name).value_is_length != units_of(*target).value_is_length ||
+        units_of(name).travel_is_length != units_of(*target).travel_is_length) {
+      model.fault(key, "must name an error of the same unit over an axis of the same kind");
+      continue;
+    }
+    errors.component(name) = errors.component(*target);
+  }
+  return errors;
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,13 @@
+/// Reads error models of a scenario.
+#pragma once
+
+#include "plant/geometry/error_model.h"
+#include "sim/config/reader.h"
+
+namespace servomill::sim {
+
+/// One named model: ISO 230-1 names, each a function of the axis' coordinate or the name of another
+/// error of this model whose function it shares.
+plant::ErrorModel read_errors(Reader& model, const JointLayout& layout);
+
+}  // namespace servomill::sim

@@ -1,0 +1,17 @@
+/// Text files of the user.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "plant/vocabulary/input_error.h"
+
+namespace servomill::sim {
+
+/// The bytes of a file.
+/// @param at    where the file was named; without a file name: the file itself
+/// @param what  "program", "machine", ...
+/// @throws InputError if it cannot be read
+std::string read_file(const std::string& path, const Place& at, std::string_view what);
+
+}  // namespace servomill::sim

@@ -1,0 +1,209 @@
+#include "sim/read_machine.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "plant/kinematics/structure.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr std::array<std::string_view, 2> kPresets = {"CC422", "CC424"};
+constexpr std::array<std::string_view, 2> kDriveKinds = {"two_mass", "rigid"};
+constexpr std::array<std::string_view, 3> kFilters = {"none", "mean", "triangle"};
+constexpr std::array<std::string_view, 2> kSenses = {"tool", "table"};
+
+struct Preset {
+  double position, velocity, current;  // s
+};
+// DOMAIN 1.1: position / speed / current
+constexpr std::array<Preset, 2> kPresetPeriods = {
+    {{1.8e-3, 0.6e-3, 0.1e-3}, {0.2e-3, 0.2e-3, 0.1e-3}}};
+
+Tick period(Reader& nc, std::string_view key, double fallback, double base) {
+  const double seconds = nc.real_or(key, fallback, kTime, {above(0.0)});
+  const auto ticks = whole_ticks(seconds, base);
+  if (ticks && *ticks > 0) return *ticks;
+  if (nc.has(key)) {
+    nc.fault(key, fmt::format("must be a whole multiple of base_period_us = {:g}", base / us));
+  } else if (nc.faults() == 0) {
+    nc.fault("base_period_us",
+             fmt::format("must divide the preset's {} of {:g} us", key, seconds / us));
+  }
+  return 1;
+}
+
+LoopPeriods read_periods(Reader& nc) {
+  LoopPeriods periods;
+  periods.base = nc.real_or("base_period_us", 10 * us, kTime, {above(0.0)});
+  const Preset& preset = kPresetPeriods[nc.choice_or("preset", 1, kPresets)];
+  if (!(periods.base > 0.0)) return periods;
+  periods.position = period(nc, "position_period_us", preset.position, periods.base);
+  periods.velocity = period(nc, "velocity_period_us", preset.velocity, periods.base);
+  periods.current = period(nc, "current_period_us", preset.current, periods.base);
+  return periods;
+}
+
+NominalFilter read_filter(Reader& nc, const LoopPeriods& periods) {
+  NominalFilter filter;
+  const std::size_t kind = nc.choice_or("nominal_filter", 0, kFilters);
+  const double length = nc.real_or("nominal_filter_ms", 0.0, kTime, {at_least(0.0)});
+  if (kind == 0) return filter;
+  filter.triangle = kind == 2;
+  filter.length = static_cast<Tick>(std::lround(length / periods.seconds(periods.position)));
+  if (filter.length < 1) nc.fault("nominal_filter", "needs nominal_filter_ms of a position period");
+  return filter;
+}
+
+plant::FeedDriveParams read_drive(Reader& axis, bool linear) {
+  const AxisQuantities& q = quantities_of(linear);
+  plant::FeedDriveParams p;
+  p.kind = static_cast<plant::DriveKind>(axis.choice_or("drive", 0, kDriveKinds));
+  p.r = linear ? axis.real("lead_mm", kLength, {above(0.0)}) / (2.0 * std::numbers::pi)
+               : axis.real_or("ratio", 1.0, kNumber, {above(0.0)});
+  p.J = axis.real("motor_inertia", kInertia, {above(0.0)});
+  p.M = axis.real("load", q.load, {above(0.0)});
+  if (p.kind == plant::DriveKind::two_mass) {
+    p.k = axis.real("stiffness", q.stiffness, {above(0.0)});
+    p.c = axis.real("damping", q.damping, {at_least(0.0)});
+  } else {  // allowed, so that a two-mass axis can be made rigid by one word
+    p.k = axis.real_or("stiffness", 1.0, q.stiffness, {above(0.0)});
+    p.c = axis.real_or("damping", 0.0, q.damping, {at_least(0.0)});
+  }
+  p.b_motor = axis.real_or("motor_friction", 0.0, kTorsionalDamping, {at_least(0.0)});
+  p.b_load = axis.real_or("slide_friction", 0.0, q.damping, {at_least(0.0)});
+  p.F_load = axis.real_or("constant_load", 0.0, q.force);
+  p.Kt = axis.real("Kt", kTorqueConstant, {above(0.0)});
+  p.i_max = axis.real("i_max_A", kCurrent, {above(0.0)});
+  p.T_i = axis.real_or("current_time_constant_ms", 0.0, kTime, {at_least(0.0)});
+  return p;
+}
+
+controllers::CascadeParams read_cascade(Reader& axis, Reader& nc, const plant::FeedDriveParams& p,
+                                        const LoopPeriods& periods) {
+  controllers::CascadeParams c;
+  const double Kv = nc.real("Kv", kRate, {above(0.0)});
+  c.Kv = axis.real_or("Kv", Kv, kRate, {above(0.0)});
+  c.kvf = nc.real_or("velocity_feed_forward", 1.0, kNumber, {at_least(0.0)});
+  c.kaf = nc.real_or("acceleration_feed_forward", 1.0, kNumber, {at_least(0.0)});
+  c.J = p.J_total();
+  c.Kp = axis.real("velocity_bandwidth", kAngularVelocity, {above(0.0)}) * c.J;
+  const double Tn = axis.real_or("velocity_reset_time_ms", 0.0, kTime, {at_least(0.0)});
+  c.Ki = Tn > 0.0 ? c.Kp / Tn : 0.0;
+  c.r = p.r;
+  c.Kt = p.Kt;
+  c.i_max = p.i_max;
+  c.Tv = periods.seconds(periods.velocity);
+  return c;
+}
+
+void read_limits(Reader& axis, bool linear, int j, NcSettings& nc) {
+  const AxisQuantities& q = quantities_of(linear);
+  nc.v_max[j] = axis.real("v_max", q.velocity, {above(0.0)});
+  nc.a_max[j] = axis.real("a_max", q.acceleration, {above(0.0)});
+  nc.j_max[j] = axis.real("j_max", q.jerk, {above(0.0)});
+  const std::string_view key = linear ? "travel_mm" : "travel_deg";
+  nc.lower[j] = -std::numeric_limits<double>::infinity();
+  nc.upper[j] = std::numeric_limits<double>::infinity();
+  if (!axis.has(key)) return;  // endless
+  const auto travel = axis.reals(key, q.position);
+  if (travel.size() != 2 || !(travel[0] < travel[1])) {
+    axis.fault(key, "must be [lower, upper] with lower < upper");
+    return;
+  }
+  nc.lower[j] = travel[0];
+  nc.upper[j] = travel[1];
+}
+
+void read_axis(Reader& axis, Reader& nc_table, int j, MachineSettings& machine) {
+  const auto lane = static_cast<std::size_t>(j);
+  const bool linear = j < kLinearJoints;
+  machine.drives[lane] = read_drive(axis, linear);
+  machine.nc.cascade[lane] = read_cascade(axis, nc_table, machine.drives[lane], machine.nc.periods);
+  machine.scale[lane] = plant::Encoder::with_step(
+      axis.real_or("scale_step", 0.0, quantities_of(linear).position, {at_least(0.0)}));
+  machine.motor[lane] =
+      plant::Encoder::with_step(axis.real_or("motor_step", 0.0, kAngle, {at_least(0.0)}));
+  machine.nc.gain_place[lane] = axis.has("Kv") ? axis.place("Kv") : nc_table.place("Kv");
+  read_limits(axis, linear, j, machine.nc);
+  auto& chain_axis = machine.chain.at(*machine.chain.layout.axis[lane]);
+  if (axis.has("centre_mm")) {
+    const auto centre = axis.reals("centre_mm", kLength);
+    if (centre.size() == 3) {
+      chain_axis.centre << centre[0], centre[1], centre[2];
+    } else {
+      axis.fault("centre_mm", "must be [x, y, z]");
+    }
+  }
+  if (!linear) {
+    chain_axis.sense = static_cast<plant::Sense>(axis.choice_or("sense", 0, kSenses));
+  }
+}
+
+plant::MachineChain read_chain(Reader& machine) {
+  const std::string text = machine.text("structure");
+  if (text.empty()) return {};
+  try {
+    return plant::make_chain(plant::parse_structure(text, machine.place("structure")));
+  } catch (const InputError& error) {
+    for (const Fault& fault : error.faults()) machine.fault("structure", fault.message);
+    return {};
+  }
+}
+
+}  // namespace
+
+const AxisQuantities& quantities_of(bool linear) {
+  static constexpr AxisQuantities kLinear = {kLength, kVelocity, kAcceleration, kJerk,
+                                             kForce,  kMass,     kStiffness,    kDamping};
+  static constexpr AxisQuantities kRotary = {
+      kAngle,  kAngularVelocity, kAngularAcceleration, kAngularJerk,
+      kTorque, kInertia,         kTorsionalStiffness,  kTorsionalDamping};
+  return linear ? kLinear : kRotary;
+}
+
+AxisWords read_words(Reader& table, const JointLayout& layout) {
+  AxisWords words = AxisWords::Zero();
+  for (const Axis axis : kAllAxes) {
+    if (!layout.joint_of(axis)) continue;
+    const bool linear = is_linear(axis);
+    const std::string key = fmt::format("{}_{}", letter(axis), linear ? "mm" : "deg");
+    words[index_of(axis)] = table.real_or(key, 0.0, linear ? kLength : kAngle);
+  }
+  return words;
+}
+
+MachineSettings read_machine(Reader& table) {
+  MachineSettings machine;
+  machine.name = table.text_or("name", "unnamed machine");
+  table.text_or("source", "");
+  machine.chain = read_chain(table);
+  Reader nc = table.table("nc");
+  machine.nc.periods = read_periods(nc);
+  machine.nc.filter = read_filter(nc, machine.nc.periods);
+  machine.nc.path_tolerance = nc.real_or("path_tolerance_um", 10 * um, kLength, {above(0.0)});
+  machine.nc.rotary_tolerance =
+      nc.real_or("rotary_tolerance_urad", 100 * urad, kAngle, {above(0.0)});
+  machine.nc.following_error_limit =
+      nc.real_or("following_error_limit_mm", 10 * mm, kLength, {above(0.0)});
+  machine.nc.check_stability = nc.boolean_or("check_stability", true);
+  const double delay = nc.real_or("scale_delay_us", 0.0, kTime, {at_least(0.0)});
+  const auto delay_ticks = whole_ticks(delay, machine.nc.periods.base);
+  if (!delay_ticks) nc.fault("scale_delay_us", "must be a whole multiple of base_period_us");
+  machine.scale_delay = delay_ticks.value_or(0);
+
+  Reader axes = table.table("axis");
+  for (int j = 0; j < kJoints; ++j) {
+    if (!machine.chain.layout.has(j)) continue;
+    Reader axis = axes.table(std::string(1, machine.chain.layout.letter_of(j)));
+    read_axis(axis, nc, j, machine);
+  }
+  return machine;
+}
+
+}  // namespace servomill::sim

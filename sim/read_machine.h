@@ -1,0 +1,22 @@
+/// Reads a machine description (TOML).
+#pragma once
+
+#include "sim/config/reader.h"
+#include "sim/machine.h"
+
+namespace servomill::sim {
+
+/// Machine of a table; faults are collected in the reader.
+/// @param machine  table as documented in scenarios/machines/hsm600u.toml
+MachineSettings read_machine(Reader& machine);
+
+/// "X", "Y", ...: the table of an axis and what its quantities are called.
+struct AxisQuantities {
+  Quantity position, velocity, acceleration, jerk, force, load, stiffness, damping;
+};
+const AxisQuantities& quantities_of(bool linear);
+
+/// Six program words such as X_mm = 1.5, C_deg = 90 (6; m, rad); absent ones are 0.
+AxisWords read_words(Reader& table, const JointLayout& layout);
+
+}  // namespace servomill::sim

@@ -1,0 +1,143 @@
+#include "sim/recorder.h"
+
+#include <string>
+
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr const char* kLinear = "axis_linear";
+constexpr const char* kRotary = "axis_rotary";
+constexpr const char* kXyz = "xyz";
+constexpr const char* kIjk = "ijk";
+
+std::string letters(const MachineSettings& machine, const std::vector<int>& joints) {
+  std::string out;
+  for (const int joint : joints) out += machine.chain.layout.letter_of(joint);
+  return out;
+}
+
+std::vector<Signal> signals(const std::string& linear, const std::string& rotary,
+                            bool with_imposed) {
+  std::vector<Signal> all = {
+      {"time", "s", "time since the start of the program", "", ""},
+      {"s", "mm", "arc length on the path of the original program", "", ""},
+      {"line", "1", "line of the original program", "", ""},
+      {"section", "1", "section of the original program, index into attribute sections", "", ""},
+      {"rapid", "1", "1 while a rapid move is interpolated", "", ""},
+  };
+  const auto per_axis = [&](const std::string& name, const char* unit_linear,
+                            const char* unit_rotary, const std::string& what) {
+    if (!linear.empty()) {
+      all.push_back({name + "_linear", unit_linear, what + ", linear axes", linear, kLinear});
+    }
+    if (!rotary.empty()) {
+      all.push_back({name + "_rotary", unit_rotary, what + ", rotary axes", rotary, kRotary});
+    }
+  };
+  per_axis("ref", "mm", "deg", "interpolated position");
+  per_axis("cmd", "mm", "deg", "set point after corrections");
+  per_axis("read", "mm", "deg", "position that the NC reads, virtual displacement included");
+  per_axis("meas", "mm", "deg", "reading of the scale");
+  per_axis("true", "mm", "deg", "position of the slide or table");
+  per_axis("following_error", "um", "deg", "set point minus position that the NC reads");
+  per_axis("velocity", "mm/s", "deg/s", "velocity of the slide or table");
+  per_axis("current", "A", "A", "torque-forming current");
+  per_axis("torque", "N m", "N m", "motor torque");
+  if (with_imposed) {
+    all.push_back({"imposed_linear", "um",
+                   "displacement that the imposed errors ask for at the programmed position",
+                   linear, kLinear});
+  }
+  all.push_back({"tool_position_nominal", "mm",
+                 "tool centre point of the ideal machine on the programmed path, in the workpiece",
+                 "XYZ", kXyz});
+  all.push_back({"tool_position_true", "mm", "tool centre point, in the workpiece", "XYZ", kXyz});
+  all.push_back(
+      {"tool_deviation", "um", "true minus nominal tool centre point at equal s", "XYZ", kXyz});
+  all.push_back({"tool_axis_nominal", "1", "unit tool axis of the ideal machine", "IJK", kIjk});
+  all.push_back({"tool_axis_true", "1", "unit tool axis, in the workpiece", "IJK", kIjk});
+  all.push_back({"contour_error", "um",
+                 "distance of the true tool centre point to the nominal path", "", ""});
+  return all;
+}
+
+// Writes values one after the other, in the order of signals().
+class RowWriter {
+ public:
+  explicit RowWriter(double* row) : next_(row) {}
+  void put(double value) { *next_++ = value; }
+  void put(const Joints& Q, const std::vector<int>& joints, double unit) {
+    for (const int joint : joints) put(Q[joint] / unit);
+  }
+  void put(const Eigen::Vector3d& v, double unit) {
+    for (int i = 0; i < 3; ++i) put(v[i] / unit);
+  }
+
+ private:
+  double* next_;
+};
+
+}  // namespace
+
+Recorder::Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
+                   const plant::VolumetricModel* imposed, const ProgramPath& path,
+                   const std::map<int, Eigen::Vector3d>& tips)
+    : machine_(machine), truth_(truth), imposed_(imposed), path_(path), tips_(tips) {
+  for (int joint = 0; joint < kJoints; ++joint) {
+    if (!machine.chain.layout.has(joint)) continue;
+    (joint < kLinearJoints ? linear_ : rotary_).push_back(joint);
+  }
+  series_ =
+      Series(signals(letters(machine, linear_), letters(machine, rotary_), imposed != nullptr));
+}
+
+void Recorder::record(const Snapshot& now) {
+  // where the original program is
+  piece_ = path_.piece_at(now.s, piece_);
+  const ProgramPath::Piece& piece = path_.piece(piece_);
+  const Joints Q_prog = machine_.chain.layout.joints(path_.at(piece_, now.s));
+  const auto tip = tips_.find(piece.tool_offset);
+  const Eigen::Vector3d p_ST = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;
+
+  // where the tool is and where it should be
+  const ToolPose nominal = plant::forward(machine_.chain, Q_prog, p_ST);
+  const ToolPose actual = truth_.forward(now.Q_true, p_ST);
+  const auto Q_equal = plant::inverse_fixed_rotary(machine_.chain, actual.p_WT, Q_prog, p_ST);
+  const double contour_error =
+      Q_equal ? path_.distance(Q_equal->head<3>(), piece_) : (actual.p_WT - nominal.p_WT).norm();
+
+  RowWriter row(series_.add_row());
+  row.put(now.time);
+  row.put(now.s / mm);
+  row.put(piece.line);
+  row.put(piece.section);
+  row.put(piece.rapid ? 1.0 : 0.0);
+  const auto per_axis = [&](const Joints& Q, double unit_linear, double unit_rotary) {
+    row.put(Q, linear_, unit_linear);
+    row.put(Q, rotary_, unit_rotary);
+  };
+  per_axis(now.Q_ref, mm, deg);
+  per_axis(now.Q_cmd, mm, deg);
+  per_axis(now.Q_read, mm, deg);
+  per_axis(now.Q_meas, mm, deg);
+  per_axis(now.Q_true, mm, deg);
+  per_axis(now.Q_cmd - now.Q_read, um, deg);
+  per_axis(now.dQ_true, mm, deg);
+  per_axis(now.current, 1.0, 1.0);
+  per_axis(now.torque, 1.0, 1.0);
+  if (imposed_ != nullptr) {
+    Joints displacement = Joints::Zero();
+    displacement.head<3>() = imposed_->joint_offset(Q_prog, p_ST);
+    row.put(displacement, linear_, um);
+  }
+  row.put(nominal.p_WT, mm);
+  row.put(actual.p_WT, mm);
+  row.put(actual.p_WT - nominal.p_WT, um);
+  row.put(nominal.k_W, 1.0);
+  row.put(actual.k_W, 1.0);
+  row.put(contour_error / um);
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,307 @@
+#include "sim/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "controllers/gcode/printer.h"
+#include "controllers/path/travel.h"
+#include "plant/vocabulary/units.h"
+#include "sim/stability.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr auto kProgressPeriod = std::chrono::milliseconds(100);
+
+AxisWords machine_start(const Scenario& scenario, const CaseSpec& spec) {
+  return scenario.program.start + scenario.program.work_offset + spec.work_offset;
+}
+
+controllers::ProgramSetup setup_of(const Scenario& scenario, const CaseSpec& spec) {
+  controllers::ProgramSetup setup;
+  setup.parameters = scenario.program.parameters;
+  setup.work_offset[0] = scenario.program.work_offset + spec.work_offset;
+  setup.tools = scenario.program.tools;
+  setup.start = machine_start(scenario, spec);
+  return setup;
+}
+
+std::map<int, Eigen::Vector3d> tips_of(const std::vector<Move>& moves,
+                                       const controllers::ToolTable& tools) {
+  std::map<int, Eigen::Vector3d> tips = {{0, Eigen::Vector3d::Zero()}};
+  for (const Move& move : moves) {
+    if (const auto* tool = tools.find(move.tool_offset)) {
+      tips[move.tool_offset] = -tool->offset.head<3>();
+    }
+  }
+  return tips;
+}
+
+// The tip of the first tool that the program works with: the one that a strategy believes in.
+Eigen::Vector3d first_tip(const std::vector<Move>& moves,
+                          const std::map<int, Eigen::Vector3d>& tips) {
+  for (const Move& move : moves) {
+    if (is_motion(move.kind) && move.tool_offset != 0) return tips.at(move.tool_offset);
+  }
+  return Eigen::Vector3d::Zero();
+}
+
+// The rewritten program is written as text and read like any other; what the text cannot say, the
+// place on the original path, is carried over block by block.
+std::vector<Move> through_text(const std::vector<Move>& rewritten, const Scenario& scenario,
+                               const CaseSpec& spec, std::string& text) {
+  const std::string title = fmt::format("{}, case {}", scenario.title, spec.name);
+  controllers::PrintOptions options;
+  options.axes.clear();
+  for (const auto& axis : scenario.machine.chain.layout.axis) {
+    if (axis) options.axes += letter(*axis);
+  }
+  text = controllers::print_program(rewritten, options, title).text;
+  std::vector<Move> read = controllers::interpret(
+      text, fmt::format("{} as rewritten for case {}", scenario.program.file, spec.name),
+      setup_of(scenario, spec));
+  auto original = rewritten.begin();
+  const auto next_motion = [&] {
+    return std::find_if(original, rewritten.end(),
+                        [](const Move& move) { return is_motion(move.kind); });
+  };
+  for (Move& move : read) {
+    if (!is_motion(move.kind)) continue;
+    original = next_motion();
+    if (original == rewritten.end()) throw std::logic_error("a rewritten program gained a block");
+    move.line = original->line;
+    move.s_begin = original->s_begin;
+    move.s_end = original->s_end;
+    ++original;
+  }
+  if (next_motion() != rewritten.end()) throw std::logic_error("a rewritten program lost a block");
+  return read;
+}
+
+std::unique_ptr<strategies::Strategy> make_strategy(const StrategySpec& spec,
+                                                    const Scenario& scenario, const CaseSpec& one,
+                                                    const Eigen::Vector3d& tip) {
+  const MachineSettings& machine = scenario.machine;
+  const auto model = scenario.errors.find(spec.model);
+  const strategies::Belief belief = {
+      machine.chain.layout,
+      plant::VolumetricModel(machine.chain,
+                             model == scenario.errors.end() ? plant::ErrorModel{} : model->second),
+      tip,
+      machine.nc.lower,
+      machine.nc.upper,
+      machine.chain.layout.joints(machine_start(scenario, one)),
+      machine.nc.cascade[0].Kv};
+  try {
+    return spec.entry->make(spec.parameters, spec.sign, belief);
+  } catch (const InputError& error) {  // a strategy knows what is wrong, not where it stands
+    throw InputError(spec.place, fmt::format("case {}: strategy {}: {}", one.name, spec.entry->name,
+                                             error.faults().front().message));
+  }
+}
+
+void check_stability(const MachineSettings& machine, Tick reading_delay) {
+  if (!machine.nc.check_stability) return;
+  std::vector<Fault> faults;
+  for (int j = 0; j < kJoints; ++j) {
+    if (!machine.chain.layout.has(j)) continue;
+    const double radius = spectral_radius(machine, j, reading_delay);
+    if (radius < 1.0 + 1e-9) continue;
+    faults.push_back(
+        {machine.nc.gain_place[static_cast<std::size_t>(j)],
+         fmt::format(
+             "axis {}: the servo loop is unstable with Kv = {:.4g} 1/s and "
+             "velocity_bandwidth = {:.4g} rad/s (grows by {:.3g} each period); lower one of "
+             "them, or set nc.check_stability = false to watch it diverge",
+             machine.chain.layout.letter_of(j), machine.nc.cascade[static_cast<std::size_t>(j)].Kv,
+             machine.nc.cascade[static_cast<std::size_t>(j)].Kp /
+                 machine.nc.cascade[static_cast<std::size_t>(j)].J,
+             radius)});
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+controllers::PathOptions path_options(const Scenario& scenario) {
+  controllers::PathOptions options;
+  options.tolerance = scenario.machine.nc.path_tolerance;
+  options.rotary_tolerance = scenario.machine.nc.rotary_tolerance;
+  options.feed_override = scenario.program.feed_override;
+  return options;
+}
+
+}  // namespace
+
+struct PreparedCase::Parts {
+  const Scenario& scenario;
+  const CaseSpec& spec;
+  std::vector<std::unique_ptr<strategies::Strategy>> strategies;
+  std::map<int, Eigen::Vector3d> tips;
+  std::unique_ptr<plant::VolumetricModel> truth, imposed;
+  std::unique_ptr<ProgramPath> path;
+  std::unique_ptr<controllers::Trajectory> trajectory;
+  std::string program;
+  double blocks = 0.0;
+};
+
+PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec)
+    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, {}, 0.0}) {
+  const MachineSettings& machine = scenario.machine;
+  Parts& parts = *parts_;
+  std::vector<Move> moves = read_program(scenario, spec);
+  parts.tips = tips_of(moves, scenario.program.tools);
+  parts.path = std::make_unique<ProgramPath>(moves, machine_start(scenario, spec));
+  if (parts.path->size() == 0) throw InputError({scenario.program.file}, "moves no axis");
+
+  // the strategies, each of which may rewrite what the one before left
+  const Eigen::Vector3d tip = first_tip(moves, parts.tips);
+  for (const StrategySpec& strategy : spec.strategies) {
+    parts.strategies.push_back(make_strategy(strategy, scenario, spec, tip));
+    if (!parts.strategies.back()->rewrites()) continue;
+    moves = through_text(parts.strategies.back()->rewrite(moves), scenario, spec, parts.program);
+  }
+
+  // what the machine can do
+  const Joints start = machine.chain.layout.joints(machine_start(scenario, spec));
+  auto faults = controllers::travel_faults(moves, machine.chain.layout, start, machine.nc.lower,
+                                           machine.nc.upper, scenario.program.file);
+  if (!faults.empty()) throw InputError(std::move(faults));
+  parts.trajectory = std::make_unique<controllers::Trajectory>(controllers::plan(
+      moves, machine.chain.layout, start, {machine.nc.v_max, machine.nc.a_max, machine.nc.j_max},
+      path_options(scenario)));
+  parts.blocks = static_cast<double>(
+      std::count_if(moves.begin(), moves.end(), [](const Move& m) { return is_motion(m.kind); }));
+
+  const auto model = [&](const std::string& name) {
+    const auto found = scenario.errors.find(name);
+    return std::make_unique<plant::VolumetricModel>(
+        machine.chain, found == scenario.errors.end() ? plant::ErrorModel{} : found->second);
+  };
+  parts.truth = model(scenario.truth);
+  if (!scenario.imposed.empty()) parts.imposed = model(scenario.imposed);
+}
+
+PreparedCase::~PreparedCase() = default;
+PreparedCase::PreparedCase(PreparedCase&&) noexcept = default;
+
+CaseOutput PreparedCase::run(const StopFlag& stop, std::atomic<float>& progress) {
+  Parts& p = *parts_;
+  const MachineSettings& machine = p.scenario.machine;
+  FeedbackHardware hardware = p.scenario.hardware;
+  hardware.connected = p.spec.feedback_hardware;
+  CaseInputs inputs{machine,
+                    *p.truth,
+                    p.imposed.get(),
+                    *p.trajectory,
+                    *p.path,
+                    p.tips,
+                    p.spec.servo,
+                    hardware,
+                    {},
+                    nullptr,
+                    p.scenario.record_period,
+                    p.scenario.settle_time};
+  for (const auto& strategy : p.strategies) {
+    if (auto part = strategy->set_point()) inputs.set_points.push_back(std::move(part));
+    if (auto part = strategy->feedback(machine.nc.periods.seconds(hardware.model_period))) {
+      inputs.feedback = std::move(part);
+    }
+  }
+  CaseOutput out;
+  out.name = p.spec.name;
+  out.result = simulate(inputs, stop, progress);
+  out.program = p.program;
+  out.duration = p.trajectory->duration();
+  out.blocks = p.blocks;
+  out.sections = p.path->sections();
+  progress = 1.0F;
+  return out;
+}
+
+CaseData CaseOutput::data() const {
+  return {name, &result.servo, sections, duration, blocks, result.outcome.finished};
+}
+
+std::vector<Move> read_program(const Scenario& scenario, const CaseSpec& spec) {
+  return controllers::interpret(scenario.program.text, scenario.program.file,
+                                setup_of(scenario, spec));
+}
+
+namespace {
+
+// Everything that can be wrong with the input is found here.
+std::vector<PreparedCase> prepare(const Scenario& scenario) {
+  Tick delay = scenario.machine.scale_delay;
+  for (const CaseSpec& spec : scenario.cases) {
+    if (!spec.feedback_hardware) continue;
+    delay = scenario.machine.scale_delay + scenario.hardware.signal_delay;
+  }
+  check_stability(scenario.machine, delay);
+  std::vector<PreparedCase> prepared;
+  for (const CaseSpec& spec : scenario.cases) prepared.emplace_back(scenario, spec);
+  return prepared;
+}
+
+}  // namespace
+
+void check_scenario(const Scenario& scenario) { prepare(scenario); }
+
+RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
+  const auto begin = std::chrono::steady_clock::now();
+  static const StopFlag kNever = false;
+  const StopFlag& stop = control.stop != nullptr ? *control.stop : kNever;
+  std::vector<PreparedCase> prepared = prepare(scenario);
+  if (control.prepared) control.prepared();
+
+  // cases are independent: which thread runs which makes no difference to the result
+  const std::size_t count = prepared.size();
+  std::vector<CaseOutput> outputs(count);
+  std::vector<std::atomic<float>> progress(count);
+  std::vector<std::atomic<bool>> done(count);
+  std::vector<std::exception_ptr> failures(count);
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        outputs[i] = prepared[i].run(stop, progress[i]);
+      } catch (...) {
+        failures[i] = std::current_exception();
+      }
+      done[i] = true;
+    }
+  };
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  const unsigned threads = control.threads != 0 ? control.threads : cores;
+  std::vector<std::jthread> pool;
+  for (unsigned t = 0; t < std::min<std::size_t>(threads, count); ++t) pool.emplace_back(work);
+
+  for (std::size_t i = 0; i < count;) {
+    if (!done[i]) {
+      std::this_thread::sleep_for(kProgressPeriod);
+    } else {
+      if (failures[i]) std::rethrow_exception(failures[i]);
+      if (control.case_done) control.case_done(outputs[i]);
+      ++i;
+    }
+    if (control.progress) {
+      double sum = 0.0;
+      for (const auto& share : progress) sum += share;
+      control.progress(sum / static_cast<double>(count));
+    }
+  }
+  pool.clear();
+
+  RunOutput out;
+  std::vector<CaseData> data;
+  for (const CaseOutput& output : outputs) data.push_back(output.data());
+  out.comparison = compare(scenario.quantities, data);
+  out.cases = std::move(outputs);
+  out.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+}  // namespace servomill::sim

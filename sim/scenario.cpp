@@ -1,0 +1,390 @@
+#include "sim/scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <set>
+
+#include "plant/vocabulary/units.h"
+#include "sim/comparison.h"
+#include "sim/config/reader.h"
+#include "sim/read_errors.h"
+#include "sim/read_file.h"
+#include "sim/read_machine.h"
+
+namespace servomill::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 2> kSigns = {"generate", "correct"};
+constexpr std::array<std::string_view, 2> kServos = {"cascade", "ideal"};
+constexpr std::array<std::string_view, 4> kKinds = {"identified", "predicted", "chosen", "bound"};
+
+std::string beside(const std::string& document, const std::string& path) {
+  return (fs::path(document).parent_path() / path).lexically_normal().string();
+}
+
+template <class Names>
+std::string listed(const Names& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// A name that must be one of a list; a fault with the nearest one if it is not.
+template <class Names>
+bool must_be_known(Reader& table, std::string_view key, const std::string& name,
+                   std::string_view what, const Names& names) {
+  if (std::find(names.begin(), names.end(), name) != names.end()) return true;
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  const std::string near = did_you_mean(name, views);
+  table.fault(key,
+              fmt::format("no such {}{}", what,
+                          near.empty() ? fmt::format("; there are: {}", listed(names)) : near));
+  return false;
+}
+
+class ScenarioReader {
+ public:
+  ScenarioReader(Document document, const std::vector<std::string>& changes, Scenario& out)
+      : document_(std::move(document)), changes_(changes), out_(out) {}
+
+  void read() {
+    load_machine();
+    Reader root(document_);
+    root.raw("machine_override");  // is in the machine by now
+    out_.title = root.text_or("title", out_.name);
+    out_.source = root.text_or("source", "");
+    Reader machine = root.table("machine");
+    out_.machine = read_machine(machine);
+    Reader program = root.table("program");
+    read_program(program);
+    read_error_models(root);
+    read_hardware(root);
+    read_record(root);
+    for (Reader& table : root.tables("case")) read_case(table);
+    for (Reader& table : root.tables_or_none("quantity")) read_quantity(table);
+    if (root.has("sweep")) {
+      Reader sweep = root.table("sweep");
+      read_sweep(sweep);
+    }
+    root.finish();
+    document_.merge(with_program_text());
+    out_.resolved = document_.to_toml();
+  }
+
+ private:
+  // `machine = "file"` is replaced by its contents, `machine_override` laid over them. Changes of
+  // the file's name and of the overrides come before, all others after, so that `machine.nc.Kv`
+  // means the value that counts.
+  void load_machine() {
+    const auto comes_first = [](const std::string& change) {
+      return change.starts_with("machine=") || change.starts_with("machine_override");
+    };
+    for (const std::string& change : changes_) {
+      if (comes_first(change)) document_.set(change);
+    }
+    const Value* machine = document_.root().find("machine");
+    if (machine != nullptr && machine->type == Value::Type::text) {
+      const std::string path = beside(document_.name(), machine->text);
+      out_.machine_text = read_file(path, machine->place, "machine");
+      document_.merge(as_machine(Document::from_text(out_.machine_text, path).root()));
+    }
+    if (const Value* overrides = document_.root().find("machine_override")) {
+      document_.merge(as_machine(*overrides));
+    }
+    for (const std::string& change : changes_) {
+      if (!comes_first(change)) document_.set(change);
+    }
+  }
+
+  // { program = { text = "..." } }: a resolved document needs no other file.
+  Value with_program_text() const {
+    Value text;
+    text.type = Value::Type::text;
+    text.key = "text";
+    text.text = out_.program.text;
+    text.written = quoted_text(text.text);
+    Value program;
+    program.key = "program";
+    program.children.push_back(std::move(text));
+    Value root;
+    root.children.push_back(std::move(program));
+    return root;
+  }
+
+  static Value as_machine(Value table) {
+    table.key = "machine";
+    Value root;
+    root.place = table.place;
+    root.children.push_back(std::move(table));
+    return root;
+  }
+
+  void read_program(Reader& table) {
+    ProgramSpec& program = out_.program;
+    program.file = table.text("file");
+    if (table.has("text")) {
+      program.text = table.text("text");
+    } else if (!program.file.empty()) {
+      const Place at = table.place("file");
+      program.file = beside(document_.name(), program.file);
+      program.text = read_file(program.file, at, "program");
+    }
+    program.feed_override = table.real_or("feed_override", 1.0, kNumber, {above(0.0)});
+    if (table.has("parameters")) {
+      Reader parameters = table.table("parameters");
+      for (const std::string& key : parameters.keys()) {
+        program.parameters[key] = parameters.real(key, kNumber);
+        if (key.size() < 2 || key[0] != '#') parameters.fault(key, "must be named #N or #<name>");
+      }
+    }
+    const JointLayout& layout = out_.machine.chain.layout;
+    if (table.has("work_offset")) {
+      Reader words = table.table("work_offset");
+      program.work_offset = read_words(words, layout);
+    }
+    if (table.has("start")) {
+      Reader words = table.table("start");
+      program.start = read_words(words, layout);
+    }
+    for (Reader& tool : table.tables_or_none("tool")) read_tool(tool);
+  }
+
+  void read_tool(Reader& table) {
+    controllers::ToolEntry tool;
+    tool.number = static_cast<int>(table.integer("number", {at_least(1), at_most(99999)}));
+    tool.pocket = tool.number;
+    tool.offset[index_of(Axis::Z)] = table.real("length_mm", kLength, {at_least(0.0)});
+    tool.diameter = table.real_or("diameter_mm", 0.0, kLength, {at_least(0.0)});
+    if (out_.program.tools.find(tool.number) != nullptr) {
+      table.fault("number", "is the number of an earlier tool");
+    } else {
+      out_.program.tools.add(tool);
+    }
+  }
+
+  void read_error_models(Reader& root) {
+    std::vector<std::string> names;
+    if (root.has("errors")) {
+      Reader models = root.table("errors");
+      for (const std::string& name : models.keys()) {
+        Reader model = models.table(name);
+        out_.errors[name] = read_errors(model, out_.machine.chain.layout);
+        names.push_back(name);
+      }
+    }
+    for (auto [key, to] : {std::pair{"truth", &out_.truth}, std::pair{"imposed", &out_.imposed}}) {
+      *to = root.text_or(key, "");
+      if (!to->empty()) must_be_known(root, key, *to, "error model", names);
+    }
+  }
+
+  void read_hardware(Reader& root) {
+    FeedbackHardware& hardware = out_.hardware;
+    Reader table = root.table_or_empty("feedback_hardware");
+    hardware.connected = table.boolean_or("connected", false);
+    hardware.signal_delay = ticks(table, "signal_delay_us", 10 * us, 0);
+    hardware.model_period = ticks(table, "model_period_us", 60 * us, 1);
+  }
+
+  void read_record(Reader& root) {
+    Reader table = root.table_or_empty("record");
+    out_.record_period = ticks(table, "period_ms", 1 * ms, 1);
+    out_.settle_time = table.real_or("settle_ms", 100 * ms, kTime, {at_least(0.0)});
+  }
+
+  Tick ticks(Reader& table, std::string_view key, double fallback, Tick least) {
+    const double seconds = table.real_or(key, fallback, kTime, {at_least(0.0)});
+    const double base = out_.machine.nc.periods.base;
+    const auto whole = whole_ticks(seconds, base);
+    if (whole && *whole >= least) return *whole;
+    table.fault(
+        fmt::format("{}: must be a whole multiple of base_period_us = {:g}", key, base / us));
+    return std::max<Tick>(least, 1);
+  }
+
+  void read_case(Reader& table) {
+    CaseSpec spec;
+    spec.name = table.text("name");
+    if (spec.name.find('/') != std::string::npos) table.fault("name", "must not contain '/'");
+    if (out_.find_case(spec.name) != nullptr) {
+      table.fault("name", "is the name of an earlier case");
+    }
+    if (table.has("work_offset")) {
+      Reader words = table.table("work_offset");
+      spec.work_offset = read_words(words, out_.machine.chain.layout);
+    }
+    spec.feedback_hardware = table.boolean_or("feedback_hardware", out_.hardware.connected);
+    spec.servo = static_cast<ServoModel>(table.choice_or("servo", 0, kServos));
+    for (Reader& strategy : table.tables_or_none("strategy")) {
+      read_strategy(strategy, spec);
+    }
+    out_.cases.push_back(std::move(spec));
+  }
+
+  void read_strategy(Reader& table, CaseSpec& spec) {
+    const auto names = strategies::names();
+    const std::size_t before = table.faults();
+    const std::size_t index = table.choice("type", names);
+    if (table.faults() > before) {
+      table.skip_rest();
+      return;
+    }
+    StrategySpec strategy;
+    strategy.entry = strategies::find(names[index]);
+    strategy.place = table.place("type");
+    if (strategy.entry->name != "none") {
+      strategy.sign = table.choice_or("sign", 1, kSigns) == 0 ? strategies::Sign::generate
+                                                              : strategies::Sign::correct;
+      strategy.model = table.text("model");
+      std::vector<std::string> models;
+      for (const auto& [name, model] : out_.errors) models.push_back(name);
+      if (!strategy.model.empty()) {
+        must_be_known(table, "model", strategy.model, "error model", models);
+      }
+    }
+    for (const ParameterSpec& parameter : strategy.entry->parameters) {
+      read_parameter(table, parameter, strategy.parameters);
+    }
+    if (strategy.entry->name == "feedback") spec.feedback_hardware = true;
+    for (const StrategySpec& other : spec.strategies) {
+      if (other.entry == strategy.entry && strategy.entry->name == "feedback") {
+        table.fault("type", "a case has one feedback hardware: this is the second");
+      }
+    }
+    spec.strategies.push_back(std::move(strategy));
+  }
+
+  static void read_parameter(Reader& table, const ParameterSpec& spec, Parameters& out) {
+    const bool given = table.has(spec.name);
+    const bool is_known_word = [&] {
+      if (given && !table.is(spec.name, Value::Type::text)) return false;
+      const std::string word = given ? table.text(spec.name) : std::string(spec.default_text);
+      if (std::find(spec.words.begin(), spec.words.end(), word) == spec.words.end()) return false;
+      out.set(spec.name, std::string_view(word));
+      return true;
+    }();
+    if (is_known_word) return;
+    if (!spec.is_number) {
+      // numbers stand for words, too: iterations = 1
+      if (given && table.is(spec.name, Value::Type::integer)) {
+        const std::string word = std::to_string(table.integer(spec.name));
+        if (std::find(spec.words.begin(), spec.words.end(), word) != spec.words.end()) {
+          out.set(spec.name, std::string_view(word));
+          return;
+        }
+      }
+      table.raw(spec.name);
+      table.fault(spec.name, fmt::format("must be one of: {}", listed(spec.words)));
+      out.set(spec.name, spec.words.front());
+      return;
+    }
+    const ParsedUnit unit = parse_unit(spec.unit);
+    const double factor = unit.unit ? unit.unit->factor : 1.0;
+    const Quantity quantity = unit.unit ? unit.unit->quantity : kNumber;
+    const Rules rules = {at_least(spec.min * factor), at_most(spec.max * factor)};
+    if (given) {
+      out.set(spec.name, table.real(spec.name, quantity, rules));
+    } else if (spec.default_text.empty()) {
+      out.set(spec.name, table.real(spec.name, quantity, rules));
+    } else {
+      out.set(spec.name, std::stod(std::string(spec.default_text)) * factor);
+    }
+  }
+
+  void read_quantity(Reader& table) {
+    QuantitySpec spec;
+    const auto names = quantity_names();
+    const std::size_t before = table.faults();
+    const std::size_t index = table.choice("name", names);
+    if (table.faults() > before) {
+      table.skip_rest();
+      return;
+    }
+    spec.name = names[index];
+    const QuantityInfo& info = quantity_info(spec.name);
+    if (info.needs_axis) {
+      spec.axis = info.axes[table.choice("axis", letters_of(info.axes))];
+    }
+    static constexpr std::array<std::string_view, 4> kStatistics = {"max", "rms", "mean", "range"};
+    if (info.has_statistic) {
+      spec.statistic = kStatistics[table.choice_or("statistic", 0, kStatistics)];
+    }
+    std::vector<std::string> all;
+    for (const CaseSpec& one : out_.cases) all.push_back(one.name);
+    spec.cases = table.texts_or("cases", all);
+    for (const std::string& name : spec.cases) must_be_known(table, "cases", name, "case", all);
+    if (info.needs_base) {
+      spec.base = table.text("base");
+      if (!spec.base.empty()) must_be_known(table, "base", spec.base, "case", all);
+    }
+    if (info.needs_imposed && out_.imposed.empty()) {
+      table.fault("name", "needs the key 'imposed' of the scenario");
+    }
+    spec.sections = table.texts_or("sections", {});
+    spec.reference = table.text_or("reference", "");
+    if (table.has("kind")) spec.kind = kKinds[table.choice("kind", kKinds)];
+    out_.quantities.push_back(std::move(spec));
+  }
+
+  static std::vector<std::string_view> letters_of(std::string_view axes) {
+    std::vector<std::string_view> out;
+    for (std::size_t i = 0; i < axes.size(); ++i) out.push_back(axes.substr(i, 1));
+    return out;
+  }
+
+  void read_sweep(Reader& table) {
+    for (const std::string& key : table.keys()) {
+      const Value* value = table.raw(key);
+      if (value == nullptr || value->type != Value::Type::list || value->children.empty()) {
+        table.fault(key, "must be a list of at least one value");
+        continue;
+      }
+      SweepKey sweep{key, {}};
+      for (const Value& one : value->children) sweep.values.push_back(inline_toml(one));
+      out_.sweep.push_back(std::move(sweep));
+    }
+  }
+
+  Document document_;
+  const std::vector<std::string>& changes_;
+  Scenario& out_;
+};
+
+Scenario read(Document document, const std::vector<std::string>& changes, const std::string& name) {
+  Scenario scenario;
+  scenario.name = name;
+  ScenarioReader(std::move(document), changes, scenario).read();
+  return scenario;
+}
+
+}  // namespace
+
+const CaseSpec* Scenario::find_case(std::string_view case_name) const {
+  for (const CaseSpec& one : cases) {
+    if (one.name == case_name) return &one;
+  }
+  return nullptr;
+}
+
+Scenario read_scenario(const std::string& path, const std::vector<std::string>& changes) {
+  Scenario scenario = read(Document::from_file(path), changes, fs::path(path).stem().string());
+  scenario.text = read_file(path, {}, "scenario");
+  return scenario;
+}
+
+Scenario read_resolved_scenario(const std::string& resolved, const std::string& name) {
+  return read(Document::from_text(resolved, name), {}, name);
+}
+
+MachineSettings read_machine_file(const std::string& path) {
+  const Document document = Document::from_file(path);
+  Reader root(document);
+  MachineSettings machine = read_machine(root);
+  root.finish();
+  return machine;
+}
+
+}  // namespace servomill::sim

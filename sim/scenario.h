@@ -1,0 +1,97 @@
+/// A scenario: machine, program, errors, cases and what is asked of them. Read from TOML, complete
+/// and in SI; nothing behind this point meets an input that it must doubt.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "controllers/gcode/interpreter.h"
+#include "plant/geometry/error_model.h"
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/parameters.h"
+#include "sim/config/document.h"
+#include "sim/machine.h"
+#include "sim/simulate.h"
+#include "strategies/registry.h"
+
+namespace servomill::sim {
+
+struct ProgramSpec {
+  std::string file;  // as messages name it
+  std::string text;
+  std::map<std::string, double> parameters;  // "#101" -> value
+  double feed_override = 1.0;
+  AxisWords work_offset = AxisWords::Zero();  // G54, m, rad, machine coordinates
+  AxisWords start = AxisWords::Zero();        // m, rad, in work coordinates
+  controllers::ToolTable tools;
+};
+
+struct StrategySpec {
+  const strategies::Entry* entry = nullptr;
+  Parameters parameters;
+  strategies::Sign sign = strategies::Sign::correct;
+  std::string model;  // name of the believed error model
+  Place place;        // for what the strategy itself refuses
+};
+
+struct CaseSpec {
+  std::string name;
+  AxisWords work_offset = AxisWords::Zero();  // m, rad; added to that of the program
+  std::vector<StrategySpec> strategies;
+  bool feedback_hardware = false;
+  ServoModel servo = ServoModel::cascade;
+};
+
+/// One line of the comparison, for one or several cases.
+struct QuantitySpec {
+  std::string name;       // one of quantity_names()
+  char axis = '\0';       // X, Y, Z, ...; '\0' where the quantity has none
+  std::string statistic;  // max, rms, mean, range
+  std::vector<std::string> cases;
+  std::string base;                   // case compared with, for differences
+  std::vector<std::string> sections;  // of the program; empty: all
+  std::string reference;              // the paper's number with unit, or empty
+  std::string kind;                   // identified, predicted, chosen, bound or empty
+};
+
+/// One key that a sweep varies.
+struct SweepKey {
+  std::string key;                  // dotted, as --set takes it
+  std::vector<std::string> values;  // as TOML
+};
+
+struct Scenario {
+  std::string name;  // file name without folder and extension
+  std::string title, source;
+  MachineSettings machine;
+  ProgramSpec program;
+  std::map<std::string, plant::ErrorModel> errors;
+  std::string truth;    // model of the machine's true errors; empty: none
+  std::string imposed;  // model whose displacement at the programmed position is recorded; or empty
+  FeedbackHardware hardware;
+  std::vector<CaseSpec> cases;
+  Tick record_period = 100;
+  double settle_time = 0.1;  // s
+  std::vector<QuantitySpec> quantities;
+  std::vector<SweepKey> sweep;
+
+  std::string text, machine_text;  // as read
+  std::string resolved;            // one TOML document with the machine and all changes in it
+
+  const CaseSpec* find_case(std::string_view case_name) const;
+};
+
+/// Reads a scenario and the files that it names (paths relative to it).
+/// @param changes  what --set says, in order
+/// @throws InputError with all faults of a file at once
+Scenario read_scenario(const std::string& path, const std::vector<std::string>& changes = {});
+
+/// The same from a resolved document (as stored in a result file), program text included.
+Scenario read_resolved_scenario(const std::string& resolved, const std::string& name);
+
+/// Only a machine, for `check`.
+MachineSettings read_machine_file(const std::string& path);
+
+}  // namespace servomill::sim

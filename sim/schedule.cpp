@@ -1,0 +1,34 @@
+#include "sim/schedule.h"
+
+#include <cassert>
+#include <map>
+#include <numeric>
+
+namespace servomill::sim {
+
+Tick hyperperiod(const std::vector<Rate>& rates) {
+  Tick total = 1;
+  for (const Rate& rate : rates) {
+    total = std::lcm(total, rate.period);
+    if (total > kMaxHyperperiod) return 0;
+  }
+  return total;
+}
+
+std::vector<Instant> make_schedule(const std::vector<Rate>& rates) {
+  const Tick total = hyperperiod(rates);
+  assert(total > 0);
+  std::map<Tick, std::uint8_t> due;
+  for (const Rate& rate : rates) {
+    for (Tick n = rate.phase; n < total; n += rate.period) due[n] |= rate.due;
+  }
+  assert(due.contains(0));
+  std::vector<Instant> schedule;
+  for (auto it = due.begin(); it != due.end(); ++it) {
+    const auto next = std::next(it);
+    schedule.push_back({it->second, (next == due.end() ? total : next->first) - it->first});
+  }
+  return schedule;
+}
+
+}  // namespace servomill::sim

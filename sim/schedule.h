@@ -1,0 +1,43 @@
+/// Static schedule of one case: the instants at which anything is due, over one common multiple of
+/// all periods. Nothing is visited that is not due; between instants the drives take one exact
+/// step.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "plant/vocabulary/ticks.h"
+
+namespace servomill::sim {
+
+enum Due : std::uint8_t {
+  kErrorModel = 1,  // feedback hardware evaluates its model
+  kSample = 2,      // the reading that the next position period will use is taken
+  kPosition = 4,
+  kVelocity = 8,
+  kCurrent = 16,
+  kRecord = 32,
+};
+
+struct Instant {
+  std::uint8_t due = 0;
+  Tick step = 0;  // ticks to the next instant
+};
+
+struct Rate {
+  std::uint8_t due = 0;
+  Tick period = 1;
+  Tick phase = 0;  // due at phase, phase + period, ...; 0 <= phase < period
+};
+
+/// Longest schedule that is laid out; a combination of periods beyond it is refused.
+inline constexpr Tick kMaxHyperperiod = 1'000'000;
+
+/// Least common multiple of the periods, or 0 beyond kMaxHyperperiod.
+Tick hyperperiod(const std::vector<Rate>& rates);
+
+/// The instants of one hyperperiod, from tick 0 on. @pre hyperperiod(rates) > 0, one rate has phase
+/// 0
+std::vector<Instant> make_schedule(const std::vector<Rate>& rates);
+
+}  // namespace servomill::sim

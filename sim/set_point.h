@@ -1,0 +1,65 @@
+/// The NC's set point of one case: interpolated reference, nominal-position filter, corrections,
+/// feed-forward. Advanced once per position period.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "controllers/path/nominal_filter.h"
+#include "controllers/path/trajectory.h"
+#include "controllers/servo/set_point_correction.h"
+#include "sim/machine.h"
+#include "strategies/strategy.h"
+
+namespace servomill::sim {
+
+class SetPoint {
+ public:
+  struct Output {
+    Joints Q_ref = Joints::Zero();  // interpolated, filtered
+    Joints Q_cmd = Joints::Zero();  // with corrections: what the position loop follows
+    Joints dQ_ff = Joints::Zero();  // velocity that is fed forward
+    Joints ddQ_ff = Joints::Zero();
+  };
+
+  SetPoint(const NcSettings& nc, const controllers::Trajectory& reference,
+           std::vector<std::unique_ptr<strategies::SetPointPart>> parts);
+
+  /// Standing at the start of the trajectory for long; corrections settled.
+  const Output& settle();
+  /// Time by which the filter delays the reference (s).
+  double delay() const { return delay_; }
+
+  /// Set point of time t (s), one position period after the call before.
+  const Output& advance(double t);
+
+ private:
+  struct Correction {
+    std::unique_ptr<strategies::SetPointPart> part;
+    controllers::SetPointCorrection in_nc;
+  };
+  struct Filters {  // one for each signal that passes
+    controllers::NominalFilter Q, dQ, ddQ, offset;
+  };
+  struct Offsets {  // of the linear joints (3; m), by where they enter
+    Eigen::Vector3d before_filter = Eigen::Vector3d::Zero();
+    Eigen::Vector3d position_command = Eigen::Vector3d::Zero();
+    Eigen::Vector3d feed_forward = Eigen::Vector3d::Zero();
+    Eigen::Vector3d& of(EntryPoint entry);
+  };
+  Offsets corrections_at(const Joints& Q_ref);
+  void feed_forward(const Eigen::Vector3d& offset);
+
+  const controllers::Trajectory& reference_;
+  controllers::Trajectory::Cursor cursor_;
+  std::vector<Correction> corrections_;
+  double Tp_;
+  double delay_ = 0.0;
+  std::optional<Filters> filters_;
+  Output out_;
+  Eigen::Vector3d fed_forward_ = Eigen::Vector3d::Zero();  // corrections, one period ago
+  Eigen::Vector3d fed_forward_rate_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace servomill::sim

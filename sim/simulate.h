@@ -1,0 +1,71 @@
+/// One case of a scenario, run: NC, drives, encoders, feedback hardware, recorder, on one clock.
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "controllers/path/trajectory.h"
+#include "plant/geometry/volumetric.h"
+#include "sim/machine.h"
+#include "sim/program_path.h"
+#include "sim/series.h"
+#include "strategies/strategy.h"
+
+namespace servomill::sim {
+
+enum class ServoModel : std::uint8_t {
+  cascade,  // loops and drives as described
+  ideal,    // the axes stand where the NC wants them, readings included: Q_true + d(Q_true) = Q_cmd
+};
+
+/// Signals pass through the hardware of the feedback strategy, whether or not it displaces them.
+struct FeedbackHardware {
+  bool connected = false;
+  Tick signal_delay = 1;  // from reading the scale to what the NC reads
+  Tick model_period = 6;  // a model evaluated at tick n acts from n + model_period on
+};
+
+/// What one case needs. References are shared with other cases; parts belong to this run.
+struct CaseInputs {
+  const MachineSettings& machine;
+  const plant::VolumetricModel& truth;         // the machine as it is
+  const plant::VolumetricModel* imposed;       // displacement to be recorded, or nullptr
+  const controllers::Trajectory& reference;    // of the program that the NC runs
+  const ProgramPath& path;                     // of the original program
+  const std::map<int, Eigen::Vector3d>& tips;  // p_ST (m) by tool offset number
+  ServoModel servo = ServoModel::cascade;
+  FeedbackHardware hardware;
+  std::vector<std::unique_ptr<strategies::SetPointPart>> set_points;
+  std::unique_ptr<strategies::FeedbackPart> feedback;  // may be null
+  Tick record_period = 100;
+  double settle_time = 0.1;  // s, recorded after the program's end
+};
+
+/// How a case ended. A machine that stops is an outcome, not an exception.
+struct Outcome {
+  bool finished = true;
+  std::string reason;  // "axis Y: following error beyond 10 mm"
+  char axis = '-';
+  double time = 0.0;  // s
+};
+
+/// Set from outside to end a run early; a case that sees it stops as "interrupted".
+using StopFlag = std::atomic<bool>;
+
+struct CaseResult {
+  Outcome outcome;
+  Series servo;                 // one row a record period
+  Series last_ticks;            // when stopped: what happened in the last position periods
+  double simulated_time = 0.0;  // s
+  double wall_time = 0.0;       // s
+};
+
+/// @param stop      looked at once a hyperperiod
+/// @param progress  set to the simulated share of the case, 0 to 1, as often
+CaseResult simulate(CaseInputs& inputs, const StopFlag& stop, std::atomic<float>& progress);
+
+}  // namespace servomill::sim

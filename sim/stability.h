@@ -1,0 +1,14 @@
+/// Stability of an axis' servo loops as they are sampled: before a run, not after it went wrong.
+#pragma once
+
+#include "sim/machine.h"
+
+namespace servomill::sim {
+
+/// Largest eigenvalue magnitude of the linear closed loop of one axis over one common multiple of
+/// its periods (position, velocity and current loop with drive, reading delay included); below 1
+/// the axis settles. Limits, quantisation and feed-forward play no part.
+/// @param reading_delay  ticks between the scale and what the position loop reads
+double spectral_radius(const MachineSettings& machine, int joint, Tick reading_delay);
+
+}  // namespace servomill::sim

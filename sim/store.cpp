@@ -1,0 +1,254 @@
+#include "sim/store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "plant/vocabulary/units.h"
+#include "sim/hdf5/series_writer.h"
+#include "sim/version.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr std::size_t kErrorSamples = 401;  // points at which error functions are written down
+constexpr double kEndlessRotary = 180 * deg;
+constexpr double kEndlessLinear = 500 * mm;
+
+void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view kind) {
+  root.attribute("Conventions", "CF-1.8");
+  root.attribute("servomill_version", kVersion);
+  root.attribute("schema_version", kSchemaVersion);
+  root.attribute("kind", kind);
+  root.attribute("scenario", scenario.name);
+  root.attribute("title", scenario.title);
+  root.attribute("source", scenario.source);
+  Hdf5Group inputs = root.group("inputs");
+  inputs.attribute("scenario", scenario.text);
+  inputs.attribute("machine", scenario.machine_text);
+  inputs.attribute("program", scenario.program.text);
+  inputs.attribute("resolved", scenario.resolved);
+}
+
+// Error functions of a model over the travel of their axes, for figures.
+void write_errors(Hdf5Group& root, const Scenario& scenario) {
+  const JointLayout& layout = scenario.machine.chain.layout;
+  for (const auto& [name, model] : scenario.errors) {
+    for (const Axis axis : kAllAxes) {
+      const auto joint = layout.joint_of(axis);
+      if (!joint) continue;
+      const auto& components = model.components[static_cast<std::size_t>(index_of(axis))];
+      if (std::all_of(components.begin(), components.end(),
+                      [](const auto& f) { return f.is_zero(); })) {
+        continue;
+      }
+      Hdf5Group group = root.group(fmt::format("errors/{}/{}", name, letter(axis)));
+      const double endless = is_linear(axis) ? kEndlessLinear : kEndlessRotary;
+      const double lower = std::max(scenario.machine.nc.lower[*joint], -endless);
+      const double upper = std::min(scenario.machine.nc.upper[*joint], endless);
+      std::vector<double> q(kErrorSamples), shown(kErrorSamples);
+      for (std::size_t i = 0; i < kErrorSamples; ++i) {
+        q[i] = lower + (upper - lower) * static_cast<double>(i) / (kErrorSamples - 1);
+        shown[i] = q[i] / (is_linear(axis) ? mm : deg);
+      }
+      group.list("position", shown,
+                 {is_linear(axis) ? "mm" : "deg", fmt::format("position of {}", letter(axis))});
+      for (const Axis direction : kAllAxes) {
+        const auto& f = components[static_cast<std::size_t>(index_of(direction))];
+        if (f.is_zero()) continue;
+        std::vector<double> values(kErrorSamples);
+        std::transform(q.begin(), q.end(), values.begin(),
+                       [&](double at) { return f.value(at) / um; });  // um is urad
+        group.list(fmt::format("E{}{}", letter(direction), letter(axis)), values,
+                   {is_linear(direction) ? "um" : "urad",
+                    fmt::format("error E{}{}", letter(direction), letter(axis))},
+                   "position");
+      }
+    }
+  }
+}
+
+SeriesLayout layout_of(const Series& series, const std::string& index) {
+  SeriesLayout layout;
+  layout.index = index;
+  for (const Signal& signal : series.signals()) {
+    if (signal.name == index) {
+      layout.index_meaning = {signal.units, signal.long_name};
+      continue;
+    }
+    if (!signal.labels.empty() &&
+        std::none_of(layout.labels.begin(), layout.labels.end(),
+                     [&](const ColumnLabels& known) { return known.name == signal.scale; })) {
+      layout.labels.push_back({signal.scale, signal.labels, signal.scale});
+    }
+    layout.channels.push_back(
+        {signal.name, {signal.units, signal.long_name}, signal.scale, Storage::float64});
+  }
+  return layout;
+}
+
+void write_series(Hdf5Group group, const Series& series) {
+  SeriesWriter writer(std::move(group), layout_of(series, "time"));
+  for (std::size_t row = 0; row < series.rows(); ++row) {
+    writer.append({series.row(row), series.width()});
+  }
+  writer.finish();
+}
+
+void write_row(Hdf5Group& group, const ComparisonRow& row) {
+  group.attribute("case", row.case_name);
+  group.attribute("quantity", row.quantity);
+  group.attribute("axis", row.axis);
+  group.attribute("statistic", row.statistic);
+  group.attribute("sections", row.sections);
+  group.attribute("reference", row.reference);
+  group.attribute("kind", row.kind);
+}
+
+std::vector<std::string> split_lines(const std::string& text) {
+  std::vector<std::string> lines(1);
+  for (const char c : text) {
+    if (c == '\n') {
+      lines.emplace_back();
+    } else {
+      lines.back() += c;
+    }
+  }
+  return lines;
+}
+
+// Columns of one group read back in the order in which they were written.
+std::unique_ptr<Series> read_series(const InputFile& file, const std::string& group) {
+  std::vector<Signal> signals;
+  std::vector<std::vector<double>> columns;
+  std::size_t rows = 0;
+  for (const std::string& name : file.datasets(group)) {
+    const std::string path = group + "/" + name;
+    if (name.starts_with("axis") || name == "xyz" || name == "ijk") continue;  // labels
+    const auto shape = file.shape(path);
+    std::string labels;
+    if (shape.size() == 2) labels = file.text(path, "columns");
+    rows = shape.at(0);
+    signals.push_back({name, file.text(path, "units"), file.text(path, "long_name"), labels, ""});
+    columns.push_back(file.values(path));
+  }
+  auto series = std::make_unique<Series>(std::move(signals));
+  series->reserve(rows);
+  for (std::size_t row = 0; row < rows; ++row) {
+    double* to = series->add_row();
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const std::size_t width = series->signals()[c].columns();
+      to = std::copy_n(columns[c].data() + row * width, width, to);
+    }
+  }
+  return series;
+}
+
+void check_schema(const InputFile& file, const std::string& path, const std::string& kind) {
+  if (!file.has_attribute("/", "schema_version")) {
+    throw InputError({path}, "is not a result file of servomill");
+  }
+  const auto version = static_cast<int>(file.number("/", "schema_version"));
+  if (version != kSchemaVersion) {
+    throw InputError({path}, fmt::format("has schema version {}; this program reads version {}",
+                                         version, kSchemaVersion));
+  }
+  if (file.text("/", "kind") != kind) {
+    throw InputError({path}, fmt::format("holds a {}, not a {}", file.text("/", "kind"), kind));
+  }
+}
+
+}  // namespace
+
+RunStore::RunStore(const std::string& path, bool force, const Scenario& scenario)
+    : file_(path, force) {
+  Hdf5Group root = file_.root();
+  write_inputs(root, scenario, "run");
+  write_errors(root, scenario);
+  root.flush_file();
+}
+
+void RunStore::add(const CaseOutput& one) {
+  Hdf5Group group = file_.root().group("cases/" + one.name);
+  group.attribute("finished", one.result.outcome.finished ? 1 : 0);
+  group.attribute("outcome", one.result.outcome.reason);
+  group.attribute("duration_s", one.duration);
+  group.attribute("blocks", one.blocks);
+  group.attribute("sections", fmt::format("{}", fmt::join(one.sections, "\n")));
+  if (!one.program.empty()) group.attribute("program", one.program);
+  write_series(group.group("servo"), one.result.servo);
+  if (one.result.last_ticks.rows() > 0)
+    write_series(group.group("last_ticks"), one.result.last_ticks);
+  group.flush_file();
+}
+
+void RunStore::commit(const std::vector<ComparisonRow>& comparison) {
+  Hdf5Group table = file_.root().group("comparison");
+  for (std::size_t i = 0; i < comparison.size(); ++i) {
+    Hdf5Group group = table.group(fmt::format("{:03}", i));
+    write_row(group, comparison[i]);
+    group.scalar("value", comparison[i].value, {comparison[i].unit, comparison[i].quantity});
+  }
+  file_.commit();
+}
+
+StoredRun read_run(const std::string& path) {
+  const InputFile file(path);
+  check_schema(file, path, "run");
+  StoredRun run;
+  run.scenario_name = file.text("/", "scenario");
+  run.title = file.text("/", "title");
+  run.quantities =
+      read_resolved_scenario(file.text("/inputs", "resolved"), path + ":/inputs").quantities;
+  for (const std::string& name : file.groups("/cases")) {
+    const std::string group = "/cases/" + name;
+    run.series.push_back(read_series(file, group + "/servo"));
+    run.cases.push_back({name, run.series.back().get(), split_lines(file.text(group, "sections")),
+                         file.number(group, "duration_s"), file.number(group, "blocks"),
+                         file.number(group, "finished") != 0.0});
+  }
+  return run;
+}
+
+void refuse_existing(const std::string& path, bool force) {
+  if (!force && std::filesystem::exists(path)) {
+    throw InputError({path}, "exists; use --force to overwrite");
+  }
+}
+
+void write_sweep(const std::string& path, bool force, const Scenario& scenario,
+                 const std::vector<SweepPoint>& points) {
+  OutputFile file(path, force);
+  Hdf5Group root = file.root();
+  write_inputs(root, scenario, "sweep");
+  Hdf5Group table = root.group("sweep");
+  std::vector<double> numbers(points.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<double>(i);
+  table.list("point", numbers, {"1", "number of the point"});
+  for (std::size_t key = 0; key < scenario.sweep.size(); ++key) {
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      texts.push_back(points[i].values[key]);
+      numbers[i] = number_of(points[i].values[key]);
+    }
+    Hdf5Group group = table.group(fmt::format("keys/{}", key));
+    group.attribute("key", scenario.sweep[key].key);
+    group.attribute("values", fmt::format("{}", fmt::join(texts, "\n")));
+    group.list("value", numbers, {"1", scenario.sweep[key].key + ", NaN where it is no number"});
+  }
+  const std::size_t quantities = points.empty() ? 0 : points.front().rows.size();
+  for (std::size_t q = 0; q < quantities; ++q) {
+    Hdf5Group group = table.group(fmt::format("quantities/{:03}", q));
+    write_row(group, points.front().rows[q]);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      numbers[i] = q < points[i].rows.size() ? points[i].rows[q].value : std::nan("");
+    }
+    group.list("value", numbers, {points.front().rows[q].unit, points.front().rows[q].quantity});
+  }
+  file.commit();
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,31 @@
+/// A scenario run over a grid of one or two of its keys.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/run.h"
+
+namespace servomill::sim {
+
+/// One point of the grid: a value (TOML) for each key of the sweep, and the comparison there.
+struct SweepPoint {
+  std::vector<std::string> values;
+  std::vector<ComparisonRow> rows;
+};
+
+/// Points of the grid; the last key varies fastest.
+std::vector<std::vector<std::string>> grid_of(const Scenario& scenario);
+
+/// Reads the scenario anew for every point, with the values set as --set would, and runs it.
+/// All points are read and checked before the first one runs.
+/// @throws InputError if there is no [sweep] table, or a point's value is refused
+std::vector<SweepPoint> run_sweep(const std::string& scenario_path,
+                                  const std::vector<std::string>& changes,
+                                  const RunControl& control,
+                                  const std::function<void(const SweepPoint&)>& point_done);
+
+/// The number that a TOML value is, in the unit it is written in ("60 1/s" is 60); NaN if none.
+double number_of(const std::string& toml);
+
+}  // namespace servomill::sim

@@ -1,0 +1,34 @@
+/// Displacement of the linear axes that brings believed errors out or corrects them: the one
+/// formula that all strategies share.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "plant/vocabulary/parameters.h"
+#include "strategies/strategy.h"
+
+namespace servomill::strategies {
+
+enum class Iterations : std::uint8_t { one, converged };
+
+/// Reads "1" or "converged".
+Iterations iterations_of(const Parameters& parameters);
+
+/// The parameter `iterations` as every strategy declares it.
+extern const ParameterSpec kIterationsSpec;
+
+/// Displacement of the set point (3; m) for the programmed position Q.
+///   generate:              P_comp = F_ni(I_i(P)), exact in one step      (paper [G], equation 3)
+///   correct, one:          -(F_ni(Q) - F_i(Q)), leaves about |E'||E|
+///   correct, converged:    F_ni(Q + d) = F_i(Q), the non-ideal inverse
+Eigen::Vector3d set_point_displacement(const Belief& belief, Sign sign, Iterations iterations,
+                                       const Joints& Q);
+
+/// Displacement of the reading (3; m) for the measured position Q: the axis moves by its negative.
+///   correct:               F_ni(Q) - F_i(Q), exact in one step: the reading is where the tool is
+///   generate, one:         -(F_ni(Q) - F_i(Q)) at the measured position, as paper [G] does
+///   generate, converged:   -(F_ni(Q_prog) - F_i(Q_prog)) with Q = Q_prog - d
+Eigen::Vector3d feedback_displacement(const Belief& belief, Sign sign, Iterations iterations,
+                                      const Joints& Q);
+
+}  // namespace servomill::strategies

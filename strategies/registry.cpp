@@ -1,0 +1,36 @@
+#include "strategies/registry.h"
+
+#include <array>
+
+#include "strategies/feedback.h"
+#include "strategies/gcode.h"
+#include "strategies/none.h"
+#include "strategies/table.h"
+
+namespace servomill::strategies {
+namespace {
+
+const std::array<Entry, 4>& table_of_entries() {
+  static const std::array<Entry, 4> kEntries = {feedback_entry(), gcode_entry(), none_entry(),
+                                                table_entry()};
+  return kEntries;
+}
+
+}  // namespace
+
+std::span<const Entry> entries() { return table_of_entries(); }
+
+const Entry* find(std::string_view name) {
+  for (const Entry& entry : entries()) {
+    if (entry.name == name) return &entry;
+  }
+  return nullptr;
+}
+
+std::vector<std::string_view> names() {
+  std::vector<std::string_view> out;
+  for (const Entry& entry : entries()) out.push_back(entry.name);
+  return out;
+}
+
+}  // namespace servomill::strategies

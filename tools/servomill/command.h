@@ -1,0 +1,87 @@
+/// What all commands of the program share: options, exit status, progress.
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace servomill::tools {
+
+/// Exit status of the program.
+enum Exit : int {
+  kDone = 0,
+  kMachineStopped = 1,  // ran, but the machine stopped
+  kInputWrong = 2,
+  kSystemFailed = 3,
+  kInterrupted = 130,  // SIGINT, as shells count it
+};
+
+using Arguments = std::vector<std::string>;
+
+struct Command {
+  std::string_view name;
+  std::string_view synopsis;  // behind the name
+  std::string_view summary;
+  int (*run)(const Arguments&);
+};
+
+int run_command(const Arguments& arguments);
+int compare_command(const Arguments& arguments);
+int check_command(const Arguments& arguments);
+int canon_command(const Arguments& arguments);
+int list_command(const Arguments& arguments);
+int sweep_command(const Arguments& arguments);
+
+/// Options of one command: named ones, and words that stand by themselves.
+class Options {
+ public:
+  /// @param words  what words mean, for messages ("SCENARIO.toml"); empty: none allowed
+  Options(std::string_view command, std::string_view synopsis, std::string_view summary,
+          std::string_view words);
+
+  boost::program_options::options_description_easy_init add() { return description_.add_options(); }
+
+  /// @return false if the help was asked for, and printed
+  /// @throws InputError for options that there are not
+  bool parse(const Arguments& arguments);
+
+  bool has(const std::string& name) const { return values_.count(name) > 0; }
+  template <class T>
+  const T& get(const std::string& name) const {
+    return values_[name].as<T>();
+  }
+  std::vector<std::string> list(const std::string& name) const {
+    return has(name) ? get<std::vector<std::string>>(name) : std::vector<std::string>{};
+  }
+  std::vector<std::string> words() const { return list("words"); }
+  /// The only word. @throws InputError if there are none or several
+  std::string word() const;
+
+ private:
+  std::string command_, synopsis_, summary_, words_;
+  boost::program_options::options_description description_{"Options"};
+  boost::program_options::variables_map values_;
+};
+
+/// A bar on standard error while it is a terminal, nothing otherwise.
+class ProgressBar {
+ public:
+  explicit ProgressBar(bool quiet);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+  void show(double share);
+  void clear();
+
+ private:
+  bool on_;
+  double begin_;  // s
+  std::size_t shown_ = 0;
+};
+
+/// "OUT.h5" for a scenario: its name in the current folder unless the user says otherwise.
+std::string output_name(const Options& options, const std::string& scenario_name,
+                        std::string_view suffix);
+
+}  // namespace servomill::tools

@@ -1,0 +1,32 @@
+#include <fmt/format.h>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/store.h"
+#include "tools/servomill/command.h"
+
+namespace servomill::tools {
+
+int compare_command(const Arguments& arguments) {
+  Options options(
+      "compare", "OUT.h5...",
+      "Prints the comparison that the scenarios of result files ask for, evaluated anew "
+      "from the recorded signals.",
+      "OUT.h5");
+  options.add()("json", "prints one JSON object a line");
+  if (!options.parse(arguments)) return kDone;
+  if (options.words().empty()) {
+    throw InputError({"servomill compare"}, "needs at least one OUT.h5; see --help");
+  }
+  for (const std::string& path : options.words()) {
+    const sim::StoredRun run = sim::read_run(path);
+    const auto rows = sim::compare(run.quantities, run.cases);
+    if (options.has("json")) {
+      for (const auto& row : rows) fmt::print("{}\n", sim::to_json(row));
+    } else {
+      fmt::print("{}: {}\n\n{}\n", path, run.title, sim::format_table(rows));
+    }
+  }
+  return kDone;
+}
+
+}  // namespace servomill::tools

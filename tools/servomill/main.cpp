@@ -1,0 +1,86 @@
+/// servomill: the program. One command a file; this one chooses and turns exceptions into messages.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <exception>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/hdf5/system_error.h"
+#include "sim/version.h"
+#include "tools/servomill/command.h"
+
+namespace servomill::tools {
+namespace {
+
+constexpr std::array<Command, 6> kCommands = {{
+    {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
+     run_command},
+    {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
+    {"sweep", "SCENARIO.toml [-o OUT.h5]", "runs a scenario over the grid of its [sweep] table",
+     sweep_command},
+    {"check", "FILE...", "checks scenarios, machines and programs", check_command},
+    {"canon", "PROGRAM", "prints the canonical moves of a program, one JSON object a line",
+     canon_command},
+    {"list", "strategies|machines|scenarios|quantities", "prints what there is", list_command},
+}};
+
+void print_usage(std::FILE* to) {
+  fmt::print(to,
+             "servomill {}: five-axis milling machine and servo loop simulator\n\n"
+             "Usage: servomill COMMAND [...]\n\n",
+             sim::kVersion);
+  for (const Command& command : kCommands) {
+    fmt::print(to, "  {:<8} {:<50} {}\n", command.name, command.synopsis, command.summary);
+  }
+  fmt::print(to,
+             "\n`servomill COMMAND --help` explains a command.\n"
+             "Exit status: 0 done, 1 ran but the machine stopped, 2 the input is wrong, 3 the "
+             "system failed.\n");
+}
+
+int dispatch(const Arguments& arguments) {
+  if (arguments.empty()) {
+    print_usage(stderr);
+    return kInputWrong;
+  }
+  const std::string& name = arguments.front();
+  if (name == "--help" || name == "-h" || name == "help") {
+    print_usage(stdout);
+    return kDone;
+  }
+  if (name == "--version") {
+    fmt::print("servomill {}\n", sim::kVersion);
+    return kDone;
+  }
+  const auto command = std::find_if(kCommands.begin(), kCommands.end(),
+                                    [&](const Command& one) { return one.name == name; });
+  if (command == kCommands.end()) {
+    std::array<std::string_view, kCommands.size()> names;
+    std::transform(kCommands.begin(), kCommands.end(), names.begin(),
+                   [](const Command& one) { return one.name; });
+    throw InputError({"servomill"}, fmt::format("no command '{}'{}; see servomill --help", name,
+                                                did_you_mean(name, names)));
+  }
+  return command->run({arguments.begin() + 1, arguments.end()});
+}
+
+}  // namespace
+}  // namespace servomill::tools
+
+int main(int argc, char** argv) {
+  using namespace servomill;
+  try {
+    return tools::dispatch({argv + 1, argv + argc});
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return tools::kInputWrong;
+  } catch (const sim::SystemError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return tools::kSystemFailed;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "servomill: internal error: {}\n", error.what());
+    return tools::kSystemFailed;
+  }
+}

@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+
+#include "plant/vocabulary/input_error.h"
+#include "tools/servomill/command.h"
+
+namespace servomill::tools {
+namespace {
+
+namespace po = boost::program_options;
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// What boost says, and the nearest option of ours.
+std::string unknown_option(const po::unknown_option& error, const po::options_description& known) {
+  const std::string given = error.get_option_name();
+  std::vector<std::string> names;
+  for (const auto& option : known.options()) names.push_back("--" + option->long_name());
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return fmt::format("no option '{}'{}", given, did_you_mean(given, views));
+}
+
+}  // namespace
+
+Options::Options(std::string_view command, std::string_view synopsis, std::string_view summary,
+                 std::string_view words)
+    : command_(command), synopsis_(synopsis), summary_(summary), words_(words) {
+  description_.add_options()("help,h", "this text");
+}
+
+bool Options::parse(const Arguments& arguments) {
+  const Place place{"servomill " + command_};
+  po::options_description all = description_;
+  all.add_options()("words", po::value<std::vector<std::string>>());
+  po::positional_options_description positional;
+  positional.add("words", words_.empty() ? 0 : -1);
+  try {
+    po::store(
+        po::command_line_parser(arguments)
+            .options(all)
+            .positional(positional)
+            .style(po::command_line_style::unix_style & ~po::command_line_style::allow_guessing)
+            .run(),
+        values_);
+    po::notify(values_);
+  } catch (const po::unknown_option& error) {
+    throw InputError(place, unknown_option(error, description_));
+  } catch (const po::too_many_positional_options_error&) {
+    throw InputError(place, "takes no words beside its options; see --help");
+  } catch (const po::error& error) {
+    throw InputError(place, error.what());
+  }
+  if (!has("help")) return true;
+  std::cout << fmt::format("Usage: servomill {} {}\n\n{}\n\n", command_, synopsis_, summary_)
+            << description_;
+  return false;
+}
+
+std::string Options::word() const {
+  const auto all = words();
+  if (all.size() == 1) return all.front();
+  throw InputError({"servomill " + command_},
+                   fmt::format("needs one {}, got {}; see --help", words_, all.size()));
+}
+
+ProgressBar::ProgressBar(bool quiet) : on_(!quiet && isatty(STDERR_FILENO) != 0), begin_(now()) {}
+
+ProgressBar::~ProgressBar() { clear(); }
+
+void ProgressBar::show(double share) {
+  if (!on_) return;
+  constexpr int kWidth = 40;
+  const int full = static_cast<int>(share * kWidth);
+  const double gone = now() - begin_;
+  const std::string rest =
+      share > 0.02 ? fmt::format("{:.0f} s left", gone * (1.0 - share) / share) : std::string();
+  const std::string line = fmt::format("[{}{}] {:3.0f} % {}", std::string(full, '='),
+                                       std::string(kWidth - full, ' '), 100.0 * share, rest);
+  fmt::print(stderr, "\r{:<{}}", line, shown_);
+  std::fflush(stderr);
+  shown_ = line.size();
+}
+
+void ProgressBar::clear() {
+  if (!on_ || shown_ == 0) return;
+  fmt::print(stderr, "\r{:<{}}\r", "", shown_);
+  std::fflush(stderr);
+  shown_ = 0;
+}
+
+std::string output_name(const Options& options, const std::string& scenario_name,
+                        std::string_view suffix) {
+  if (options.has("output")) return options.get<std::string>("output");
+  return fmt::format("{}{}.h5", scenario_name, suffix);
+}
+
+}  // namespace servomill::tools

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/run.h"
+#include "sim/store.h"
+#include "tools/servomill/command.h"
+#include "tools/servomill/interrupt.h"
+
+namespace servomill::tools {
+namespace {
+
+namespace po = boost::program_options;
+
+void print_outcomes(const sim::RunOutput& output) {
+  for (const sim::CaseOutput& one : output.cases) {
+    const sim::CaseResult& result = one.result;
+    if (result.outcome.finished) {
+      fmt::print("{:<12} {:8.2f} s of motion in {:6.2f} s ({:.0f} x real time), {:.0f} blocks\n",
+                 one.name, result.simulated_time, result.wall_time,
+                 result.simulated_time / result.wall_time, one.blocks);
+    } else {
+      fmt::print("{:<12} stopped: {}\n", one.name, result.outcome.reason);
+    }
+  }
+}
+
+}  // namespace
+
+int run_command(const Arguments& arguments) {
+  Options options("run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
+                  "Runs every case of a scenario, prints the comparison and writes all signals to "
+                  "one HDF5 file.",
+                  "SCENARIO.toml");
+  options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
+                "result file (default: name of the scenario with .h5, in this folder)");
+  options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
+                "changes a key of the scenario, such as program.feed_override=0.5, "
+                "case[2].strategy[0].lead_ms=auto or machine.nc.Kv=\"4 m/min/mm\"");
+  options.add()("threads,j", po::value<unsigned>()->default_value(0)->value_name("N"),
+                "threads (default: one a core); results do not depend on it");
+  options.add()("force,f", "replaces the result file if it exists");
+  options.add()("json", "prints the comparison as one JSON object a line");
+  options.add()("quiet,q", "prints nothing but faults");
+  if (!options.parse(arguments)) return kDone;
+
+  const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
+  const std::string path = output_name(options, scenario.name, "");
+  const bool json = options.has("json"), quiet = options.has("quiet");
+  const auto& stop = stop_on_interrupt();
+  std::optional<sim::RunStore> store;
+  ProgressBar bar(quiet);
+  sim::RunControl control;
+  control.threads = options.get<unsigned>("threads");
+  control.stop = &stop;
+  control.progress = [&](double share) { bar.show(share); };
+  control.case_done = [&](const sim::CaseOutput& one) { store->add(one); };
+  control.prepared = [&] { store.emplace(path, options.has("force"), scenario); };
+  const sim::RunOutput output = sim::run_scenario(scenario, control);
+  bar.clear();
+  if (stop) {
+    fmt::print(stderr, "interrupted; what was simulated until then is kept in {}\n",
+               store->partial_path());
+    return kInterrupted;
+  }
+  store->commit(output.comparison);
+
+  bool finished = true;
+  for (const sim::CaseOutput& one : output.cases) finished &= one.result.outcome.finished;
+  if (json) {
+    for (const auto& row : output.comparison) fmt::print("{}\n", sim::to_json(row));
+  } else if (!quiet) {
+    fmt::print("{}\n\n", scenario.title);
+    print_outcomes(output);
+    fmt::print("\n{}\nwritten to {}\n", sim::format_table(output.comparison), path);
+  }
+  if (!finished && (json || quiet)) {
+    for (const sim::CaseOutput& one : output.cases) {
+      if (one.result.outcome.finished) continue;
+      fmt::print(stderr, "case {} stopped: {}\n", one.name, one.result.outcome.reason);
+    }
+  }
+  return finished ? kDone : kMachineStopped;
+}
+
+}  // namespace servomill::tools
