@@ -59,7 +59,10 @@ void SeriesWriter::add_channel(const Channel& channel, std::vector<Hdf5Dataset>&
   } else {
     dataset.attach_scale(columns_.front().dataset, 0);
   }
-  if (has_columns) dataset.attach_scale(scales[labels], 1);
+  if (has_columns) {
+    dataset.attach_scale(scales[labels], 1);
+    dataset.attribute("columns", layout_.labels[labels].letters);  // for readers without scales
+  }
   columns_.push_back({std::move(dataset), width_, columns, channel.quantum});
   width_ += columns;
 }
