@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kOver = 1.0 + 1e-9;  // a limit counts as exceeded beyond this
 constexpr double kRounding = 2e-15;   // m, of positions along the path
+constexpr double kJoint = 1e-9;       // m, m/s, 1e3 m/s^2: rounding where phases meet
 constexpr double kLeast = 1e-12;      // m, waypoints closer than this are one
 
 // S-curve from v0 up to v1 >= v0, acceleration zero at both ends. A fall is a rise read backwards.
@@ -289,7 +290,26 @@ class SpeedPlanner {
       phase(s_r - U * (down.v0 + dw / 3.0), down.v0 + dw, -b, down.j, U);
     }
     law.duration = t;
+    assert(is_continuous(law));
     return law;
+  }
+
+  // Does every phase end where the next begins, and the last at rest at the end?
+  bool is_continuous(const TimeLaw& law) const {
+    for (std::size_t i = 0; i < law.phases.size(); ++i) {
+      const bool last = i + 1 == law.phases.size();
+      const Phase& p = law.phases[i];
+      const Phase next =
+          last ? Phase{law.duration, limits_.back().end, 0.0, 0.0, 0.0} : law.phases[i + 1];
+      const double x = next.t - p.t;
+      const double s = p.s + x * (p.v + x * (p.a / 2.0 + x * p.j / 6.0));
+      const double v = p.v + x * (p.a + x * p.j / 2.0), a = p.a + x * p.j;
+      if (std::abs(s - next.s) > kJoint || std::abs(v - next.v) > kJoint ||
+          std::abs(a - next.a) > 1e3 * kJoint) {
+        return false;
+      }
+    }
+    return true;
   }
 
   std::span<const StretchLimits> limits_;

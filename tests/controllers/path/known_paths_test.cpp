@@ -3,10 +3,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <new>
 #include <numbers>
 
 #include "controllers/path/trajectory.h"
 #include "programs.h"
+
+namespace {
+std::size_t allocations = 0;
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace servomill::controllers::test {
 namespace {
@@ -88,6 +102,14 @@ TEST(OneLine, ReadsTheSameForwardsAndBackwards) {
   }
 }
 
+TEST(OneLine, IsReadWithoutAllocation) {
+  const Trajectory path = random_program(3).plan();
+  Trajectory::Cursor cursor;
+  const std::size_t before = allocations;
+  for (double t = 0.0; t < path.duration(); t += 1 * ms) path.at(t, cursor);
+  EXPECT_EQ(allocations, before);
+}
+
 TEST(Overrides, ScaleFeedsAndRapidsApart) {
   PathOptions half_feed, half_rapid;
   half_feed.feed_override = half_rapid.rapid_override = 0.5;
@@ -103,17 +125,17 @@ TEST(Overrides, ScaleFeedsAndRapidsApart) {
   EXPECT_NEAR(rapid.plan(half_rapid, quick).duration(), 1.6, 0.01);
 }
 
-Program corner(double angle, double feed) {
+Program corner(double angle, double leg, double feed) {
   Program program;
-  program.line(0.05, 0, 0, feed);
-  program.line(0.05 + 0.05 * std::cos(angle), 0.05 * std::sin(angle), 0, feed);
+  program.line(leg, 0, 0, feed);
+  program.line(leg + leg * std::cos(angle), leg * std::sin(angle), 0, feed);
   return program;
 }
 
-double distance_to_corner(const Trajectory& path) {
+double distance_to_corner(const Trajectory& path, double leg) {
   double least = 1.0;
-  each_sample(path, 20 * us, [&](double, const auto& x) {
-    least = std::min(least, std::hypot(x.Q_ref[0] - 0.05, x.Q_ref[1]));
+  each_sample(path, 100 * us, [&](double, const auto& x) {
+    least = std::min(least, std::hypot(x.Q_ref[0] - leg, x.Q_ref[1]));
   });
   return least;
 }
@@ -123,15 +145,15 @@ TEST(Corner, OfNinetyDegreesIsRoundedByTheTolerance) {
     PathOptions options;
     options.tolerance = tolerance;
     // at 1 mm/s rounding is faster than stopping
-    const double off = distance_to_corner(corner(90 * deg, 1 * mm).plan(options));
+    const double off = distance_to_corner(corner(90 * deg, 5 * mm, 1 * mm).plan(options), 5 * mm);
     EXPECT_NEAR(off, tolerance, 0.01 * tolerance);  // samples need not meet the closest point
   }
 }
 
 TEST(Corner, IsExactWhereAStopIsFasterThanRounding) {
-  const Trajectory path = corner(90 * deg, 0.1).plan();
+  const Trajectory path = corner(90 * deg, 50 * mm, 0.1).plan();
   EXPECT_EQ(path.chains().size(), 2U);
-  EXPECT_EQ(path.chains()[0].end[0], 0.05);
+  EXPECT_EQ(path.chains()[0].end[0], 50 * mm);
 }
 
 TEST(Corner, IsNotSlowerWithMoreTolerance) {
@@ -140,7 +162,7 @@ TEST(Corner, IsNotSlowerWithMoreTolerance) {
     for (const double tolerance : {0.1 * um, 1 * um, 10 * um, 100 * um, 1 * mm}) {
       PathOptions options;
       options.tolerance = tolerance;
-      const double time = corner(angle, 0.05).plan(options).duration();
+      const double time = corner(angle, 50 * mm, 0.05).plan(options).duration();
       EXPECT_LE(time, last * 1.01) << angle << " " << tolerance;  // the choice is an estimate
       last = time;
     }
