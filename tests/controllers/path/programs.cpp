@@ -131,7 +131,8 @@ Program random_program(unsigned seed) {
     }
     const double size = dice.log_uniform(smallest, largest);
     const int what = dice.below(20);
-    d = (d + bend * dice.direction() * dice.uniform(0, 1)).normalized();
+    const Eigen::Vector3d wander = dice.direction();
+    d = (d + bend * dice.uniform(0, 1) * wander).normalized();
     if (what == 0) d = -d;  // reversal
     AxisWords to = program.at();
     to.head<3>() += size * d;
