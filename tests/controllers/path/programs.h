@@ -59,9 +59,9 @@ Program random_program(unsigned seed);
 
 /// Time (s) of the fastest motion along the smoothed path of `trajectory` under the limits of
 /// velocity and acceleration alone, and no faster than each joint with limited jerk gets from the
-/// begin to the end of each chain: no motion that stops there is faster. Two passes over the
-/// squared speed, after Pham and Pham, "A new approach to time-optimal path parameterization based
-/// on reachability analysis", IEEE T-RO 34(3), 2018.
+/// begin to the end of each chain: no motion along this path with these stops is faster. Two passes
+/// over the squared speed, after Pham and Pham, "A new approach to time-optimal path
+/// parameterization based on reachability analysis", IEEE T-RO 34(3), 2018.
 double time_bound(const Trajectory& trajectory, const std::vector<Move>& moves,
                   const JointLimits& limits, const PathOptions& options);
 
