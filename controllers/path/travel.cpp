@@ -62,9 +62,10 @@ std::vector<Fault> travel_faults(std::span<const Move> moves, const JointLayout&
       if (!layout.has(k)) continue;
       const bool above = high[k] > upper[k];
       if (!above && low[k] >= lower[k]) continue;
-      faults.push_back({{file, move.line, 0},
-                        message(layout.letter_of(k), k >= kLinearJoints, above ? high[k] : low[k],
-                                above ? upper[k] : lower[k], above)});
+      Fault& fault = faults.emplace_back();  // in place: a temporary here confuses g++ 12
+      fault.place = {file, move.line, 0};
+      fault.message = message(layout.letter_of(k), k >= kLinearJoints, above ? high[k] : low[k],
+                              above ? upper[k] : lower[k], above);
     }
     at = move.end_machine;
   }
