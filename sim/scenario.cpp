@@ -23,8 +23,11 @@ constexpr std::array<std::string_view, 2> kSigns = {"generate", "correct"};
 constexpr std::array<std::string_view, 2> kServos = {"cascade", "ideal"};
 constexpr std::array<std::string_view, 4> kKinds = {"identified", "predicted", "chosen", "bound"};
 
-std::string beside(const std::string& document, const std::string& path) {
-  return (fs::path(document).parent_path() / path).lexically_normal().string();
+// A path as it stands in a document: relative to that document, or, when it comes from --set, to
+// the folder in which the user is.
+std::string beside(const Place& place, const std::string& path) {
+  if (place.file.starts_with("--set")) return path;
+  return (fs::path(place.file).parent_path() / path).lexically_normal().string();
 }
 
 template <class Names>
@@ -53,6 +56,7 @@ class ScenarioReader {
   void read() {
     load_machine();
     Reader root(document_);
+    root.raw("based_on");          // is below this document by now
     root.raw("machine_override");  // is in the machine by now
     out_.title = root.text_or("title", out_.name);
     out_.source = root.text_or("source", "");
@@ -87,7 +91,7 @@ class ScenarioReader {
     }
     const Value* machine = document_.root().find("machine");
     if (machine != nullptr && machine->type == Value::Type::text) {
-      const std::string path = beside(document_.name(), machine->text);
+      const std::string path = beside(machine->place, machine->text);
       out_.machine_text = read_file(path, machine->place, "machine");
       document_.merge(as_machine(Document::from_text(out_.machine_text, path).root()));
     }
@@ -129,7 +133,7 @@ class ScenarioReader {
       program.text = table.text("text");
     } else if (!program.file.empty()) {
       const Place at = table.place("file");
-      program.file = beside(document_.name(), program.file);
+      program.file = beside(at, program.file);
       program.text = read_file(program.file, at, "program");
     }
     program.feed_override = table.real_or("feed_override", 1.0, kNumber, {above(0.0)});
@@ -353,6 +357,31 @@ class ScenarioReader {
   Scenario& out_;
 };
 
+constexpr int kMostBases = 8;
+
+// A document laid over the one that it is based on: what it says wins, lists as a whole.
+Document with_base(const std::string& path, int bases_left) {
+  Document document = Document::from_file(path);
+  const Value* base = document.root().find("based_on");
+  if (base == nullptr) return document;
+  if (base->type != Value::Type::text || base->text.empty()) {
+    throw InputError(base->place, "based_on must be the name of a scenario");
+  }
+  if (bases_left == 0) {
+    throw InputError(base->place,
+                     fmt::format("based_on: more than {} scenarios stand on each other; "
+                                 "is one of them based on itself?",
+                                 kMostBases));
+  }
+  const std::string base_path = beside(base->place, base->text);
+  if (!fs::exists(base_path)) {
+    throw InputError(base->place, fmt::format("based_on = \"{}\"; no such file", base->text));
+  }
+  Document below = with_base(base_path, bases_left - 1);
+  below.merge(document.root());
+  return below;
+}
+
 Scenario read(Document document, const std::vector<std::string>& changes, const std::string& name) {
   Scenario scenario;
   scenario.name = name;
@@ -370,7 +399,7 @@ const CaseSpec* Scenario::find_case(std::string_view case_name) const {
 }
 
 Scenario read_scenario(const std::string& path, const std::vector<std::string>& changes) {
-  Scenario scenario = read(Document::from_file(path), changes, fs::path(path).stem().string());
+  Scenario scenario = read(with_base(path, kMostBases), changes, fs::path(path).stem().string());
   scenario.text = read_file(path, {}, "scenario");
   return scenario;
 }
