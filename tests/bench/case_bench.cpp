@@ -1,0 +1,74 @@
+/// Speed of a whole case and of its parts. The figure that counts is `x_real_time`, simulated
+/// seconds for one second of processor time; the parts say where the rest goes.
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "plant/geometry/volumetric.h"
+#include "sim/run.h"
+
+namespace servomill::sim {
+namespace {
+
+const Scenario& experiment1() {
+  static const Scenario kScenario =
+      read_scenario(SERVOMILL_SOURCE_DIR "/scenarios/guevel2025/experiment1.toml");
+  return kScenario;
+}
+
+// One case of experiment 1: CC424, 10 us base tick, recorded at 1 ms.
+void BM_Case(benchmark::State& state, const char* name) {
+  const CaseSpec& spec = *experiment1().find_case(name);
+  const StopFlag stop = false;
+  double simulated = 0.0;
+  for (auto _ : state) {
+    PreparedCase prepared(experiment1(), spec);
+    std::atomic<float> progress = 0.0F;
+    simulated += prepared.run(stop, progress).result.simulated_time;
+  }
+  state.counters["x_real_time"] = benchmark::Counter(simulated, benchmark::Counter::kIsRate);
+}
+BENCHMARK_CAPTURE(BM_Case, nominal, "nominal")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Case, table, "table")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Case, feedback, "feedback")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Case, feedback_lead, "feedback_lead")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Case, gcode, "gcode")->Unit(benchmark::kMillisecond);
+
+// Reading, rewriting, printing, reading again and planning, without the simulation.
+void BM_Prepare(benchmark::State& state) {
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(PreparedCase(experiment1(), *experiment1().find_case("gcode")));
+  }
+}
+BENCHMARK(BM_Prepare)->Unit(benchmark::kMillisecond);
+
+// All five drives over one instant of the schedule.
+void BM_DriveBank(benchmark::State& state) {
+  const MachineSettings& machine = experiment1().machine;
+  const std::vector<Tick> steps = {4};
+  const plant::DriveBank bank(machine.drives, machine.present(), 10e-6, steps);
+  plant::DriveState drives = bank.at_rest(Joints::Constant(0.1));
+  plant::DriveInput input;
+  input.i_cmd = drives.i;
+  for (auto _ : state) {
+    bank.advance(drives, input, 4);
+    benchmark::DoNotOptimize(drives);
+  }
+}
+BENCHMARK(BM_DriveBank);
+
+// What the feedback hardware evaluates every 60 us.
+void BM_ErrorModel(benchmark::State& state) {
+  const plant::VolumetricModel model(experiment1().machine.chain,
+                                     experiment1().errors.at("imposed"));
+  Joints Q = Joints::Zero();
+  for (auto _ : state) {
+    Q[0] += 1e-9;
+    benchmark::DoNotOptimize(model.joint_offset(Q, {0.0, 0.0, -0.11}));
+  }
+}
+BENCHMARK(BM_ErrorModel);
+
+}  // namespace
+}  // namespace servomill::sim
