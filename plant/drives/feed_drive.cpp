@@ -112,13 +112,15 @@ void DriveBank::advance(DriveState& s, const DriveInput& input, Tick step) const
 
   const std::array<const DriveState::Lanes*, kColumns> in = {&s.i, &s.w,         &s.delta, &s.v,
                                                              &s.x, &input.i_cmd, &force};
-  std::array<DriveState::Lanes, kStates> out{};
+  std::array<DriveState::Lanes, kStates> out;
   for (std::size_t row = 0; row < kStates; ++row) {
+    DriveState::Lanes sum{};
     for (std::size_t col = 0; col < kColumns; ++col) {
       const DriveState::Lanes& a = c[row * kColumns + col];
       const DriveState::Lanes& u = *in[col];
-      for (std::size_t j = 0; j < kJoints; ++j) out[row][j] += a[j] * u[j];
+      for (std::size_t j = 0; j < kJoints; ++j) sum[j] += a[j] * u[j];
     }
+    out[row] = sum;
   }
   s = {out[0], out[1], out[2], out[3], out[4]};
 }
