@@ -1,0 +1,1 @@
+"""Figures of servomill: each module reads result files through `results` and draws with `style`."""

@@ -1,0 +1,34 @@
+"""All figures, by name."""
+import dataclasses
+from typing import Callable
+
+from figures import deviations, error_functions, lag, notches, straightness, volumetric
+
+
+@dataclasses.dataclass(frozen=True)
+class Figure:
+    name: str
+    kind: str          # of the file: "run" or "sweep"
+    help: str
+    draw: Callable     # draw(Run or Sweep) -> matplotlib figure; NotInFile where it cannot
+
+
+FIGURES = (
+    Figure("figure6", "run", "imposed error functions of X",
+           lambda run: error_functions.draw(run, "X")),
+    Figure("figure9", "run", "Y along X (section flank): trajectory, residual, enlarged",
+           lambda run: straightness.draw(run, "Y", "flank")),
+    Figure("figure10", "run", "Z along X (section plane): trajectory, residual, enlarged",
+           lambda run: straightness.draw(run, "Z", "plane")),
+    Figure("figure11", "run", "X of the notches (section notch): position, residual, enlarged",
+           notches.draw),
+    Figure("figure12", "run", "imposed error functions of Z",
+           lambda run: error_functions.draw(run, "Z")),
+    Figure("figure14", "run", "contours of nominal, generated, compensated; differences",
+           volumetric.draw_contours),
+    Figure("figure15", "run", "top plane of nominal, generated, compensated; differences",
+           volumetric.draw_plane),
+    Figure("lag", "sweep", "residual and response time against feed", lag.draw),
+    Figure("deviations", "run", "following error, tool deviation and contour error over time",
+           deviations.draw),
+)

@@ -1,0 +1,84 @@
+"""Lag against feed: residual and response time of each strategy over a sweep of the feed."""
+import re
+
+import numpy as np
+
+from figures import style
+from figures.results import NotInFile
+
+FEED_KEY = "program.feed_override"
+
+
+def feeds(sweep):
+    """The axis of the sweep as (values, label): mm/min where the program has one feed."""
+    if FEED_KEY not in sweep.keys:
+        raise NotInFile(f"the sweep does not vary {FEED_KEY}")
+    if len(sweep.keys) > 1:
+        raise NotInFile("the sweep varies more than the feed: " + ", ".join(sweep.keys))
+    override = sweep.keys[FEED_KEY]
+    program = sweep.scenario.get("program", {})
+    code = re.sub(r"\([^)]*\)|;.*", "", program.get("text", ""))
+    words = set(re.findall(r"F\s*(#\d+|[\d.]+)", code, re.IGNORECASE))
+    if len(words) == 1:
+        word = words.pop()
+        value = program.get("parameters", {}).get(word) if word.startswith("#") else word
+        if value is not None:
+            return override * float(value), "feed, mm/min"
+    return override, "feed override"
+
+
+def curves(sweep, quantity):
+    """{(case, axis): values} of a quantity, in the order of the file."""
+    return {(q["case"], q["axis"]): q for q in sweep.quantities if q["quantity"] == quantity}
+
+
+def draw(sweep):
+    feed, label = feeds(sweep)
+    residual, delay = curves(sweep, "imposed_curve_residual"), curves(sweep, "response_time")
+    if not residual and not delay:
+        raise NotInFile("the sweep holds neither imposed_curve_residual nor response_time")
+    shown = [q for q in ("imposed_curve_residual", "response_time")
+             if curves(sweep, q)]
+    figure, strip, grid = style.panels([1.0], (10.2, 4.6), columns=len(shown))
+    cases = dict.fromkeys(case for case, _ in [*residual, *delay])
+    style.legend(strip, [style.look_of(sweep, case) for case in cases])
+    order = np.argsort(feed)
+    for ax, quantity in zip(grid[0], shown):
+        for (case, _), q in curves(sweep, quantity).items():
+            look = style.look_of(sweep, case)
+            style.line(ax, feed[order], q["value"][order], look, marker=look.marker, markersize=6,
+                       clip_on=False, zorder=3)
+            if quantity == "imposed_curve_residual":
+                _proportional(ax, feed[order], q["value"][order])
+        ax.set_xlim(0.0, feed.max() * 1.03)
+        ax.set_xlabel(label)
+        ax.axhline(0.0, color=style.BLACK, linewidth=0.8)
+    for ax, quantity in zip(grid[0], shown):
+        if quantity == "imposed_curve_residual":
+            axis = ", ".join(sorted({axis for _, axis in residual}))
+            ax.set_ylabel(f"largest residual in {axis}, µm")
+            ax.set_title("Residual (grey: through zero and the last point)")
+        else:
+            ax.set_ylabel("response time, ms")
+            ax.set_title("Response time")
+    style.headline(figure, _message(sweep, delay))
+    return figure
+
+
+def _proportional(ax, feed, values):
+    good = np.isfinite(values)
+    if good.any() and values[good][-1] > 0.02 * ax.get_ylim()[1]:
+        end = np.flatnonzero(good)[-1]
+        ax.plot([0.0, feed[end]], [0.0, values[end]], color="#9a9a9a", linewidth=1.1, zorder=2)
+
+
+def _message(sweep, delay):
+    parts = []
+    for (case, _), q in delay.items():
+        values = q["value"][np.isfinite(q["value"])]
+        if len(values) and values.mean() > 1.0:    # ms; the others do not lag
+            parts.append(f"{style.look_of(sweep, case).label} {values.min():.1f} to "
+                         f"{values.max():.1f} ms")
+    if not parts:
+        return "Lag over feed"
+    return "A constant delay, whatever the feed: " + ", ".join(parts)

@@ -1,0 +1,102 @@
+"""Figure 11: positions of the notches along X against the imposed positioning error."""
+import dataclasses
+import re
+
+import numpy as np
+
+from figures import results, style
+from figures.results import NotInFile
+
+
+@dataclasses.dataclass
+class Notches:
+    """One case: per notch its X (mm), and mean, lowest and highest of displacement and residual."""
+    look: style.Look
+    x: np.ndarray
+    difference: np.ndarray    # (notch, [mean, low, high]) um
+    residual: np.ndarray      # the same
+
+    def largest(self):
+        """Largest residual by magnitude over all samples (um)."""
+        return np.abs(self.residual[:, 1:]).max()
+
+
+def _summary(values):
+    return [values.mean(), values.min(), values.max()]
+
+
+def notches(run, section="notch"):
+    base, found = run.base(), []
+    for case in run.others():
+        parts = results.passes(case.samples([section]))
+        if not parts:
+            raise NotInFile(f"no feed motion in a section named {section}")
+        if not case.has("imposed_linear"):
+            raise NotInFile("no error model is imposed")
+        found.append(Notches(
+            style.look_of(run, case.name),
+            np.array([results.programmed(base, "X", case.column("s")[p]).mean() for p in parts]),
+            np.array([_summary(results.trajectory_difference(case, base, "X", p)) for p in parts]),
+            np.array([_summary(results.imposed_curve_residual(case, base, "X", p))
+                      for p in parts])))
+    return found
+
+
+def draw(run):
+    found = notches(run)
+    bound = _bound(run)
+    figure, strip, rows = style.panels([1.25, 1.0, 1.0], (8.4, 9.0))
+    axes = [row[0] for row in rows]
+    style.legend(strip, [style.IMPOSED] + [one.look for one in found], points=True)
+
+    x = found[0].x
+    reach = 0.12 * np.ptp(x) if np.ptp(x) > 0 else 5.0
+    curve = run.error_functions("X").get("EXX")
+    if curve is not None:
+        inside = (curve[0] >= x.min() - reach) & (curve[0] <= x.max() + reach)
+        style.line(axes[0], curve[0][inside], curve[1][inside], style.IMPOSED)
+    spacing = np.diff(np.sort(x)).min() if len(x) > 1 else 10.0
+    for number, one in enumerate(found):
+        shift = spacing * 0.11 * (number - (len(found) - 1) / 2)   # side by side, not on each other
+        _points(axes[0], one.x + shift, one.difference, one.look)
+        _points(axes[1], one.x + shift, one.residual, one.look)
+        _points(axes[2], one.x + shift, one.residual * 1000.0, one.look)
+
+    axes[0].set_title("(a) Notch positions minus nominal, and what was imposed")
+    axes[0].set_ylabel("X displacement, µm")
+    axes[1].set_title("(b) Difference to the imposed curve"
+                      + (f" on the scale of the paper's bound of ±{bound:g} µm" if bound else ""))
+    axes[1].set_ylabel("residual, µm")
+    if bound:
+        for side in (-bound, bound):
+            axes[1].axhline(side, color=style.GREY, linestyle=style.DASH, linewidth=1.2)
+        axes[1].set_ylim(-1.25 * bound, 1.25 * bound)
+    axes[2].set_title("(c) The same enlarged: nanometres")
+    axes[2].set_ylabel("residual, nm")
+    for ax in axes:
+        ax.axhline(0.0, color=style.BLACK, linewidth=0.8, zorder=1.5)
+        ax.set_xlim(x.min() - reach, x.max() + reach)
+        if ax is not axes[-1]:
+            ax.tick_params(labelbottom=False)
+    axes[-1].set_xlabel("X of the machine, mm   (points: mean over a notch, bars: its range; "
+                        "drawn side by side)")
+    worst = max(one.largest() for one in found)
+    style.headline(figure, f"Notches in X: all strategies within {style.number(worst)} µm "
+                           "of the imposed curve")
+    return figure
+
+
+def _points(ax, x, summary, look):
+    mean, low, high = summary.T
+    ax.errorbar(x, mean, yerr=[mean - low, high - mean], color=look.colour, marker=look.marker,
+                markersize=5, linestyle="none", elinewidth=1.3, capsize=2.5, zorder=3)
+
+
+def _bound(run):
+    # the largest residual that the scenario quotes for X, "< 2 um"
+    for one in run.scenario.get("quantity", []):
+        if one.get("name") == "imposed_curve_residual" and one.get("axis") == "X":
+            found = re.fullmatch(r"<=?\s*([\d.]+)\s*um", one.get("reference", ""))
+            if found:
+                return float(found[1])
+    return None

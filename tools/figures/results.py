@@ -1,0 +1,210 @@
+"""Result files of servomill (HDF5) as arrays, and differences between cases along the path.
+
+Positions are in mm, differences in um, angles in deg, time in s, as the file's `units` say. The
+definitions are those of `servomill compare` (sim/comparison.h); a test holds the two together.
+"""
+import pathlib
+import tomllib
+
+import h5py
+import numpy as np
+
+SCHEMA_VERSION = 1
+UM_PER_MM = 1000.0
+
+
+class InputError(Exception):
+    """The user's file or command is wrong; the text is one complete line."""
+
+
+class NotInFile(Exception):
+    """A figure cannot be drawn from this file; the text says what is missing."""
+
+
+class ResultFile:
+    """What run and sweep files have in common. Use as a context manager."""
+
+    def __init__(self, path):
+        self.path = pathlib.Path(path)
+        if not self.path.exists():
+            raise InputError(f"{path}: error: no such file")
+        if self.path.is_dir():
+            raise InputError(f"{path}: error: is a folder, not a result file of servomill")
+        try:
+            self.h5 = h5py.File(self.path, "r")
+        except OSError as fault:
+            if not h5py.is_hdf5(self.path):
+                raise InputError(f"{path}: error: is not an HDF5 file") from None
+            reason = str(fault).splitlines()[0]
+            raise InputError(f"{path}: error: cannot be read as HDF5: {reason}") from None
+        root = self.h5.attrs
+        if "schema_version" not in root or "kind" not in root:
+            raise InputError(f"{path}: error: is not a result file of servomill")
+        if int(root["schema_version"]) != SCHEMA_VERSION:
+            raise InputError(f"{path}: error: has schema version {int(root['schema_version'])}; "
+                             f"this program reads version {SCHEMA_VERSION}")
+        self.kind = str(root["kind"])          # "run" or "sweep"
+        self.title = str(root.get("title", ""))
+        try:
+            self.scenario = tomllib.loads(str(self.h5["inputs"].attrs["resolved"]))
+        except (KeyError, tomllib.TOMLDecodeError):
+            self.scenario = {}                 # figures then know the cases by their names only
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.h5.close()
+
+    def strategies(self, case):
+        """Tables [[case.strategy]] of a case, in the order in which they act."""
+        for one in self.scenario.get("case", []):
+            if one.get("name") == case:
+                return one.get("strategy", [])
+        return []
+
+
+class Case:
+    """One case of a run: arrays of its group `servo`, read when asked for."""
+
+    def __init__(self, name, group):
+        self.name = name
+        self.finished = int(group.attrs["finished"]) != 0
+        self.outcome = str(group.attrs.get("outcome", ""))
+        self.sections = str(group.attrs["sections"]).split("\n")
+        self._servo = group["servo"]
+        self._read = {}
+
+    def has(self, name):
+        return name in self._servo
+
+    def labels(self, name):
+        """Letters of the columns of a dataset, "XYZ" say."""
+        return str(self._servo[name].attrs["columns"])
+
+    def column(self, name, letter=None):
+        """A dataset (samples), or the column of one axis of it."""
+        if (name, letter) not in self._read:
+            data = self._servo[name]
+            values = data[:] if letter is None else data[:, self.labels(name).index(letter)]
+            self._read[name, letter] = values
+        return self._read[name, letter]
+
+    def samples(self, sections=None):
+        """Indices of the samples of feed motion, in the sections named (all without)."""
+        chosen = self.column("rapid") == 0.0
+        if sections is not None:
+            numbers = [i for i, name in enumerate(self.sections) if name in sections]
+            chosen &= np.isin(self.column("section"), numbers)
+        return np.flatnonzero(chosen)
+
+
+class Run(ResultFile):
+    """A file that `servomill run` wrote."""
+
+    def __init__(self, path):
+        super().__init__(path)
+        if self.kind != "run":
+            raise InputError(f"{path}: error: holds a {self.kind}, not a run")
+        groups = self.h5.get("cases", {})
+        order = [one.get("name") for one in self.scenario.get("case", [])]
+        names = sorted(groups, key=lambda n: (order.index(n) if n in order else len(order), n))
+        self.cases = {name: Case(name, groups[name]) for name in names}
+
+    def finished_cases(self):
+        return [case for case in self.cases.values() if case.finished]
+
+    def base(self):
+        """The case that the others are compared with: the scenario's, or the one named nominal."""
+        named = [q["base"] for q in self.scenario.get("quantity", [])
+                 if q.get("name") == "imposed_curve_residual" and "base" in q]
+        for name in named + ["nominal"]:
+            if name in self.cases:
+                if not self.cases[name].finished:
+                    raise NotInFile(f"case {name}, which the others are compared with, stopped")
+                return self.cases[name]
+        raise NotInFile("no case named nominal to compare with")
+
+    def others(self):
+        """Finished cases without the base; all of these can be compared with it."""
+        base = self.base()
+        found = [case for case in self.finished_cases() if case is not base]
+        if not found:
+            raise NotInFile("no finished case to compare with " + base.name)
+        return found
+
+    def imposed_name(self):
+        """Name of the error model that the comparison is about."""
+        models = list(self.h5.get("errors", {}))
+        name = self.scenario.get("imposed", models[0] if len(models) == 1 else None)
+        if name not in models:
+            raise NotInFile("no error model is imposed")
+        return name
+
+    def error_functions(self, axis):
+        """{name: (positions, values, unit)} of the imposed model's functions of one axis."""
+        path = f"errors/{self.imposed_name()}/{axis}"
+        if path not in self.h5:
+            raise NotInFile(f"no error functions of {axis}")
+        group = self.h5[path]
+        position = group["position"][:]
+        return {name: (position, data[:], str(data.attrs["units"]))
+                for name, data in group.items() if name != "position"}
+
+
+class Sweep(ResultFile):
+    """A file that `servomill sweep` wrote: `keys` {key: values}, `quantities` a list of dicts."""
+
+    def __init__(self, path):
+        super().__init__(path)
+        if self.kind != "sweep":
+            raise InputError(f"{path}: error: holds a {self.kind}, not a sweep")
+        table = self.h5["sweep"]
+        self.keys = {str(g.attrs["key"]): g["value"][:] for g in table.get("keys", {}).values()}
+        self.quantities = [
+            {**{name: str(text) for name, text in g.attrs.items()},
+             "value": g["value"][:], "unit": str(g["value"].attrs["units"])}
+            for g in table.get("quantities", {}).values()]
+
+
+def open_result(path):
+    """The file as a Run or a Sweep."""
+    with ResultFile(path) as probe:
+        kind = probe.kind
+    if kind not in ("run", "sweep"):
+        raise InputError(f"{path}: error: holds a {kind}; figures are drawn from a run or a sweep")
+    return Run(path) if kind == "run" else Sweep(path)
+
+
+def along_path(base, values, s):
+    """Values of the base case's samples at other arc lengths: linear between the sample at or
+    before s and the next one; where the base stands still the last of its samples counts."""
+    s_base = base.column("s")
+    before = np.searchsorted(s_base, s, side="right") - 1
+    row = np.clip(before, 0, len(s_base) - 1)
+    after = np.minimum(row + 1, len(s_base) - 1)
+    length = s_base[after] - s_base[row]
+    weight = np.divide(s - s_base[row], length, out=np.zeros_like(s), where=length > 0.0)
+    weight = np.clip(weight, 0.0, 1.0)
+    return (1.0 - weight) * values[row] + weight * values[after]
+
+
+def trajectory_difference(case, base, axis, rows):
+    """Scale reading of a case minus that of the base at equal s (um), at the samples `rows`."""
+    nominal = along_path(base, base.column("meas_linear", axis), case.column("s")[rows])
+    return (case.column("meas_linear", axis)[rows] - nominal) * UM_PER_MM
+
+
+def imposed_curve_residual(case, base, axis, rows):
+    """trajectory_difference minus the imposed displacement at the programmed position (um)."""
+    return trajectory_difference(case, base, axis, rows) - case.column("imposed_linear", axis)[rows]
+
+
+def programmed(base, axis, s):
+    """Interpolated position of the base case at given arc lengths (mm)."""
+    return along_path(base, base.column("ref_linear", axis), s)
+
+
+def passes(rows):
+    """Splits rising sample indices where samples are left out: one array a pass."""
+    return np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1) if len(rows) else []

@@ -1,0 +1,97 @@
+"""Figures 9 and 10: how much of an error imposed across X the trajectory of Y or Z shows."""
+import dataclasses
+
+import numpy as np
+
+from figures import results, style
+from figures.results import NotInFile
+
+
+@dataclasses.dataclass
+class Track:
+    """One case along X: passes with X, trajectory minus nominal, residual (mm, um, um)."""
+    case: results.Case
+    look: style.Look
+    passes: list
+
+    def largest(self):
+        """Largest residual by magnitude: what `servomill compare` prints (um)."""
+        return max(np.abs(residual).max() for _, _, residual in self.passes)
+
+
+def tracks(run, axis, section):
+    """Tracks of all cases that can be compared, in the order of the scenario."""
+    base, found = run.base(), []
+    for case in run.others():
+        rows = case.samples([section])
+        if not len(rows):
+            raise NotInFile(f"no feed motion in a section named {section}")
+        if not case.has("imposed_linear"):
+            raise NotInFile("no error model is imposed")
+        one = Track(case, style.look_of(run, case.name), [])
+        for part in results.passes(rows):
+            x = results.programmed(base, "X", case.column("s")[part])
+            one.passes.append((x, results.trajectory_difference(case, base, axis, part),
+                               results.imposed_curve_residual(case, base, axis, part)))
+        found.append(one)
+    return found
+
+
+def imposed_curve(run, axis, section):
+    """X (mm) and imposed displacement (um) along the first pass of the base case."""
+    base = run.base()
+    first = results.passes(base.samples([section]))[0]
+    order = np.argsort(base.column("ref_linear", "X")[first], kind="stable")
+    return (base.column("ref_linear", "X")[first][order],
+            base.column("imposed_linear", axis)[first][order])
+
+
+def draw(run, axis, section):
+    found = tracks(run, axis, section)
+    zoomed = [one for one in found if one.look.colour != style.LOOKS["table"].colour]
+    if len(zoomed) == len(found):
+        zoomed = []                            # (b) shows the small ones already
+    heights = [1.25, 1.0, 1.0] if zoomed else [1.25, 1.0]
+    figure, strip, rows = style.panels(heights, (8.4, 2.9 * len(heights) + 0.3))
+    axes = [row[0] for row in rows]
+    style.legend(strip, [style.IMPOSED] + [one.look for one in found])
+
+    x, imposed = imposed_curve(run, axis, section)
+    for one in found:
+        for part, (at, difference, residual) in enumerate(one.passes):
+            _pass(axes[0], at, difference, one.look, part)
+            _pass(axes[1], at, residual, one.look, part)
+            if one in zoomed:
+                _pass(axes[2], at, residual, one.look, part)
+    style.line(axes[0], x, imposed, style.IMPOSED, zorder=3)
+
+    axes[0].set_title(f"(a) Trajectory of {axis} minus nominal, and what was imposed")
+    axes[1].set_title("(b) What is missing: difference to the imposed curve")
+    axes[0].set_ylabel(f"{axis} displacement, µm")
+    if zoomed:
+        axes[2].set_title("(c) The same without the table, enlarged")
+    for ax in axes[1:]:
+        ax.axhline(0.0, color=style.BLACK, linewidth=1.0, zorder=1.5)
+        ax.set_ylabel("residual, µm")
+    for ax in axes:
+        ax.margins(x=0.01)
+        if ax is not axes[-1]:
+            ax.tick_params(labelbottom=False)
+    axes[-1].set_xlabel(_x_label(found))
+    missing = ", ".join(f"{one.look.label} {style.number(one.largest())}" for one in found)
+    style.headline(figure, f"Largest residual in {axis}, µm: {missing}")
+    return figure
+
+
+def _pass(ax, x, y, look, number):
+    # passes back and forth lie over each other; all but the first are thinner
+    more = {} if number == 0 else {"linewidth": 0.8, "alpha": 0.7}
+    style.line(ax, *style.thin(x, y), look, **more)
+
+
+def _x_label(found):
+    passes = found[0].passes
+    rising = [x[-1] > x[0] for x, _, _ in passes]
+    if len(set(rising)) > 1:
+        return "X of the machine, mm   (thin: further passes; the one back lags to the other side)"
+    return "X of the machine, mm" + ("   (thin: further passes)" if len(passes) > 1 else "")

@@ -1,0 +1,120 @@
+"""One look for all figures: colours by strategy, lines that survive a black-and-white print."""
+import dataclasses
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+BLACK, BLUE, PURPLE, LIGHT_PURPLE, RED = "#000000", "#0072b2", "#6a1b9a", "#b07cd8", "#d62718"
+GREY, PALE = "#6b6b6b", "#e9e9e9"
+DASH, DASH_DOT, DOT = (0, (5, 2)), (0, (7, 2, 1.5, 2)), (0, (1.5, 1.5))
+
+
+@dataclasses.dataclass(frozen=True)
+class Look:
+    label: str
+    colour: str
+    line: object = "-"
+    marker: str = "o"
+    width: float = 1.7
+
+
+# Colour, line and marker of a strategy. A case takes the look of its own name where it stands here,
+# else that of the strategy that acts last.
+LOOKS = {
+    "nominal": Look("nominal", BLACK, "-", "o", 1.4),
+    "none": Look("nominal", BLACK, "-", "o", 1.4),
+    "table": Look("table", BLUE, "-", "s"),
+    "feedback": Look("feedback", PURPLE, "-", "o"),
+    "feedback_lead": Look("feedback with lead", LIGHT_PURPLE, DASH, "^"),
+    "gcode": Look("G-code", RED, DASH_DOT, "D"),
+    "generated": Look("generated", RED, DASH_DOT, "D"),
+    "compensated": Look("compensated", PURPLE, "-", "o"),
+    "compensated_lead": Look("compensated with lead", LIGHT_PURPLE, DASH, "^"),
+}
+IMPOSED = Look("imposed curve", BLACK, "-", "", 1.4)
+SPARE = ["#00876c", "#b8860b", "#4d4d4d", "#8c564b"]   # strategies that have no colour yet
+
+
+def look_of(result, case):
+    """The look of a case of a result file."""
+    if case in LOOKS:
+        return LOOKS[case]
+    acting = [one for one in result.strategies(case) if one.get("type") != "none"]
+    kind = acting[-1].get("type", "") if acting else "none"
+    if kind == "feedback" and acting[-1].get("lead_ms", 0) not in (0, 0.0):
+        kind = "feedback_lead"
+    label = case.replace("_", " ")
+    if kind in LOOKS:
+        return dataclasses.replace(LOOKS[kind], label=label)
+    return Look(label, SPARE[sum(kind.encode()) % len(SPARE)], DOT, "v")
+
+
+def set_up():
+    """Fonts and frames that stay legible when a README shows the figure at half its size."""
+    plt.rcParams.update({
+        "font.family": "DejaVu Sans", "font.size": 11, "axes.titlesize": 11.5,
+        "axes.titlelocation": "left", "axes.labelsize": 11, "legend.fontsize": 10.5,
+        "legend.frameon": False, "axes.spines.top": False, "axes.spines.right": False,
+        "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.7, "axes.axisbelow": True,
+        "figure.constrained_layout.use": True, "savefig.dpi": 150, "figure.dpi": 100,
+        "svg.hashsalt": "servomill", "svg.fonttype": "none", "pdf.fonttype": 42,
+        "lines.dash_capstyle": "butt", "path.simplify_threshold": 0.2,
+    })
+
+
+def line(axes, x, y, look, **more):
+    """Draws a curve in the look of a case."""
+    settings = {"color": look.colour, "linestyle": look.line, "linewidth": look.width, **more}
+    return axes.plot(x, y, **settings)[0]
+
+
+def panels(heights, size, columns=1, widths=None, **more):
+    """A figure with a strip for the legend above its grid of axes: (figure, strip, axes[][])."""
+    figure = plt.figure(figsize=size)
+    strip_height = 0.30 / size[1] * sum(heights)
+    grid = figure.add_gridspec(len(heights) + 1, columns, width_ratios=widths,
+                               height_ratios=[strip_height, *heights])
+    strip = figure.add_subplot(grid[0, :])
+    strip.axis("off")
+    axes = [[figure.add_subplot(grid[row + 1, column], **more) for column in range(columns)]
+            for row in range(len(heights))]
+    return figure, strip, axes
+
+
+def legend(strip, looks, points=False):
+    """One legend for the whole figure in the strip above the axes, where it covers no data."""
+    handles = []
+    for look in looks:
+        bare = points and look.marker
+        handles.append(plt.Line2D([], [], color=look.colour, linewidth=look.width, markersize=6,
+                                  linestyle="none" if bare else look.line,
+                                  marker=look.marker if bare else "", label=look.label))
+    strip.legend(handles=handles, loc="center left", bbox_to_anchor=(-0.01, 0.5), ncol=6,
+                 handlelength=2.8 if not points else 1.8, columnspacing=1.5, borderpad=0)
+
+
+def headline(figure, text):
+    """The message of the figure."""
+    figure.suptitle(text, fontsize=13, fontweight="bold", x=0.01, ha="left")
+
+
+def number(value):
+    """A number for a title: three digits at most, no trailing noise."""
+    size = abs(value)
+    return f"{value:.0f}" if size >= 100 else f"{value:.1f}" if size >= 1 else f"{value:.2f}"
+
+
+def thin(x, y, buckets=1500):
+    """Fewer points for drawing; each bucket keeps its lowest and highest, so peaks stay."""
+    if len(y) <= 4 * buckets:
+        return x, y
+    size = len(y) // buckets
+    cut = size * (len(y) // size)
+    blocks = np.nan_to_num(np.asarray(y[:cut], float)).reshape(-1, size)
+    start = np.arange(len(blocks)) * size
+    pair = np.sort(np.stack([start + blocks.argmin(1), start + blocks.argmax(1)], 1), axis=1)
+    keep = np.append(pair.ravel(), len(y) - 1)
+    return x[keep], y[keep]

@@ -1,0 +1,98 @@
+#!/usr/bin/python3
+"""Draws figures from the result files (HDF5) of `servomill run` and `servomill sweep`.
+
+Figures are named after those of Guevel et al. 2025 that they answer to; `--list` prints all.
+Exit status: 0 drawn, 2 the input is wrong, 3 the system failed.
+"""
+import argparse
+import difflib
+import pathlib
+import sys
+
+from figures import style
+from figures.catalogue import FIGURES
+from figures.results import InputError, NotInFile, open_result
+
+FORMATS = ("png", "svg", "pdf")
+# no dates: the same results give the same bytes
+METADATA = {"png": {"Software": "servomill"}, "svg": {"Date": None},
+            "pdf": {"CreationDate": None, "ModDate": None}}
+
+
+def chosen(text, allowed, what):
+    """Splits "a,b" and refuses names that do not exist, with the nearest that does."""
+    names = [name for name in text.split(",") if name]
+    for name in names:
+        if name not in allowed:
+            near = difflib.get_close_matches(name, allowed, 1)
+            hint = f"; did you mean {near[0]}?" if near else "; there are " + ", ".join(allowed)
+            raise InputError(f"plot.py: error: no {what} is named {name}{hint}")
+    if not names:
+        raise InputError(f"plot.py: error: no {what} is named")
+    return list(dict.fromkeys(names))
+
+
+def draw_all(result, named, formats, folder, force):
+    """Draws what the file holds; returns the paths written."""
+    wanted = [figure for figure in FIGURES if not named or figure.name in named]
+    written = []
+    for figure in wanted:
+        paths = [folder / f"{result.path.stem}-{figure.name}.{ending}" for ending in formats]
+        try:
+            if figure.kind != result.kind:
+                raise NotInFile(f"the file holds a {result.kind}, not a {figure.kind}")
+            drawn = figure.draw(result)
+        except NotInFile as missing:
+            if named:
+                raise InputError(f"{result.path}: error: {figure.name}: {missing}") from None
+            print(f"{figure.name}: not drawn, {missing}", file=sys.stderr)
+            continue
+        for path in paths:
+            if path.exists() and not force:
+                raise InputError(f"{path}: error: exists; use --force to overwrite")
+        folder.mkdir(parents=True, exist_ok=True)
+        for path, ending in zip(paths, formats):
+            drawn.savefig(path, metadata=METADATA[ending])
+            written.append(path)
+        style.plt.close(drawn)
+    return written
+
+
+def main(arguments):
+    reader = argparse.ArgumentParser(
+        prog="plot.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    reader.add_argument("file", metavar="OUT.h5", nargs="?", help="result file")
+    reader.add_argument("-o", metavar="DIR", default=".", help="folder to write to (default: here)")
+    reader.add_argument("--format", metavar="png,svg,pdf", default="png", help="default: png")
+    reader.add_argument("--figures", metavar="NAME,...", help="default: all that the file holds")
+    reader.add_argument("--list", action="store_true", help="print the names of all figures")
+    reader.add_argument("--force", action="store_true", help="overwrite existing figures")
+    options = reader.parse_args(arguments)
+
+    if options.list:
+        for figure in FIGURES:
+            print(f"{figure.name:<12}{figure.kind:<7}{figure.help}")
+        return 0
+    if options.file is None:
+        raise InputError("plot.py: error: no result file is named; see plot.py --help")
+    formats = chosen(options.format, FORMATS, "format")
+    named = options.figures and chosen(options.figures, [f.name for f in FIGURES], "figure")
+    style.set_up()
+    with open_result(options.file) as result:
+        written = draw_all(result, named, formats, pathlib.Path(options.o), options.force)
+    for path in written:
+        print(path)
+    if not written:
+        raise InputError(f"{options.file}: error: holds nothing that can be drawn")
+    return 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except InputError as fault:
+        print(fault, file=sys.stderr)
+        sys.exit(2)
+    except OSError as fault:
+        print(f"plot.py: error: {fault}", file=sys.stderr)
+        sys.exit(3)
