@@ -4,7 +4,6 @@ import numpy as np
 from figures import style
 from figures.results import NotInFile
 
-SMALLEST_ROTARY = 1e-6   # deg; axes that stay below are not drawn
 
 
 def rows_of(run):
@@ -16,9 +15,9 @@ def rows_of(run):
     for name, unit in (("following_error_linear", "µm"), ("following_error_rotary", "deg")):
         holders = [case for case in cases if case.has(name)]
         for letter in holders[0].labels(name) if holders else "":
-            size = max(np.abs(case.column(name, letter)).max(initial=0.0) for case in holders)
-            if unit == "deg" and size < SMALLEST_ROTARY:
-                continue
+            if unit == "deg" and not any(np.ptp(case.column("ref_rotary", letter)) > 0.0
+                                         for case in holders if len(case.column("time"))):
+                continue                       # a rotary axis that only holds still
             panels.append((f"Following error of {letter} (set point minus what the NC reads)",
                            unit, lambda case, n=name, a=letter: case.column(n, a)))
     if cases[0].has("tool_deviation"):

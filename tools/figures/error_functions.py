@@ -26,9 +26,7 @@ def draw(run, axis):
         raise NotInFile("no feed motion")
     units = [unit for unit in ("um", "urad") if any(f[2] == unit for f in functions.values())]
     size = (10.5, 3.4 * len(units) + 0.6)
-    figure, strip, axes = style.panels([1.0] * len(units), size, columns=2)
-    strip.remove()
-    largest = {}
+    figure, axes = style.plt.subplots(len(units), 2, figsize=size, squeeze=False)
     for row, unit in enumerate(units):
         curves = _merged({n: f for n, f in functions.items() if f[2] == unit})
         for column, ax in enumerate(axes[row]):
@@ -43,8 +41,6 @@ def draw(run, axis):
                 ax.plot(position[inside], values[inside], color=style.BLACK, label=label,
                         linestyle=DIRECTION_LINES[number % 3],
                         linewidth=1.8 if number % 3 == 0 else 2.0)
-                if column == 0:
-                    largest[label] = np.abs(values[inside]).max()
             ax.set_ylabel(f"error, {UNITS[unit]}")
             ax.margins(x=0.01)
             if column == 1:
@@ -55,7 +51,6 @@ def draw(run, axis):
         axes[row][1].set_title("Whole travel (grey: where the program goes)" if row == 0 else "")
     for ax in axes[-1]:
         ax.set_xlabel(f"{axis} of the machine, mm")
-    name, value = max(((n, v) for n, v in largest.items()), key=lambda one: one[1])
     style.headline(figure, f"Imposed error functions of {axis}: {_units_in_words(functions, used)}")
     return figure
 

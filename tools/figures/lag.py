@@ -41,13 +41,14 @@ def draw(sweep):
              if curves(sweep, q)]
     figure, strip, grid = style.panels([1.0], (10.2, 4.6), columns=len(shown))
     cases = dict.fromkeys(case for case, _ in [*residual, *delay])
-    style.legend(strip, [style.look_of(sweep, case) for case in cases])
+    style.legend(strip, [style.look_of(sweep, case) for case in cases], points=True)
     order = np.argsort(feed)
     for ax, quantity in zip(grid[0], shown):
         for (case, _), q in curves(sweep, quantity).items():
             look = style.look_of(sweep, case)
+            hollow = style.face(look) == "white"
             style.line(ax, feed[order], q["value"][order], look, marker=look.marker, markersize=6,
-                       clip_on=False, zorder=3)
+                       markerfacecolor=style.face(look), clip_on=False, zorder=4 if hollow else 3)
             if quantity == "imposed_curve_residual":
                 _proportional(ax, feed[order], q["value"][order])
         ax.set_xlim(0.0, feed.max() * 1.03)
@@ -56,8 +57,8 @@ def draw(sweep):
     for ax, quantity in zip(grid[0], shown):
         if quantity == "imposed_curve_residual":
             axis = ", ".join(sorted({axis for _, axis in residual}))
-            ax.set_ylabel(f"largest residual in {axis}, µm")
-            ax.set_title("Residual (grey: through zero and the last point)")
+            ax.set_ylabel(f"residual in {axis}, µm")
+            ax.set_title("Largest residual (grey: proportional to the feed)")
         else:
             ax.set_ylabel("response time, ms")
             ax.set_title("Response time")
@@ -73,12 +74,15 @@ def _proportional(ax, feed, values):
 
 
 def _message(sweep, delay):
-    parts = []
+    parts, spread = [], 0.0
     for (case, _), q in delay.items():
         values = q["value"][np.isfinite(q["value"])]
         if len(values) and values.mean() > 1.0:    # ms; the others do not lag
-            parts.append(f"{style.look_of(sweep, case).label} {values.min():.1f} to "
-                         f"{values.max():.1f} ms")
+            parts.append(f"{style.look_of(sweep, case).label} {values.mean():.1f} ms")
+            spread = max(spread, np.abs(values / values.mean() - 1.0).max())
     if not parts:
-        return "Lag over feed"
-    return "A constant delay, whatever the feed: " + ", ".join(parts)
+        return "Lag against feed"
+    if spread > 0.1:
+        return "Mean delay: " + ", ".join(parts) + f" (varies by {100 * spread:.0f} %)"
+    return (f"The delay is the same at every feed within {max(1.0, np.ceil(100 * spread)):.0f} %: "
+            + ", ".join(parts))

@@ -43,22 +43,25 @@ def notches(run, section="notch"):
 
 
 def draw(run):
+    run.need_errors_of_only("X")
     found = notches(run)
     bound = _bound(run)
     figure, strip, rows = style.panels([1.25, 1.0, 1.0], (8.4, 9.0))
     axes = [row[0] for row in rows]
-    style.legend(strip, [style.IMPOSED] + [one.look for one in found], points=True)
+    style.legend(strip, [style.IMPOSED] + [one.look for one in found], lines=False, points=True)
 
     x = found[0].x
     reach = 0.12 * np.ptp(x) if np.ptp(x) > 0 else 5.0
     curve = run.error_functions("X").get("EXX")
     if curve is not None:
         inside = (curve[0] >= x.min() - reach) & (curve[0] <= x.max() + reach)
-        style.line(axes[0], curve[0][inside], curve[1][inside], style.IMPOSED)
+        style.line(axes[0], curve[0][inside], curve[1][inside], style.IMPOSED, linewidth=1.6)
     spacing = np.diff(np.sort(x)).min() if len(x) > 1 else 10.0
     for number, one in enumerate(found):
         shift = spacing * 0.11 * (number - (len(found) - 1) / 2)   # side by side, not on each other
-        _points(axes[0], one.x + shift, one.difference, one.look)
+        axes[0].plot(one.x, one.difference[:, 0], one.look.marker, color=one.look.colour,
+                     markerfacecolor="none", markeredgewidth=1.5, zorder=3,
+                     markersize=4.0 + 3.5 * (len(found) - 1 - number))   # one inside the other
         _points(axes[1], one.x + shift, one.residual, one.look)
         _points(axes[2], one.x + shift, one.residual * 1000.0, one.look)
 
@@ -71,7 +74,9 @@ def draw(run):
         for side in (-bound, bound):
             axes[1].axhline(side, color=style.GREY, linestyle=style.DASH, linewidth=1.2)
         axes[1].set_ylim(-1.25 * bound, 1.25 * bound)
-    axes[2].set_title("(c) The same enlarged: nanometres")
+    step = run.scenario.get("machine", {}).get("axis", {}).get("X", {}).get("scale_step")
+    axes[2].set_title("(c) The same enlarged" + (f": one count of the scale is {step}"
+                                                 if step else ""))
     axes[2].set_ylabel("residual, nm")
     for ax in axes:
         ax.axhline(0.0, color=style.BLACK, linewidth=0.8, zorder=1.5)
@@ -89,7 +94,8 @@ def draw(run):
 def _points(ax, x, summary, look):
     mean, low, high = summary.T
     ax.errorbar(x, mean, yerr=[mean - low, high - mean], color=look.colour, marker=look.marker,
-                markersize=5, linestyle="none", elinewidth=1.3, capsize=2.5, zorder=3)
+                markersize=5, linestyle="none", elinewidth=1.3, capsize=2.5, zorder=3,
+                markerfacecolor=style.face(look))
 
 
 def _bound(run):

@@ -141,6 +141,13 @@ class Run(ResultFile):
             raise NotInFile("no error model is imposed")
         return name
 
+    def need_errors_of_only(self, axis):
+        """Throws NotInFile unless the imposed errors depend on this axis and on no other."""
+        axes = list(self.h5[f"errors/{self.imposed_name()}"])
+        if axes != [axis]:
+            raise NotInFile(f"the imposed errors are functions of {', '.join(axes)}, not of "
+                            f"{axis} alone")
+
     def error_functions(self, axis):
         """{name: (positions, values, unit)} of the imposed model's functions of one axis."""
         path = f"errors/{self.imposed_name()}/{axis}"

@@ -46,13 +46,22 @@ def imposed_curve(run, axis, section):
             base.column("imposed_linear", axis)[first][order])
 
 
+def enlargements(found):
+    """Groups of tracks for one panel each: all, then again and again without the largest, as long
+    as what remains is less than half as large and hence was hard to see."""
+    groups = [sorted(found, key=Track.largest)]
+    for size in range(len(found) - 1, 0, -1):
+        if groups[0][size - 1].largest() < 0.5 * groups[-1][-1].largest():
+            groups.append(groups[0][:size])
+    return groups
+
+
 def draw(run, axis, section):
+    run.need_errors_of_only("X")
     found = tracks(run, axis, section)
-    zoomed = [one for one in found if one.look.colour != style.LOOKS["table"].colour]
-    if len(zoomed) == len(found):
-        zoomed = []                            # (b) shows the small ones already
-    heights = [1.25, 1.0, 1.0] if zoomed else [1.25, 1.0]
-    figure, strip, rows = style.panels(heights, (8.4, 2.9 * len(heights) + 0.3))
+    groups = enlargements(found)
+    heights = [1.3] + [1.0] * len(groups)
+    figure, strip, rows = style.panels(heights, (8.4, 2.15 * sum(heights) + 0.9))
     axes = [row[0] for row in rows]
     style.legend(strip, [style.IMPOSED] + [one.look for one in found])
 
@@ -60,16 +69,17 @@ def draw(run, axis, section):
     for one in found:
         for part, (at, difference, residual) in enumerate(one.passes):
             _pass(axes[0], at, difference, one.look, part)
-            _pass(axes[1], at, residual, one.look, part)
-            if one in zoomed:
-                _pass(axes[2], at, residual, one.look, part)
-    style.line(axes[0], x, imposed, style.IMPOSED, zorder=3)
+            for ax, group in zip(axes[1:], groups):
+                if one in group:
+                    _pass(ax, at, residual, one.look, part)
+    style.line(axes[0], x, imposed, style.IMPOSED, zorder=1.9)
 
     axes[0].set_title(f"(a) Trajectory of {axis} minus nominal, and what was imposed")
     axes[1].set_title("(b) What is missing: difference to the imposed curve")
     axes[0].set_ylabel(f"{axis} displacement, µm")
-    if zoomed:
-        axes[2].set_title("(c) The same without the table, enlarged")
+    for letter, ax, group in zip("cdefgh", axes[2:], groups[1:]):
+        names = [one.look.label for one in found if one in group]
+        ax.set_title(f"({letter}) Enlarged: " + ", ".join(names))
     for ax in axes[1:]:
         ax.axhline(0.0, color=style.BLACK, linewidth=1.0, zorder=1.5)
         ax.set_ylabel("residual, µm")
@@ -78,15 +88,16 @@ def draw(run, axis, section):
         if ax is not axes[-1]:
             ax.tick_params(labelbottom=False)
     axes[-1].set_xlabel(_x_label(found))
-    missing = ", ".join(f"{one.look.label} {style.number(one.largest())}" for one in found)
-    style.headline(figure, f"Largest residual in {axis}, µm: {missing}")
+    missing = ", ".join(f"{one.look.label} {style.number(one.largest())} µm"
+                        for one in found if "lead" not in one.look.label)
+    style.headline(figure, f"{axis} misses the imposed curve by: {missing}")
     return figure
 
 
 def _pass(ax, x, y, look, number):
     # passes back and forth lie over each other; all but the first are thinner
     more = {} if number == 0 else {"linewidth": 0.8, "alpha": 0.7}
-    style.line(ax, *style.thin(x, y), look, **more)
+    style.noisy_line(ax, x, y, look, **more)
 
 
 def _x_label(found):

@@ -30,11 +30,11 @@ LOOKS = {
     "feedback": Look("feedback", PURPLE, "-", "o"),
     "feedback_lead": Look("feedback with lead", LIGHT_PURPLE, DASH, "^"),
     "gcode": Look("G-code", RED, DASH_DOT, "D"),
-    "generated": Look("generated", RED, DASH_DOT, "D"),
+    "generated": Look("generated", RED, "-", "D"),
     "compensated": Look("compensated", PURPLE, "-", "o"),
     "compensated_lead": Look("compensated with lead", LIGHT_PURPLE, DASH, "^"),
 }
-IMPOSED = Look("imposed curve", BLACK, "-", "", 1.4)
+IMPOSED = Look("imposed curve", BLACK, "-", "", 3.0)   # lies under the cases
 SPARE = ["#00876c", "#b8860b", "#4d4d4d", "#8c564b"]   # strategies that have no colour yet
 
 
@@ -74,7 +74,7 @@ def line(axes, x, y, look, **more):
 def panels(heights, size, columns=1, widths=None, **more):
     """A figure with a strip for the legend above its grid of axes: (figure, strip, axes[][])."""
     figure = plt.figure(figsize=size)
-    strip_height = 0.30 / size[1] * sum(heights)
+    strip_height = 0.26 / size[1] * sum(heights)
     grid = figure.add_gridspec(len(heights) + 1, columns, width_ratios=widths,
                                height_ratios=[strip_height, *heights])
     strip = figure.add_subplot(grid[0, :])
@@ -84,27 +84,49 @@ def panels(heights, size, columns=1, widths=None, **more):
     return figure, strip, axes
 
 
-def legend(strip, looks, points=False):
+def face(look):
+    """Inside of a marker: white for the dashed looks, so that what lies below shows."""
+    return "white" if look.line == DASH else look.colour
+
+
+def legend(strip, looks, lines=True, points=False):
     """One legend for the whole figure in the strip above the axes, where it covers no data."""
     handles = []
     for look in looks:
-        bare = points and look.marker
+        with_line = lines or not look.marker
         handles.append(plt.Line2D([], [], color=look.colour, linewidth=look.width, markersize=6,
-                                  linestyle="none" if bare else look.line,
-                                  marker=look.marker if bare else "", label=look.label))
-    strip.legend(handles=handles, loc="center left", bbox_to_anchor=(-0.01, 0.5), ncol=6,
-                 handlelength=2.8 if not points else 1.8, columnspacing=1.5, borderpad=0)
+                                  linestyle=look.line if with_line else "none",
+                                  marker=look.marker if points else "",
+                                  markerfacecolor=face(look), label=look.label))
+    box = strip.legend(handles=handles, loc="center left", bbox_to_anchor=(-0.01, 0.5), ncol=6,
+                       handlelength=2.6 if lines else 1.6, columnspacing=1.3, borderpad=0,
+                       handletextpad=0.6)
+    box.set_in_layout(False)
 
 
 def headline(figure, text):
     """The message of the figure."""
-    figure.suptitle(text, fontsize=13, fontweight="bold", x=0.01, ha="left")
+    room = 72.0 * 0.98 * figure.get_figwidth()       # points; a bold letter is about 0.62 em wide
+    figure.suptitle(text, fontsize=min(13.0, room / (0.62 * len(text))), fontweight="bold", x=0.01, ha="left")
 
 
 def number(value):
     """A number for a title: three digits at most, no trailing noise."""
     size = abs(value)
     return f"{value:.0f}" if size >= 100 else f"{value:.1f}" if size >= 1 else f"{value:.2f}"
+
+
+def noisy_line(axes, x, y, look, buckets=300, **more):
+    """Draws a curve that may carry noise: its mean over short pieces in the look of the case, so
+    that dashes stay dashes, and a pale band from the lowest to the highest sample."""
+    if len(y) > 4 * buckets:
+        size = len(y) // buckets
+        blocks = [np.asarray(v[:size * (len(v) // size)]).reshape(-1, size) for v in (x, y)]
+        x, low, high, y = (blocks[0].mean(1), blocks[1].min(1), blocks[1].max(1),
+                           blocks[1].mean(1))
+        axes.fill_between(x, low, high, color=look.colour, alpha=0.25, linewidth=0,
+                          zorder=more.get("zorder", 2) - 0.05)
+    return line(axes, x, y, look, **more)
 
 
 def thin(x, y, buckets=1500):

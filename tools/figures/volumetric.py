@@ -1,4 +1,5 @@
 """Figures 14 and 15: trajectories of experiment 2, their differences magnified, and per direction."""
+import dataclasses
 import math
 
 import numpy as np
@@ -54,17 +55,12 @@ def magnification(extent_mm, largest_um, share=0.08):
 
 def draw_contours(run):
     base, found = differences(run, CONTOURS)
-    figure, strip, grid = style.panels([1.0, 1.0, 1.0], (11.5, 6.9), columns=2, widths=[1.25, 1.0])
-    spec = grid[0][0].get_gridspec()
-    for row in grid:
-        row[0].remove()
-    plan = figure.add_subplot(spec[1:, 0])
-    _legend(run, strip, base, found)
+    figure, plan, side = _canvas(run, base, found)
 
     _, path, moved = found["generated"]
-    extent = np.nanmax(np.ptp(path[~np.isnan(path[:, 0])][:, :2], axis=0))
-    scale = magnification(extent, np.nanmax(np.hypot(moved[:, 0], moved[:, 1])))
-    plan.plot(path[:, 0], path[:, 1], color=style.BLACK, linewidth=1.6, zorder=2)
+    extent = np.nanmax(np.nanmax(path[:, :2], axis=0) - np.nanmin(path[:, :2], axis=0))
+    scale = magnification(extent, np.nanmax(np.hypot(moved[:, 0], moved[:, 1])), 0.08)
+    plan.plot(path[:, 0], path[:, 1], color=style.BLACK, linewidth=3.0, zorder=2)
     for name, (s, at, difference) in found.items():
         look = style.look_of(run, name)
         shown = at[:, :2] + difference[:, :2] * scale / results.UM_PER_MM
@@ -76,50 +72,78 @@ def draw_contours(run):
                                           "color": look.colour, "linewidth": 0.9,
                                           "shrinkA": 0, "shrinkB": 0})
     plan.set_aspect("equal", adjustable="datalim")
-    plan.set_title(f"Seen from above; differences drawn × {scale:,.0f}".replace(",", " "))
+    plan.set_title(f"Seen from above; differences drawn × {scale:.0f}")
     plan.set_xlabel("X, mm")
     plan.set_ylabel("Y, mm")
-    _per_direction(run, [row[1] for row in grid], found)
-    style.headline(figure, _message(run, found))
+    _per_direction(run, side, base, found)
+    style.headline(figure, _message("Contours", found))
     return figure
 
 
 def draw_plane(run):
     base, found = differences(run, PLANE)
+    figure, picture, side = _canvas(run, base, found)
+
+    s, path, moved = found["generated"]
+    level = np.nanmean(path[:, 2])
+    extent = np.nanmax(np.nanmax(path[:, :2], axis=0) - np.nanmin(path[:, :2], axis=0))
+    scale = magnification(extent, np.nanmax(np.linalg.norm(moved, axis=1)), 0.3)
+    flat = path - [0.0, 0.0, level]
+    picture.plot(*_oblique(flat), color=style.BLACK, linewidth=3.0, zorder=2)
+    for name, (_, at, difference) in found.items():
+        look = style.look_of(run, name)
+        shown = at - [0.0, 0.0, level] + difference * scale / results.UM_PER_MM
+        style.line(picture, *_oblique(shown), look, linewidth=1.5, zorder=3)
+        if name == "generated":
+            for k in _every(s, at, 75):
+                picture.plot(*_oblique(np.stack([flat[k], shown[k]])), color=look.colour,
+                             linewidth=0.8, zorder=2.5)
+    _oblique_scales(picture, flat, scale)
+    picture.set_title(f"Seen obliquely, Z {level:.0f} mm; differences drawn × {scale:.0f}")
+    _per_direction(run, side, base, found)
+    style.headline(figure, _message("Top plane", found))
+    return figure
+
+
+def _oblique(points):
+    # cavalier projection: X to the right, Z up, Y up and to the right
+    return points[:, 0] + 0.40 * points[:, 1], points[:, 2] + 0.55 * points[:, 1]
+
+
+def _oblique_scales(ax, flat, scale):
+    # the passes are named by their Y, the front one by its X; a bar tells what a height means
+    ends = np.flatnonzero(np.isnan(flat[:, 0]))
+    starts = np.concatenate([[0], ends[:-1] + 1])
+    low, high = np.nanmin(flat[:, 0]), np.nanmax(flat[:, 0])
+    gap = 0.04 * (high - low)
+    fronts = []
+    for start, end in zip(starts, ends):
+        y = np.mean(flat[start:end, 1])
+        fronts.append(y)
+        u, v = _oblique(np.array([[high + gap, y, 0.0]]))
+        ax.text(u[0], v[0], f"Y {y:.0f}", va="center")
+    for x in (low, high):
+        u, v = _oblique(np.array([[x, min(fronts), 0.0]]))
+        ax.text(u[0], v[0] - gap, f"X {x:.0f} mm", ha="center", va="top")
+    bar = 10.0 * scale / results.UM_PER_MM      # mm on the picture
+    u, v = _oblique(np.array([[low - 2.5 * gap, min(fronts), 0.0]]))
+    ax.plot([u[0]] * 2, [v[0], v[0] + bar], color=style.GREY, linewidth=2.5)
+    ax.text(u[0] - 0.5 * gap, v[0] + bar / 2, "10 µm", ha="right", va="center", color=style.GREY)
+    ax.margins(0.08)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.axis("off")
+
+
+def _canvas(run, base, found):
+    # one large picture on the left, three strips for X, Y, Z on the right
     figure, strip, grid = style.panels([1.0, 1.0, 1.0], (11.5, 6.9), columns=2, widths=[1.25, 1.0])
     spec = grid[0][0].get_gridspec()
     for row in grid:
         row[0].remove()
-    view = figure.add_subplot(spec[1:, 0], projection="3d")
-    _legend(run, strip, base, found)
-
-    generated = style.look_of(run, "generated")
-    view.plot(*found["generated"][1].T, color=style.BLACK, linewidth=1.6)
-    level = np.nanmean(found["generated"][1][:, 2])
-    # heights are drawn in um above the nominal plane: the axis itself is the magnification
-    view.cla()
-    for name, (s, at, difference) in found.items():
-        look = style.look_of(run, name)
-        if name == "generated":
-            view.plot(at[:, 0], at[:, 1], np.zeros(len(at)), color=style.BLACK, linewidth=1.6)
-            for k in _every(s, at, 60):
-                view.plot([at[k, 0]] * 2, [at[k, 1]] * 2, [0.0, difference[k, 2]],
-                          color=generated.colour, linewidth=0.8)
-        view.plot(at[:, 0], at[:, 1], difference[:, 2], color=look.colour, linestyle=look.line,
-                  linewidth=1.6)
-    _, at, difference = found["generated"]
-    view.set_title(f"Height over the nominal plane at Z {level:.0f} mm (µm on mm: × 1000 and more)")
-    view.set_xlabel("X, mm")
-    view.set_ylabel("Y, mm")
-    view.set_zlabel("dZ, µm")
-    view.view_init(elev=24, azim=-62)
-    _per_direction(run, [row[1] for row in grid], found)
-    style.headline(figure, _message(run, found))
-    return figure
-
-
-def _legend(run, strip, base, found):
-    style.legend(strip, [style.look_of(run, name) for name in [base.name, *found]])
+    picture = figure.add_subplot(spec[1:, 0])
+    nominal = dataclasses.replace(style.look_of(run, base.name), width=3.0)
+    style.legend(strip, [nominal] + [style.look_of(run, name) for name in found])
+    return figure, picture, [row[1] for row in grid]
 
 
 def _every(s, at, count):
@@ -129,21 +153,36 @@ def _every(s, at, count):
     return good[np.searchsorted(length, np.linspace(0.0, length[-1], count))]
 
 
-def _per_direction(run, axes, found):
+def _per_direction(run, axes, base, found):
     for number, (ax, axis) in enumerate(zip(axes, "XYZ")):
-        ax.axhline(0.0, color=style.BLACK, linewidth=1.4, zorder=2)
+        ax.axhline(0.0, color=style.BLACK, linewidth=3.0, zorder=2)
         for name, (s, _, difference) in found.items():
-            style.line(ax, s, difference[:, number], style.look_of(run, name), zorder=3)
+            gaps = np.flatnonzero(np.isnan(s))
+            for part in np.split(np.arange(len(s)), gaps):
+                part = part[~np.isnan(s[part])]
+                style.noisy_line(ax, s[part], difference[part, number],
+                                 style.look_of(run, name), buckets=100, zorder=3)
         ax.set_ylabel(f"d{axis}, µm")
         ax.margins(x=0.01)
         if ax is not axes[-1]:
             ax.tick_params(labelbottom=False)
-    axes[0].set_title("Difference to nominal at equal path length")
-    axes[-1].set_xlabel("path length s, mm")
+    axes[-1].set_xlabel("path length s, mm   (differences to nominal at equal s)")
+    _name_sections(axes[0], base, found)
 
 
-def _message(run, found):
+def _name_sections(ax, base, found):
+    # above the strips, over the middle of each section
+    s = found["generated"][0]
+    for name in dict.fromkeys(base.sections):
+        for part in results.passes(base.samples([name])):
+            middle = base.column("s")[part].mean()
+            if np.nanmin(s) <= middle <= np.nanmax(s) and np.nanmin(np.abs(s - middle)) < 1.0:
+                ax.text(middle, 1.04, name, ha="center", color=style.GREY,
+                        transform=ax.get_xaxis_transform())
+
+
+def _message(what, found):
     def largest(name):
         return np.nanmax(np.abs(found[name][2]))
-    return (f"{style.number(largest('generated'))} µm generated, "
-            f"{style.number(largest('compensated'))} µm left after compensation (any direction)")
+    return (f"{what}: up to {style.number(largest('generated'))} µm generated in an axis, "
+            f"{style.number(largest('compensated'))} µm left after compensation")
