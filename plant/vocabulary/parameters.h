@@ -24,7 +24,7 @@ struct ParameterSpec {
 /// Values read for such a table: numbers in SI, or one of the words.
 class Parameters {
  public:
-  void set(std::string_view name, double si_value) { numbers_[std::string(name)] = si_value; }
+  void set(std::string_view name, double value_si) { numbers_[std::string(name)] = value_si; }
   void set(std::string_view name, std::string_view word) { words_[std::string(name)] = word; }
 
   bool is_word(std::string_view name) const { return words_.contains(std::string(name)); }
