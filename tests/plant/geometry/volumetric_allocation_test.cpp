@@ -1,24 +1,9 @@
 /// A prepared model does not touch the heap: it is evaluated in the tick.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
 #include "plant/geometry/volumetric.h"
+#include "tests/counting_new.h"
 #include "tests/plant/geometry/random_errors.h"
-
-namespace {
-int allocations = 0;
-}
-
-// Not inlined, or the compiler sees free() at the end of what it takes for the library's new.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size)) return p;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace servomill::plant {
 namespace {
@@ -33,7 +18,7 @@ TEST(VolumetricModel, DoesNotAllocate) {
     const VolumetricModel model(chain, errors);
     const Joints Q = random_joints(chain, random);
     const Eigen::Vector3d p_ST(0.0, 0.0, -0.1);
-    const int before = allocations;
+    const std::size_t before = allocations;
     const Eigen::Vector3d p_WT = model.forward(Q, p_ST).p_WT;
     const Eigen::Vector3d dp = model.error(Q, p_ST).dp_W;
     const Eigen::Vector3d first = model.first_order_error(Q, p_ST).dp_W;
