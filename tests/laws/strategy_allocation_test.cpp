@@ -1,0 +1,45 @@
+/// Parts of strategies are called in the tick: they do not touch the heap.
+#include <gtest/gtest.h>
+
+#include "tests/counting_new.h"
+#include "tests/strategies/beliefs.h"
+
+namespace servomill::strategies {
+namespace {
+
+TEST(EveryStrategy, DoesNotAllocateInARun) {
+  plant::Uniform random(41);
+  const Belief belief = belief_in(plant::random_errors(random, 10e-6));
+  for (const Entry& entry : entries()) {
+    for (const Sign sign : kBothSigns) {
+      for (const bool converged : {false, true}) {
+        Parameters parameters = default_parameters(entry);
+        if (converged && parameters.is_word("iterations")) {
+          parameters.set("iterations", "converged");
+        }
+        for (const ParameterSpec& spec : entry.parameters) {  // a lead needs readings of the past
+          if (std::find(spec.words.begin(), spec.words.end(), "auto") != spec.words.end()) {
+            parameters.set(spec.name, "auto");
+          }
+        }
+        const Acting acting = make_acting(entry, parameters, sign, belief);
+        Joints Q = belief.reference;
+        double sum = 0.0;
+        const std::size_t before = allocations;
+        if (acting.feedback) sum += acting.feedback->settle(Q).sum();
+        for (int n = 0; n < 100; ++n) {
+          for (int j = 0; j < kLinearJoints; ++j) Q[j] += 1e-5;
+          if (acting.set_point) sum += acting.set_point->offset(Q).sum();
+          if (acting.feedback) sum += acting.feedback->evaluate(Q).sum();
+        }
+        EXPECT_EQ(allocations, before) << entry.name;
+        EXPECT_TRUE(std::isfinite(sum));
+        ::operator delete(::operator new(1));  // the counter counts
+        EXPECT_EQ(allocations, before + 1);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace servomill::strategies

@@ -1,0 +1,262 @@
+/// Laws of every strategy in the registry. A new one is held to them by being in the list.
+#include <gtest/gtest.h>
+
+#include "plant/vocabulary/move_curve.h"
+#include "tests/strategies/beliefs.h"
+
+namespace servomill::strategies {
+namespace {
+
+// A displacement of 10 um is a difference of coordinates of 0.3 m, twice rounded.
+constexpr double kRounding = 1e-15;  // m
+
+const char* name_of(Sign sign) { return sign == Sign::generate ? "generate" : "correct"; }
+
+// The points of a table over one axis with the default spacing, away from the ends.
+Joints with_one_axis_moved(const Belief& belief, int joint, double step) {
+  Joints Q = belief.reference;
+  Q[joint] += step * 1.6384 * mm;
+  return Q;
+}
+
+Joints random_position(const Belief& belief, plant::Uniform& random) {
+  Joints Q = belief.reference;
+  for (int j = 0; j < kLinearJoints; ++j) Q[j] = 0.15 * random();
+  return Q;
+}
+
+// The believed errors of the random models are up to about 3 x size, their slopes 8 x size per m.
+constexpr double kErrorSize = 10e-6;  // m, rad
+
+Belief random_belief(double size = kErrorSize) {
+  plant::Uniform random(11);
+  return belief_in(plant::random_errors(random, size));
+}
+
+Move line_to(const Belief& belief, const Joints& Q, int line, double s_begin, double s_end) {
+  Move move;
+  move.line = line;
+  move.end = move.end_machine = belief.layout.words(Q);
+  move.s_begin = s_begin;
+  move.s_end = s_end;
+  move.feed = 0.02;
+  return move;
+}
+
+// A rapid, a line, an arc in XY and something that is no motion.
+std::vector<Move> some_program(const Belief& belief) {
+  Joints Q = belief.reference;
+  std::vector<Move> moves;
+  Q[0] += 5.0 * mm;
+  moves.push_back(line_to(belief, Q, 1, 0.0, 5.0 * mm));
+  moves.back().kind = MoveKind::rapid;
+  Q[1] += 7.3 * mm;
+  moves.push_back(line_to(belief, Q, 2, 5.0 * mm, 12.3 * mm));
+  Move dwell;
+  dwell.kind = MoveKind::dwell;
+  dwell.line = 3;
+  dwell.value = 0.5;
+  moves.push_back(dwell);
+  Move arc = line_to(belief, Q, 4, 12.3 * mm, 12.3 * mm + 5.0 * mm * std::numbers::pi);
+  arc.kind = MoveKind::arc;
+  arc.arc.centre = arc.centre_machine =
+      moves[1].end_machine.head<3>() + Eigen::Vector3d(5e-3, 0, 0);
+  arc.end[0] += 10.0 * mm;
+  arc.end_machine[0] += 10.0 * mm;
+  arc.arc.turns = -1;
+  moves.push_back(arc);
+  return moves;
+}
+
+TEST(EveryStrategy, IsListedInOrderOfItsName) {
+  ASSERT_FALSE(entries().empty());
+  for (std::size_t i = 1; i < entries().size(); ++i) {
+    EXPECT_LT(entries()[i - 1].name, entries()[i].name);
+  }
+  for (const Entry& entry : entries()) {
+    EXPECT_EQ(find(entry.name), &entry);
+    EXPECT_FALSE(entry.summary.empty());
+  }
+  EXPECT_EQ(find("Table"), nullptr);
+  EXPECT_EQ(names().size(), entries().size());
+}
+
+// What is declared is what the help and the reader say: a default must keep its own rules.
+TEST(EveryStrategy, HasDefaultsThatKeepItsOwnRules) {
+  for (const Entry& entry : entries()) {
+    for (const ParameterSpec& spec : entry.parameters) {
+      const std::string where = std::string(entry.name) + "." + std::string(spec.name);
+      EXPECT_FALSE(spec.help.empty()) << where;
+      EXPECT_TRUE(sim::parse_unit(spec.unit).unit || spec.unit.empty()) << where;
+      if (std::find(spec.words.begin(), spec.words.end(), spec.default_text) != spec.words.end()) {
+        continue;
+      }
+      ASSERT_TRUE(spec.is_number) << where;
+      const double value = std::stod(std::string(spec.default_text));
+      EXPECT_GE(value, spec.min) << where;
+      EXPECT_LE(value, spec.max) << where;
+    }
+  }
+}
+
+// Law 1: who believes in no errors changes nothing, bit for bit.
+TEST(EveryStrategy, LeavesPositionsAloneWithoutErrors) {
+  const Belief belief = belief_in({});
+  plant::Uniform random(1);
+  for (const Entry& entry : entries()) {
+    for (const Sign sign : kBothSigns) {
+      for (const bool converged : {false, true}) {
+        const Acting acting = make_acting(entry, sign, belief, converged);
+        for (int n = 0; n < 100; ++n) {
+          const Joints Q = random_position(belief, random);
+          EXPECT_EQ(acting.displacement(belief.layout, Q), Eigen::Vector3d::Zero()) << entry.name;
+          if (!acting.feedback) continue;
+          EXPECT_EQ(acting.feedback->evaluate(Q), Eigen::Vector3d::Zero()) << entry.name;
+        }
+      }
+    }
+  }
+}
+
+TEST(EveryStrategy, KeepsEveryProgrammedPointWithoutErrors) {
+  const Belief belief = belief_in({});
+  const std::vector<Move> moves = some_program(belief);
+  for (const Entry& entry : entries()) {
+    for (const Sign sign : kBothSigns) {
+      const Acting acting = make_acting(entry, sign, belief);
+      const std::vector<Move> rewritten = acting.strategy->rewrite(moves);
+      auto next = rewritten.begin();
+      AxisWords from = belief.layout.words(belief.reference);
+      for (const Move& move : moves) {
+        if (!is_motion(move.kind)) {
+          ASSERT_NE(next, rewritten.end());
+          EXPECT_EQ(next->kind, move.kind) << entry.name;
+          EXPECT_EQ(next->value, move.value) << entry.name;
+          ++next;
+          continue;
+        }
+        const MoveCurve curve(from, move);
+        double s = move.s_begin;
+        for (; next != rewritten.end() && next->line == move.line; ++next) {
+          EXPECT_EQ(next->s_begin, s) << entry.name << " line " << move.line;
+          EXPECT_EQ(next->feed, move.feed) << entry.name;
+          s = next->s_end;
+          const double t = (s - move.s_begin) / (move.s_end - move.s_begin);
+          const double off = (next->end_machine - curve.at(t)).cwiseAbs().maxCoeff();
+          // t is a quotient of lengths of 10 mm that are stored with 0.02 m before them
+          constexpr double kPlace = 1e-17;  // m
+          EXPECT_LE(off, kPlace) << entry.name << " line " << move.line << " t " << t;
+        }
+        EXPECT_EQ(s, move.s_end) << entry.name << " line " << move.line;
+        const Move& last = *std::prev(next);
+        EXPECT_EQ(last.end_machine, curve.at(1.0)) << entry.name << " line " << move.line;
+        from = move.end_machine;
+      }
+      EXPECT_EQ(next, rewritten.end()) << entry.name;
+    }
+  }
+}
+
+// Law 2: to generate is to displace the axes by the believed error, to correct by its negative, to
+// first order. The points are those where a table interpolates nothing.
+TEST(EveryStrategy, DisplacesByTheBelievedErrorTimesItsSign) {
+  const Belief belief = random_belief();
+  constexpr double kSlope = 8.0 * kErrorSize, kSize = 10.0 * kErrorSize;  // 1/m, m with levers
+  constexpr double kSecondOrder = 3.0 * kSlope * kSize;                   // m: |E'||E|, three axes
+  for (const Entry& entry : entries()) {
+    for (const Sign sign : kBothSigns) {
+      const Acting acting = make_acting(entry, sign, belief, true);
+      if (!acting.acts()) continue;
+      for (int joint = 0; joint < kLinearJoints; ++joint) {
+        for (const double step : {-50.0, 0.0, 80.0}) {
+          const Joints Q = with_one_axis_moved(belief, joint, step);
+          const Eigen::Vector3d believed = belief.model.joint_offset(Q, belief.p_ST);
+          ASSERT_GT(believed.norm(), 100.0 * kSecondOrder);
+          const Eigen::Vector3d wanted = (sign == Sign::generate ? 1.0 : -1.0) * believed;
+          const double off = (acting.displacement(belief.layout, Q) - wanted).norm();
+          EXPECT_LE(off, kSecondOrder) << entry.name << " " << name_of(sign) << " " << joint;
+        }
+      }
+    }
+  }
+}
+
+// Law 3: what correcting leaves of generating shrinks with the square of the errors.
+TEST(EveryStrategy, CorrectsWhatItGeneratesToFirstOrder) {
+  plant::Uniform random(3);
+  const Belief large = random_belief(kErrorSize), small = random_belief(0.5 * kErrorSize);
+  for (const Entry& entry : entries()) {
+    const auto left = [&](const Belief& belief, const Joints& Q) -> Eigen::Vector3d {
+      return make_acting(entry, Sign::generate, belief, true).displacement(belief.layout, Q) +
+             make_acting(entry, Sign::correct, belief, true).displacement(belief.layout, Q);
+    };
+    for (int n = 0; n < 20; ++n) {
+      const Joints Q = random_position(large, random);
+      const double at_full = left(large, Q).norm(), at_half = left(small, Q).norm();
+      if (at_full == 0.0) {
+        EXPECT_FALSE(make_acting(entry, Sign::correct, large).acts()) << entry.name;
+        continue;
+      }
+      // third order: 1e-4 of the ratio; rounding: 1e-15 m of some nm
+      constexpr double kRatioTol = 0.01;
+      EXPECT_NEAR(at_full / at_half, 4.0, kRatioTol) << entry.name << ": " << at_full << " m";
+    }
+  }
+}
+
+// Law 4: with one iteration, correcting is the negative of generating at the same argument.
+TEST(EveryStrategy, CorrectsInOneStepByTheNegative) {
+  const Belief belief = random_belief();
+  plant::Uniform random(5);
+  for (const Entry& entry : entries()) {
+    const Acting generate = make_acting(entry, Sign::generate, belief);
+    const Acting correct = make_acting(entry, Sign::correct, belief);
+    for (int n = 0; n < 20; ++n) {
+      const Joints Q = random_position(belief, random);
+      const Eigen::Vector3d sum =
+          generate.displacement(belief.layout, Q) + correct.displacement(belief.layout, Q);
+      EXPECT_LE(sum.cwiseAbs().maxCoeff(), kRounding) << entry.name;
+    }
+  }
+}
+
+// Law 5: no hidden state, neither between two strategies nor between two runs of one.
+TEST(EveryStrategy, DoesTheSameInEveryRun) {
+  const Belief belief = random_belief();
+  const std::vector<Move> moves = some_program(belief);
+  for (const Entry& entry : entries()) {
+    const Acting first = make_acting(entry, Sign::generate, belief);
+    const auto played = [&](SetPointPart* set_point, FeedbackPart* feedback) {
+      plant::Uniform random(7);
+      Joints Q = belief.reference;
+      std::vector<double> out;
+      if (feedback) feedback->settle(Q);
+      for (int n = 0; n < 200; ++n) {
+        for (int j = 0; j < kLinearJoints; ++j) Q[j] += 1e-6 * random();
+        for (int i = 0; i < 3; ++i) {
+          if (set_point) out.push_back(set_point->offset(Q)[i]);
+        }
+        if (!feedback) continue;
+        const Eigen::Vector3d d = feedback->evaluate(Q);
+        out.insert(out.end(), d.begin(), d.end());
+      }
+      return out;
+    };
+    const auto reference = played(first.set_point.get(), first.feedback.get());
+    EXPECT_EQ(reference.empty(), !(first.set_point || first.feedback));
+    const Acting second = make_acting(entry, Sign::generate, belief);
+    EXPECT_EQ(played(second.set_point.get(), second.feedback.get()), reference) << entry.name;
+    const auto set_point = first.strategy->set_point();
+    const auto feedback = first.strategy->feedback(kModelPeriod);
+    EXPECT_EQ(played(set_point.get(), feedback.get()), reference) << entry.name << ", a second run";
+
+    const auto once = first.strategy->rewrite(moves), twice = second.strategy->rewrite(moves);
+    ASSERT_EQ(once.size(), twice.size());
+    for (std::size_t i = 0; i < once.size(); ++i) {
+      EXPECT_EQ(once[i].end_machine, twice[i].end_machine) << entry.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace servomill::strategies

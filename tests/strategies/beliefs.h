@@ -1,0 +1,91 @@
+/// Machines and strategies for tests of all strategies: built from what a strategy declares.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plant/kinematics/structure.h"
+#include "plant/vocabulary/units.h"
+#include "sim/config/quantity.h"
+#include "strategies/registry.h"
+#include "tests/plant/geometry/random_errors.h"
+
+namespace servomill::strategies {
+
+/// A five-axis machine of +-200 mm with a tool of 110 mm, its table turned, believed to have these
+/// errors. The reference position is a point of a table with the default spacing.
+inline Belief belief_in(const plant::ErrorModel& errors) {
+  const plant::MachineChain chain =
+      plant::make_chain(plant::parse_structure("[w C' B' X b Y Z (C1) t]"));
+  Belief belief{chain.layout, plant::VolumetricModel(chain, errors)};
+  belief.p_ST << 0.0, 0.0, -110.0 * mm;
+  belief.lower << -200.0 * mm, -200.0 * mm, -200.0 * mm, -2.0, -7.0;
+  belief.upper << 200.0 * mm, 200.0 * mm, 200.0 * mm, 2.0, 7.0;
+  belief.reference = belief.lower;
+  belief.reference.head<3>().array() += 100 * 1.6384 * mm;
+  belief.reference.tail<2>() << 20.0 * deg, 30.0 * deg;
+  belief.Kv = 80.0;
+  return belief;
+}
+
+/// The declared defaults; the first word for what has none.
+inline Parameters default_parameters(const Entry& entry) {
+  Parameters out;
+  for (const ParameterSpec& spec : entry.parameters) {
+    const std::string text(spec.default_text);
+    const bool is_word = std::find(spec.words.begin(), spec.words.end(), text) != spec.words.end();
+    if (is_word || !spec.is_number) {
+      out.set(spec.name, is_word ? std::string_view(text) : spec.words.front());
+    } else {
+      const auto unit = sim::parse_unit(spec.unit).unit;
+      out.set(spec.name, std::stod(text) * (unit ? unit->factor : 1.0));
+    }
+  }
+  return out;
+}
+
+/// What acts on a run, made once.
+struct Acting {
+  std::unique_ptr<Strategy> strategy;
+  std::unique_ptr<SetPointPart> set_point;
+  std::unique_ptr<FeedbackPart> feedback;
+
+  bool acts() const { return strategy->rewrites() || set_point || feedback; }
+
+  /// Displacement of the axes (3; m) at standstill in Q: set point, program and feedback together.
+  Eigen::Vector3d displacement(const JointLayout& layout, const Joints& Q) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    if (set_point) sum += set_point->offset(Q);
+    if (feedback) sum -= feedback->settle(Q);
+    if (strategy->rewrites()) {
+      Move move;
+      move.end = move.end_machine = layout.words(Q);
+      sum += (strategy->rewrite({move}).back().end_machine - move.end_machine).head<3>();
+    }
+    return sum;
+  }
+};
+
+inline constexpr double kModelPeriod = 60e-6;  // s
+
+inline Acting make_acting(const Entry& entry, const Parameters& parameters, Sign sign,
+                          const Belief& belief) {
+  Acting out;
+  out.strategy = entry.make(parameters, sign, belief);
+  out.set_point = out.strategy->set_point();
+  out.feedback = out.strategy->feedback(kModelPeriod);
+  return out;
+}
+
+/// The strategy with its default parameters; `iterations = "converged"` where it knows that.
+inline Acting make_acting(const Entry& entry, Sign sign, const Belief& belief,
+                          bool converged = false) {
+  Parameters parameters = default_parameters(entry);
+  if (converged && parameters.is_word("iterations")) parameters.set("iterations", "converged");
+  return make_acting(entry, parameters, sign, belief);
+}
+
+inline constexpr std::array<Sign, 2> kBothSigns = {Sign::generate, Sign::correct};
+
+}  // namespace servomill::strategies
