@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <limits>
+#include <vector>
 
 #include "sim/schedule.h"
 
@@ -24,6 +25,21 @@ struct AxisState {
   }
 };
 constexpr int kStates = 11;
+
+// States that the loop can move. Those that stand still have an eigenvalue of 1 that says nothing
+// about stability, and several of them cost the digits that tell a stable loop from an unstable.
+std::vector<int> moving_states(const plant::FeedDriveParams& drive,
+                               const controllers::CascadeParams& loop) {
+  enum : int { kCurrentLag, kMotorSpeed, kWindUp, kIntegral = 6 };
+  const bool rigid = drive.kind == plant::DriveKind::rigid;  // motor and slide are one
+  std::vector<int> moving;
+  for (int k = 0; k < kStates; ++k) {
+    const bool still = (k == kCurrentLag && drive.T_i == 0.0) || (k == kMotorSpeed && rigid) ||
+                       (k == kWindUp && rigid) || (k == kIntegral && loop.Ki == 0.0);
+    if (!still) moving.push_back(k);
+  }
+  return moving;
+}
 
 }  // namespace
 
@@ -72,7 +88,9 @@ double spectral_radius(const MachineSettings& machine, int joint, Tick reading_d
     int row = 0;
     s.each(lane, [&](double& x) { monodromy(row++, column) = x; });
   }
-  return monodromy.eigenvalues().cwiseAbs().maxCoeff();
+  const std::vector<int> moving = moving_states(drives[lane], params);
+  const Eigen::MatrixXd reduced = monodromy(moving, moving);
+  return reduced.eigenvalues().cwiseAbs().maxCoeff();
 }
 
 }  // namespace servomill::sim

@@ -1,0 +1,203 @@
+"""The wrong inputs of the gallery: a title, what is changed, what is typed.
+
+edit: (file, old text, new text); write: {file: content}; folders: made before; stdout: shown, too.
+"""
+
+CHECK = ["servomill check scenario.toml"]
+RUN = ["servomill run scenario.toml -o out.h5"]
+
+
+def line(title, old, new, file="scenario.toml", commands=None):
+    return {"title": title, "edit": [(file, old, new)], "commands": commands or CHECK}
+
+
+def typed(title, *commands, **more):
+    return {"title": title, "commands": list(commands), **more}
+
+
+def program(title, old, new, commands=None):
+    return line(title, old, new, "part.ngc", commands)
+
+
+COMMAND_LINE = [
+    typed("an unknown command", "servomill rnu scenario.toml", "servomill frobnicate"),
+    typed("an unknown option", "servomill run scenario.toml --forse", "servomill --quiet", "servomill check -x",
+          "servomill list --json strategies"),
+    typed("an option without its value", "servomill run scenario.toml -o", "servomill run scenario.toml --set"),
+    typed("a value of the wrong type", "servomill run scenario.toml --threads many",
+          "servomill run scenario.toml --threads -1", "servomill run scenario.toml --force=yes"),
+    typed("an empty name", "servomill run ''", "servomill run scenario.toml -o ''", "servomill check ''"),
+    typed("no file, or too many", "servomill run", "servomill run scenario.toml machine.toml", "servomill check",
+          "servomill compare", "servomill canon", "servomill sweep", "servomill list"),
+    typed("something that cannot be listed", "servomill list strategy", "servomill list machines --folder nowhere"),
+    typed("standard output is full", "servomill canon part.ngc > /dev/full", "servomill list strategies > /dev/full",
+          "servomill --help > /dev/full"),
+]
+
+FILES = [
+    typed("a file that is not there", "servomill run scenarioo.toml", "servomill check scenarioo.toml nothing.ngc",
+          "servomill canon nothing.ngc", "servomill canon part.ngc --tools nothing.tbl", "servomill compare out.h5",
+          "servomill sweep scenarioo.toml"),
+    typed("a folder instead of a file", "servomill run folder.toml", "servomill check folder.toml folder.ngc",
+          "servomill canon folder.ngc", "servomill compare folder.ngc", folders=["folder.toml", "folder.ngc"]),
+    typed("an empty file", "servomill run empty.toml", "servomill check empty.toml", "servomill canon empty.ngc",
+          "servomill compare empty.h5", write={"empty.toml": "", "empty.ngc": "", "empty.h5": ""}),
+    typed("a machine where a scenario is wanted", "servomill run machine.toml"),
+    line("the machine file is not there", '"machine.toml"', '"machin.toml"'),
+    line("the machine is a number", 'machine = "machine.toml"', "machine = 7"),
+    line("the program file is not there", '"part.ngc"', '"prat.ngc"'),
+    line("the program file is a folder", '"part.ngc"', '"."'),
+    line("not TOML: a text that does not end", 'title   = "A table over X"', 'title   = "A table over X'),
+    line("not TOML: a key twice", "feed_override = 1.0", "feed_override = 1.0\nfeed_override = 2.0"),
+    line("not TOML: a decimal comma", "length_mm = 110.0", "length_mm = 110,0"),
+]
+
+SCENARIO = [
+    line("an unknown key", "feed_override", "feed_overide"),
+    line("an unknown table", "[record]", "[recorder]"),
+    line("a missing key", 'name = "nominal"', ""),
+    line("a word for a number", "feed_override = 1.0", 'feed_override = "fast"'),
+    line("a number for a text", 'name = "nominal"', "name = 1"),
+    line("a table for a list", "[[program.tool]]", "[program.tool]"),
+    line("out of range", "feed_override = 1.0", "feed_override = 0.0"),
+    line("not finite", "feed_override = 1.0", "feed_override = nan"),
+    line("a unit of another kind", 'Kv = "60 1/s"', 'Kv = "60 mm"'),
+    line("a unit that there is not", 'Kv = "60 1/s"', 'Kv = "60 1/fortnight"'),
+    line("a number without its unit", 'Kv = "60 1/s"', 'Kv = "60"'),
+    {"title": "two faults at once, in two files",
+     "edit": [("scenario.toml", "feed_override = 1.0", "feed_override = -1.0"),
+              ("machine.toml", "lead_mm = 20.0", "lead_mm = 0.0")], "commands": CHECK},
+    line("a program parameter without #", '"#101" = 1394.0', '"101" = 1394.0'),
+    line("a program parameter of the machine", '"#101" = 1394.0', '"#5220" = 2'),
+    line("a tool twice", "length_mm = 110.0", "length_mm = 110.0\n[[program.tool]]\nnumber = 1\nlength_mm = 90.0"),
+    line("an unknown strategy", 'type = "table"', 'type = "tabel"'),
+    line("an unknown error model", 'model = "imposed"', 'model = "imposd"'),
+    line("no error models at all", '[errors.imposed]\nEYX = { harmonic = { amplitude_um = 150.0, period_mm = 62.0 } }', ""),
+    line("an unknown error", "EYX", "EYQ"),
+    line("an error of an axis that the machine does not have", "EYX", "EYC"),
+    line("an error that names itself", "EYX = { harmonic = { amplitude_um = 150.0, period_mm = 62.0 } }", 'EYX = "EYX"'),
+    line("a table of errors that does not rise", "harmonic = { amplitude_um = 150.0, period_mm = 62.0 }",
+         "table = { at_mm = [0.0, 10.0, 5.0], value_um = [1.0, 2.0, 3.0] }"),
+    line("a case twice", 'name = "table"', 'name = "nominal"'),
+    line("a case whose name is a path", 'name = "table"', 'name = "../table"'),
+    line("a case without a name", 'name = "table"', 'name = ""'),
+    line("an unknown case in a quantity", 'cases = ["table"]', 'cases = ["tabel"]'),
+    line("an unknown quantity", 'name = "imposed_curve_residual"', 'name = "imposed_curve_residuals"'),
+    line("an axis that the quantity does not have", 'axis = "Y"\nbase', 'axis = "C"\nbase'),
+    line("an axis that the machine does not have", '"[w X b Y Z t]"', '"[w X b Z t]"', "machine.toml"),
+    line("a section that the program does not have", 'sections = ["flank"]', 'sections = ["flnak"]'),
+    line("a reference that is no text", 'reference = "20 um"', "reference = 20"),
+    line("the imposed model is not named", 'imposed = "imposed"\n', ""),
+    line("a sign that there is not", 'sign = "generate"', 'sign = "generated"'),
+    line("a key of another strategy", "spacing_mm = 1.6384", "spacing_mm = 1.6384\nlead_ms = 3.0"),
+    line("a word that is not allowed beside numbers", "from_mm = -200.0", 'from_mm = "travl"'),
+    line("a strategy's number out of range", "spacing_mm = 1.6384", "spacing_mm = 0.0"),
+    line("two sets of feedback hardware", 'type = "table"', 'type = "feedback"\nmodel = "imposed"\n[[case.strategy]]\ntype = "feedback"\nmodel = "imposed"\n[[case.strategy]]\ntype = "table"'),
+    line("feedback without its hardware", '[[case.strategy]]\ntype = "table"', 'feedback_hardware = false\n[[case.strategy]]\ntype = "feedback"\nmodel = "imposed"\n[[case.strategy]]\ntype = "table"'),
+    line("a recorder period that is no multiple", "period_ms = 1.0", "period_ms = 1.005"),
+    line("a recorder period of the wrong type", "period_ms = 1.0", "period_ms = true"),
+    line("a recorder period of nothing", "period_ms = 1.0", "period_ms = 0"),
+    line("a delay that is no multiple", "signal_delay_us = 10.0", "signal_delay_us = 12.0"),
+]
+
+MACHINE = [
+    line("machine: an unknown key", "following_error_limit_mm", "following_error_mm", "machine.toml"),
+    line("machine: an axis is missing", "[axis.Y]", "[axis.V]", "machine.toml"),
+    line("machine: an unknown preset", '"CC424"', '"CC426"', "machine.toml"),
+    line("machine: a structure that is none", '"[w X b Y Z t]"', '"[w X Y Z t]"', "machine.toml"),
+    line("machine: a period that is no multiple", "base_period_us = 10", "base_period_us = 10\nposition_period_us = 205", "machine.toml"),
+    line("machine: a base period that does not divide the preset's", "base_period_us = 10", "base_period_us = 30", "machine.toml"),
+    line("machine: a period of the wrong type", "base_period_us = 10", "base_period_us = 10\nposition_period_us = \"slow\"", "machine.toml"),
+    line("machine: travel the wrong way round", "travel_mm = [-400.0, 400.0]", "travel_mm = [400.0, -400.0]", "machine.toml"),
+    line("machine: travel of one number", "travel_mm = [-400.0, 400.0]", "travel_mm = [400.0]", "machine.toml"),
+    line("machine: the same, checked alone", "lead_mm = 20.0", "lead_mm = -20.0", "machine.toml",
+         ["servomill check machine.toml"]),
+    line("a machine key: from the machine file", 'i_max_A = 50.0', 'i_max_A = -1.0', "machine.toml"),
+    line("a machine key: from machine_override", 'Kv = "60 1/s"', 'Kv = "-60 1/s"'),
+    typed("a machine key: from --set", "servomill run scenario.toml --set machine.nc.Kv=-60",
+          "servomill run scenario.toml --set machine_override.nc.Kv=-60",
+          "servomill run scenario.toml --set 'machine.axis.X.load=750 kgs'",
+          "servomill run scenario.toml --set machine.nc.kv=60"),
+    line("an unknown key in machine_override", 'Kv = "60 1/s"', 'KV = "60 1/s"'),
+    line("machine_override is a number", '[machine_override.nc]\nKv = "60 1/s"', "machine_override = 3"),
+    line("machine_override of a whole table by a number", '[machine_override.nc]\nKv = "60 1/s"', "[machine_override]\nnc = 3"),
+]
+
+SET = [
+    typed("--set: no key, no value, no such place", "servomill run scenario.toml --set feed",
+          "servomill run scenario.toml --set =3", "servomill run scenario.toml --set program.feed_override=",
+          "servomill run scenario.toml --set 'case[7].name=x'", "servomill run scenario.toml --set 'case[one].name=x'",
+          "servomill run scenario.toml --set case=3", "servomill run scenario.toml --set title.sub=3",
+          "servomill run scenario.toml --set programm.feed_override=2",
+          "servomill run scenario.toml --set program.feed_override=fast",
+          "servomill run scenario.toml --set machine=nowhere.toml",
+          "servomill run scenario.toml --set 'case[1].strategy[0].type=tabel'",
+          "servomill run scenario.toml --set 'program.parameters.101=3'"),
+]
+
+MACHINE_REFUSES = [
+    line("travel limits", "G1 X10", "G1 X1000", "part.ngc"),
+    {"title": "travel limits in one case only",
+     "edit": [("scenario.toml", 'name = "table"', 'name = "table"\nwork_offset = { X_mm = 395.0 }')], "commands": CHECK},
+    line("the start is outside the travel", "feed_override = 1.0", "start = { X_mm = -500.0 }"),
+    line("an axis word that the machine does not have", "G1 X10", "G1 X10 C90", "part.ngc"),
+    line("a work offset of an axis that the machine does not have", "feed_override = 1.0", "work_offset = { C_deg = 3.0 }"),
+    line("gains that make the loop unstable", 'Kv = "60 1/s"', 'Kv = "2000 1/s"'),
+    line("a table too steep for the NC", "amplitude_um = 150.0", "amplitude_um = 300.0"),
+    line("a table too long for the NC", "spacing_mm = 1.6384", "spacing_mm = 0.8192"),
+    line("a spacing that is not 2^n", "spacing_mm = 1.6384", "spacing_mm = 2.0"),
+    line("a table that ends before it begins", "to_mm = 200.0", "to_mm = -300.0"),
+    line("a table over an axis that the machine does not have", 'axis = "X"', 'axis = "Z"', "scenario.toml",
+         ["servomill check scenario.toml --set 1=2"]),
+    line("a table beyond the travel", "to_mm = 200.0", "to_mm = 200.0\nupdate_period_ms = -1.0"),
+]
+
+PROGRAM = [
+    program("a program that ends in the middle of a block", "G1 Y5\nM30\n", "G1 Y"),
+    program("a comment that does not end", "G1 X10", "G1 X10 (to the corner"),
+    program("a G-code that there is not", "G1 X10", "G1.5 X10"),
+    program("two codes of one modal group", "G1 X10", "G0 G1 X10"),
+    program("a feed of nothing", "F#101", ""),
+    program("an unknown tool", "T1 M6\nG43 H1", "T7 M6\nG43 H7"),
+    program("a parameter that was never set", "F#101", "F#<feed>"),
+    program("an arc that misses its end", "G1 Y5", "G2 X20 Y5 I3 J0"),
+    program("several faults", "G1 X10\nG1 Y5", "G1 X10 Q\nG1 Y[5 / ]\nG99\nG1 X1O", ["servomill check part.ngc"]),
+    program("the same, run", "G1 X10\nG1 Y5", "G1 X10 Q\nG1 Y[5 / ]\nG99\nG1 X1O",
+            ["servomill check scenario.toml", "servomill canon part.ngc > moves.json"]),
+    program("a program that moves nothing", "G1 X10\nG1 Y5\n", ""),
+    typed("a program that is not UTF-8", "servomill check scenario.toml", "servomill run scenario.toml -o out.h5",
+          write={"part.ngc": b"(pi\xe8ce)\nG1 X10 F100\nM30\n"}, about="(pi\\xe8ce) in Latin-1"),
+    typed("a program that holds a NUL", "servomill check scenario.toml", write={"part.ngc": b"G1 X10 F100\n\0\nM30\n"},
+          about="G1 X10 F100 and a byte of 0"),
+]
+
+OUTPUT = [
+    typed("the result file exists", "servomill run scenario.toml -o out.h5", "servomill sweep scenario.toml --set sweep='{}' -o out.h5",
+          write={"out.h5": "precious"}),
+    typed("the partial file of another run exists", "servomill run scenario.toml -o out.h5", write={"out.h5.partial": "precious"}),
+    typed("--force on a file that is no result", "servomill run scenario.toml -o scenario.toml --force",
+          "servomill run scenario.toml -o part.ngc --force"),
+    typed("the result is a folder", "servomill run scenario.toml -o folder", "servomill run scenario.toml -o folder --force",
+          folders=["folder"]),
+    typed("the folder of the result is not there", "servomill run scenario.toml -o nowhere/out.h5"),
+    typed("a result file that is none", "servomill compare scenario.toml", "servomill compare part.ngc"),
+]
+
+SWEEP = [
+    typed("a sweep without a [sweep] table", "servomill sweep scenario.toml -o out.h5"),
+    line("a sweep over a key that there is not", "[record]", '[sweep]\n"program.feed_overide" = [0.5, 1.0]\n[record]',
+         commands=["servomill check scenario.toml", "servomill sweep scenario.toml -o out.h5"]),
+    line("a sweep whose last point is wrong", "[record]", '[sweep]\n"program.feed_override" = [1.0, -1.0]\n[record]',
+         commands=["servomill check scenario.toml", "servomill sweep scenario.toml -o out.h5"]),
+    line("a sweep to where the loop is unstable", "[record]", '[sweep]\n"machine.nc.Kv" = ["60 1/s", "2000 1/s"]\n[record]',
+         commands=["servomill check scenario.toml", "servomill sweep scenario.toml -o out.h5"]),
+    line("a sweep over three keys", "[record]",
+         '[sweep]\n"program.feed_override" = [1.0]\ntitle = ["a"]\nsource = ["b"]\n[record]',
+         commands=["servomill sweep scenario.toml -o out.h5"]),
+    line("a sweep over nothing", "[record]", '[sweep]\n"program.feed_override" = []\n[record]',
+         commands=["servomill sweep scenario.toml -o out.h5"]),
+    line("a sweep over no list", "[record]", '[sweep]\n"program.feed_override" = 1.0\n[record]',
+         commands=["servomill sweep scenario.toml -o out.h5"]),
+]
+
+WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP)
