@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "plant/vocabulary/move_curve.h"
 #include "strategies/compensation.h"
@@ -56,10 +57,13 @@ class Rewriter {
   static constexpr int kMostSplits = 24;
 
   void cut() {
-    const auto pieces = std::max(1.0, std::ceil(curve_.length() / params_.max_block - 1e-9));
+    const auto pieces = std::max<std::int64_t>(
+        1, std::llround(std::ceil(curve_.length() / params_.max_block - 1e-9)));
+    const double dt = 1.0 / static_cast<double>(pieces);
     AxisWords a = displaced(0.0);
-    for (double i = 0.0; i < pieces; i += 1.0) {
-      const double t0 = i / pieces, t1 = (i + 1.0) / pieces;
+    for (std::int64_t i = 0; i < pieces; ++i) {
+      const double t0 = static_cast<double>(i) * dt;
+      const double t1 = i + 1 == pieces ? 1.0 : static_cast<double>(i + 1) * dt;
       const AxisWords b = displaced(t1);
       split(t0, a, t1, b, kMostSplits);
       a = b;

@@ -173,7 +173,7 @@ AxisTable tabulate(const Belief& belief, const Parameters& p, Sign sign, int joi
   const Iterations iterations = iterations_of(p);
   Joints Q = belief.reference;
   const Eigen::Vector3d base = set_point_displacement(belief, sign, iterations, Q);
-  for (double i = 0.0; i <= intervals; i += 1.0) {
+  for (int i = 0; i <= static_cast<int>(intervals); ++i) {
     Q[joint] = table.first + i * table.spacing;
     const Eigen::Vector3d value = set_point_displacement(belief, sign, iterations, Q);
     table.value.push_back(with_base ? value : value - base);

@@ -14,8 +14,8 @@ namespace servomill {
 struct ParameterSpec {
   std::string_view name;               // TOML key, with its unit suffix
   std::string_view help;               // one line
-  std::string_view unit = "";          // of the bare number; "" is dimensionless
-  std::string_view default_text = "";  // number or word as the user would write it; "": required
+  std::string_view unit = {};          // of the bare number; "" is dimensionless
+  std::string_view default_text = {};  // number or word as the user would write it; "": required
   double min = -1e300, max = 1e300;    // inclusive, in `unit`
   bool is_number = true;               // false: only words are allowed
   std::span<const std::string_view> words = {};  // words allowed (beside the number)
