@@ -6,10 +6,10 @@ Exit status: 0 drawn, 2 the input is wrong, 3 the system failed.
 """
 import argparse
 import difflib
-import io
 import pathlib
 import sys
 
+import numpy as np
 from PIL import Image
 
 from figures import style
@@ -40,18 +40,21 @@ def save(drawn, path, ending):
     if ending != "png":
         drawn.savefig(path, metadata=METADATA[ending])
         return
-    pixels = io.BytesIO()
-    drawn.savefig(pixels, format="png")
-    picture = Image.open(pixels).convert("RGB").quantize(PALETTE, dither=Image.Dither.NONE)
-    picture.save(path, optimize=True, dpi=(150, 150))
+    drawn.canvas.draw()
+    picture = Image.fromarray(np.asarray(drawn.canvas.buffer_rgba())[:, :, :3])
+    picture = picture.quantize(PALETTE, dither=Image.Dither.NONE)
+    picture.save(path, compress_level=9, dpi=(drawn.dpi, drawn.dpi))
 
 
 def draw_all(result, named, formats, folder, force):
     """Draws what the file holds; returns the paths written."""
     wanted = [figure for figure in FIGURES if not named or figure.name in named]
-    written = []
+    pages = []      # drawn first, written when nothing is wrong with any of them
+    for case in result.cases.values() if result.kind == "run" else []:
+        if not case.finished:
+            print(f"case {case.name} stopped ({case.outcome}); it is drawn over time only",
+                  file=sys.stderr)
     for figure in wanted:
-        paths = [folder / f"{result.path.stem}-{figure.name}.{ending}" for ending in formats]
         try:
             if figure.kind != result.kind:
                 raise NotInFile(f"the file holds a {result.kind}, not a {figure.kind}")
@@ -61,15 +64,17 @@ def draw_all(result, named, formats, folder, force):
                 raise InputError(f"{result.path}: error: {figure.name}: {missing}") from None
             print(f"{figure.name}: not drawn, {missing}", file=sys.stderr)
             continue
-        for path in paths:
-            if path.exists() and not force:
-                raise InputError(f"{path}: error: exists; use --force to overwrite")
-        folder.mkdir(parents=True, exist_ok=True)
-        for path, ending in zip(paths, formats):
-            save(drawn, path, ending)
-            written.append(path)
-        style.plt.close(drawn)
-    return written
+        for ending in formats:
+            pages.append((folder / f"{result.path.stem}-{figure.name}.{ending}", drawn, ending))
+
+    for path, _, _ in pages:
+        if path.exists() and not force:
+            raise InputError(f"{path}: error: exists; use --force to overwrite")
+    for path, drawn, ending in pages:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        save(drawn, path, ending)
+    style.plt.close("all")
+    return [path for path, _, _ in pages]
 
 
 def main(arguments):
@@ -101,12 +106,17 @@ def main(arguments):
     return 0
 
 
-if __name__ == "__main__":
+def run(arguments):
+    """main with faults turned into one line on standard error and an exit status."""
     try:
-        sys.exit(main(sys.argv[1:]))
+        return main(arguments)
     except InputError as fault:
         print(fault, file=sys.stderr)
-        sys.exit(2)
+        return 2
     except OSError as fault:
         print(f"plot.py: error: {fault}", file=sys.stderr)
-        sys.exit(3)
+        return 3
+
+
+if __name__ == "__main__":
+    sys.exit(run(sys.argv[1:]))

@@ -85,9 +85,14 @@ class Case:
     def column(self, name, letter=None):
         """A dataset (samples), or the column of one axis of it."""
         if (name, letter) not in self._read:
+            if name not in self._servo:
+                raise InputError(f"{self._servo.file.filename}: error: case {self.name} holds no "
+                                 f"{name}")
             data = self._servo[name]
-            values = data[:] if letter is None else data[:, self.labels(name).index(letter)]
-            self._read[name, letter] = values
+            if letter is not None and letter not in self.labels(name):
+                raise NotInFile(f"{name} has no axis {letter}")
+            column = ... if letter is None else np.s_[:, self.labels(name).index(letter)]
+            self._read[name, letter] = data[column]
         return self._read[name, letter]
 
     def samples(self, sections=None):

@@ -107,7 +107,7 @@ def draw_plane(run):
 
 def _oblique(points):
     # cavalier projection: X to the right, Z up, Y up and to the right
-    return points[:, 0] + 0.40 * points[:, 1], points[:, 2] + 0.55 * points[:, 1]
+    return points[:, 0] + 0.35 * points[:, 1], points[:, 2] + 0.90 * points[:, 1]
 
 
 def _oblique_scales(ax, flat, scale):
@@ -121,10 +121,10 @@ def _oblique_scales(ax, flat, scale):
         y = np.mean(flat[start:end, 1])
         fronts.append(y)
         u, v = _oblique(np.array([[high + gap, y, 0.0]]))
-        ax.text(u[0], v[0], f"Y {y:.0f}", va="center")
+        ax.text(u[0], v[0], f"Y {y:.0f} mm".replace("-", "−"), va="center")
     for x in (low, high):
         u, v = _oblique(np.array([[x, min(fronts), 0.0]]))
-        ax.text(u[0], v[0] - gap, f"X {x:.0f} mm", ha="center", va="top")
+        ax.text(u[0], v[0] - gap, f"X {x:.0f} mm".replace("-", "−"), ha="center", va="top")
     bar = 10.0 * scale / results.UM_PER_MM      # mm on the picture
     u, v = _oblique(np.array([[low - 2.5 * gap, min(fronts), 0.0]]))
     ax.plot([u[0]] * 2, [v[0], v[0] + bar], color=style.GREY, linewidth=2.5)
@@ -173,7 +173,8 @@ def _per_direction(run, axes, base, found):
 def _name_sections(ax, base, found):
     # above the strips, over the middle of each section
     s = found["generated"][0]
-    for name in dict.fromkeys(base.sections):
+    names = [name for name in CONTOURS if name in base.sections and len(base.samples([name]))]
+    for name in names:
         for part in results.passes(base.samples([name])):
             middle = base.column("s")[part].mean()
             if np.nanmin(s) <= middle <= np.nanmax(s) and np.nanmin(np.abs(s - middle)) < 1.0:

@@ -1,0 +1,296 @@
+#!/usr/bin/python3
+"""tools/plot.py draws what a result file holds, agrees with `servomill compare`, and says what is
+wrong with a file in one line. Usage: plot_test.py SERVOMILL"""
+import contextlib
+import io
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import types
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+PLOT = HERE.parents[1] / "tools" / "plot.py"
+sys.path.insert(0, str(PLOT.parent))
+
+import h5py
+import numpy as np
+from PIL import Image
+
+import plot as program
+from figures import lag, notches, results, straightness, style, volumetric
+
+SERVOMILL = ""
+AGREE = 1e-7        # um; `compare` prints nine digits of up to 100 um
+SMALLEST_PNG = 5000  # bytes; empty axes of these sizes stay below
+
+
+def servomill(*arguments, status=0):
+    done = subprocess.run([SERVOMILL, *map(str, arguments)], capture_output=True, text=True)
+    assert done.returncode == status, done.stderr
+    return done.stdout
+
+
+def plot(*arguments):
+    """Runs the program within this process: its exit status and what it prints."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        status = program.run([str(one) for one in arguments])
+    return types.SimpleNamespace(returncode=status, stdout=out.getvalue(), stderr=err.getvalue())
+
+
+def setUpModule():
+    """Result files that all tests share."""
+    WithFiles.folder = tempfile.TemporaryDirectory()
+    root = WithFiles.root = pathlib.Path(WithFiles.folder.name)
+    side, contour = HERE / "side_and_contour.toml", HERE / "generated_and_compensated.toml"
+    for name in ("side", "contour", "sweep", "stopped", "none"):
+        setattr(WithFiles, name, root / f"{name}.h5")
+    limit = "machine_override.nc.following_error_limit_mm="
+    servomill("run", side, "-o", WithFiles.side)
+    servomill("run", contour, "-o", WithFiles.contour)
+    servomill("sweep", side, "-o", WithFiles.sweep)
+    servomill("run", side, "-o", WithFiles.stopped, "--set", limit + "0.04", status=1)
+    servomill("run", side, "-o", WithFiles.none, "--set", limit + "0.0005", status=1)
+
+
+def tearDownModule():
+    WithFiles.folder.cleanup()
+
+
+class WithFiles(unittest.TestCase):
+    """Each test has a folder of its own for what it draws."""
+
+    def setUp(self):
+        self.out = pathlib.Path(tempfile.mkdtemp(dir=self.root))
+
+    def drawn(self):
+        return sorted(path.name for path in self.out.iterdir())
+
+    def fails(self, message, *arguments):
+        """One line of error, exit status 2, nothing written."""
+        done = plot(*arguments, "-o", self.out)
+        self.assertEqual(done.stderr, message + "\n")
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(self.drawn(), [])
+
+
+class Agreement(WithFiles):
+    """The numbers behind the figures are those that `servomill compare` prints."""
+
+    def rows(self, path, quantity):
+        lines = servomill("compare", path, "--json").splitlines()
+        return [row for row in map(json.loads, lines) if row["quantity"] == quantity]
+
+    def test_largest_residuals_of_figures_9_10_and_11(self):
+        with results.Run(self.side) as run:
+            mine = {}
+            for axis, section in (("Y", "flank"), ("Z", "plane")):
+                for one in straightness.tracks(run, axis, section):
+                    mine[one.case.name, axis] = one.largest()
+            for case, one in zip(run.others(), notches.notches(run)):
+                mine[case.name, "X"] = one.largest()
+        rows = self.rows(self.side, "imposed_curve_residual")
+        self.assertEqual(len(rows), 9)
+        for row in rows:
+            self.assertAlmostEqual(mine[row["case"], row["axis"]], row["value"], delta=AGREE)
+
+    def test_difference_over_the_whole_path(self):
+        with results.Run(self.side) as run:
+            for row in self.rows(self.side, "trajectory_difference"):
+                case = run.cases[row["case"]]
+                d = results.trajectory_difference(case, run.base(), row["axis"], case.samples())
+                self.assertAlmostEqual(np.abs(d).max(), row["value"], delta=AGREE)
+
+    def test_differences_of_figure_15(self):
+        with results.Run(self.contour) as run:
+            _, found = volumetric.differences(run, volumetric.PLANE)
+            for row in self.rows(self.contour, "trajectory_difference"):
+                self.assertAlmostEqual(np.nanmax(np.abs(found[row["case"]][2][:, 2])),
+                                       row["value"], delta=AGREE)
+
+    def test_base_is_read_between_its_samples_and_held_beyond_its_ends(self):
+        class Base:
+            @staticmethod
+            def column(_):
+                return np.array([0.0, 1.0, 1.0, 3.0])
+
+        values = np.array([10.0, 20.0, 30.0, 50.0])
+        at = np.array([-1.0, 0.0, 0.5, 1.0, 2.0, 3.0, 4.0])
+        self.assertEqual(list(results.along_path(Base, values, at)),
+                         [10.0, 10.0, 15.0, 30.0, 40.0, 50.0, 50.0])
+
+    def test_magnification_is_round_and_as_large_as_fits(self):
+        for extent, largest, factor in ((100.0, 8.0, 1000), (100.0, 8.1, 500), (100.0, 1.5, 5000)):
+            self.assertEqual(volumetric.magnification(extent, largest, share=0.08), factor)
+
+    def test_feed_of_a_sweep_is_that_of_the_program(self):
+        with results.Sweep(self.sweep) as sweep:
+            feed, label = lag.feeds(sweep)
+        self.assertEqual((list(feed), label), ([1500.0, 3000.0], "feed, mm/min"))
+
+    def test_thinning_for_the_picture_keeps_the_peaks(self):
+        x, y = np.arange(100_000.0), np.zeros(100_000)
+        y[54_321], y[77_777] = 5.0, -3.0
+        shown = style.thin(x, y)
+        self.assertLess(len(shown[0]), 10_000)
+        self.assertEqual((shown[1].max(), shown[1].min()), (5.0, -3.0))
+        self.assertEqual(shown[0][shown[1].argmax()], 54_321.0)
+
+
+class Looks(WithFiles):
+    def test_a_case_takes_the_look_of_its_name_or_of_its_last_strategy(self):
+        class File:
+            scenario = {"case": [
+                {"name": "north", "strategy": [{"type": "gcode"}, {"type": "feedback"}]},
+                {"name": "east", "strategy": [{"type": "feedback", "lead_ms": "auto"}]},
+                {"name": "plain", "strategy": [{"type": "none"}]},
+                {"name": "table", "strategy": [{"type": "gcode"}]}]}
+            strategies = results.ResultFile.strategies
+
+        for case, colour in (("north", style.PURPLE), ("east", style.LIGHT_PURPLE),
+                             ("plain", style.BLACK), ("table", style.BLUE)):
+            self.assertEqual(style.look_of(File(), case).colour, colour, case)
+
+    def test_strategies_differ_in_grey_or_in_line(self):
+        shown = [style.LOOKS[name] for name in ("nominal", "table", "feedback", "feedback_lead",
+                                                "gcode")]
+
+        def grey(look):
+            r, g, b = (int(look.colour[i:i + 2], 16) for i in (1, 3, 5))
+            return 0.299 * r + 0.587 * g + 0.114 * b
+
+        for i, one in enumerate(shown):
+            for other in shown[:i]:
+                self.assertTrue(abs(grey(one) - grey(other)) > 20 or one.line != other.line,
+                                f"{one.label} and {other.label}")
+
+
+class Drawing(WithFiles):
+    def test_all_that_a_run_holds_is_drawn_and_the_rest_explained(self):
+        done = plot(self.side, "-o", self.out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        names = ["deviations", "figure10", "figure11", "figure6", "figure9"]
+        self.assertEqual(self.drawn(), [f"side-{name}.png" for name in names])
+        self.assertEqual(done.stderr.splitlines(), [
+            "figure12: not drawn, no error functions of Z",
+            "figure14: not drawn, no case named generated",
+            "figure15: not drawn, no case named generated",
+            "lag: not drawn, the file holds a run, not a sweep"])
+        self.assertEqual(sorted(done.stdout.split()), sorted(str(p) for p in self.out.iterdir()))
+        for path in self.out.iterdir():
+            self.assertGreater(path.stat().st_size, SMALLEST_PNG, path)
+        with Image.open(self.out / "side-figure9.png") as picture:
+            self.assertAlmostEqual(picture.info["dpi"][0], 150.0, delta=0.1)
+            colours = {rgb for _, rgb in picture.convert("RGB").getcolors()}
+        for name in ("nominal", "table", "feedback", "gcode"):
+            rgb = [int(style.LOOKS[name].colour[i:i + 2], 16) for i in (1, 3, 5)]
+            nearest = min(max(abs(a - b) for a, b in zip(rgb, other)) for other in colours)
+            self.assertLess(nearest, 16, name)     # of 255; the palette rounds
+
+    def test_experiment_2_is_drawn(self):
+        done = plot(self.contour, "-o", self.out, "--figures", "figure6,figure12,figure14,figure15")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(len(self.drawn()), 4)
+        for path in self.out.iterdir():
+            self.assertGreater(path.stat().st_size, SMALLEST_PNG, path)
+
+    def test_a_sweep_gives_lag_against_feed_in_every_format_reproducibly(self):
+        bytes_of = []
+        for folder in ("a", "b"):
+            done = plot(self.sweep, "-o", self.out / folder, "--format", "png,svg,pdf",
+                        "--figures", "lag")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            files = sorted((self.out / folder).iterdir())
+            self.assertEqual([p.name for p in files],
+                             ["sweep-lag.pdf", "sweep-lag.png", "sweep-lag.svg"])
+            bytes_of.append([p.read_bytes() for p in files])
+        self.assertEqual(*bytes_of)
+        self.assertTrue(bytes_of[0][0].startswith(b"%PDF"))
+        self.assertIn(b"response time, ms", bytes_of[0][2])
+
+    def test_a_case_that_stopped_is_shown_over_time_and_left_out_of_comparisons(self):
+        done = plot(self.stopped, "-o", self.out, "--format", "svg",
+                    "--figures", "figure9,deviations")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, r"^case feedback stopped \(.*following error.*\); "
+                                      r"it is drawn over time only\n$")
+        self.assertIn("(stopped: feedback)", (self.out / "stopped-deviations.svg").read_text())
+        self.assertNotIn(">feedback<", (self.out / "stopped-figure9.svg").read_text())
+
+    def test_a_run_where_all_stopped_still_shows_what_happened(self):
+        done = plot(self.none, "-o", self.out, "--format", "svg")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.drawn(), ["none-deviations.svg", "none-figure6.svg"])
+        self.assertIn("figure9: not drawn, case nominal, which the others are compared with, "
+                      "stopped\n", done.stderr)
+
+    def test_nothing_is_overwritten_without_force(self):
+        arguments = (self.sweep, "-o", self.out, "--figures", "lag")
+        self.assertEqual(plot(*arguments).returncode, 0)
+        file = self.out / "sweep-lag.png"
+        file.write_bytes(b"mine")
+        done = plot(*arguments)
+        self.assertEqual((done.returncode, done.stderr, file.read_bytes()),
+                         (2, f"{file}: error: exists; use --force to overwrite\n", b"mine"))
+        self.assertEqual(plot(*arguments, "--force").returncode, 0)
+        self.assertGreater(file.stat().st_size, SMALLEST_PNG)
+
+    def test_list_names_every_figure(self):
+        done = subprocess.run([PLOT, "--list"], capture_output=True, text=True)
+        self.assertEqual([line.split()[0] for line in done.stdout.splitlines()],
+                         ["figure6", "figure9", "figure10", "figure11", "figure12", "figure14",
+                          "figure15", "lag", "deviations"])
+
+
+class Mistakes(WithFiles):
+    def test_a_figure_that_is_asked_for_and_not_held(self):
+        self.fails(f"{self.side}: error: lag: the file holds a run, not a sweep",
+                   self.side, "--figures", "figure6,lag")
+        self.fails(f"{self.contour}: error: figure9: the imposed errors are functions of X, Y, Z, "
+                   "not of X alone", self.contour, "--figures", "figure9")
+
+    def test_status_of_the_process(self):
+        done = subprocess.run([PLOT, self.root / "missing.h5"], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+
+    def test_names_that_do_not_exist(self):
+        self.fails("plot.py: error: no figure is named figur9; did you mean figure9?",
+                   self.side, "--figures", "figur9")
+        self.fails("plot.py: error: no format is named jpeg; there are png, svg, pdf",
+                   self.side, "--format", "jpeg")
+        self.fails("plot.py: error: no result file is named; see plot.py --help")
+
+    def test_files_that_are_not_results(self):
+        missing, text, foreign, newer = (self.root / name for name in
+                                         ("missing.h5", "text.h5", "foreign.h5", "newer.h5"))
+        text.write_text("no HDF5\n")
+        with h5py.File(foreign, "w") as file:
+            file["data"] = 1.0
+        shutil.copy(self.sweep, newer)
+        with h5py.File(newer, "a") as file:
+            file.attrs["schema_version"] = 99
+        self.fails(f"{missing}: error: no such file", missing)
+        self.fails(f"{text}: error: is not an HDF5 file", text)
+        self.fails(f"{foreign}: error: is not a result file of servomill", foreign)
+        self.fails(f"{newer}: error: has schema version 99; this program reads version 1", newer)
+
+    def test_a_damaged_file(self):
+        cut, hollow = self.root / "cut.h5", self.root / "hollow.h5"
+        cut.write_bytes(self.side.read_bytes()[:100_000])
+        done = plot(cut, "-o", self.out)
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, r"^\S+cut.h5: error: cannot be read as HDF5: .*\n$")
+        shutil.copy(self.side, hollow)
+        with h5py.File(hollow, "a") as file:
+            del file["cases/table/servo/s"]
+        self.fails(f"{hollow}: error: case table holds no s", hollow, "--figures", "figure9")
+
+
+if __name__ == "__main__":
+    SERVOMILL = sys.argv.pop(1)
+    unittest.main(verbosity=1)
