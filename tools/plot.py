@@ -46,44 +46,53 @@ def save(drawn, path, ending):
     picture.save(path, compress_level=9, dpi=(drawn.dpi, drawn.dpi))
 
 
-def draw_all(result, named, formats, folder, force):
-    """Draws what the file holds; returns the paths written."""
-    wanted = [figure for figure in FIGURES if not named or figure.name in named]
-    pages = []      # drawn first, written when nothing is wrong with any of them
-    for case in result.cases.values() if result.kind == "run" else []:
-        if not case.finished:
-            print(f"case {case.name} stopped ({case.outcome}); it is drawn over time only",
-                  file=sys.stderr)
-    for figure in wanted:
-        try:
-            if figure.kind != result.kind:
-                raise NotInFile(f"the file holds a {result.kind}, not a {figure.kind}")
-            drawn = figure.draw(result)
-        except NotInFile as missing:
-            if named:
-                raise InputError(f"{result.path}: error: {figure.name}: {missing}") from None
-            print(f"{figure.name}: not drawn, {missing}", file=sys.stderr)
-            continue
-        for ending in formats:
-            pages.append((folder / f"{result.path.stem}-{figure.name}.{ending}", drawn, ending))
+def draw_all(path, named):
+    """Draws what one file holds: {figure name: figure}, {figure name: why it is not drawn}."""
+    drawn, missing = {}, {}
+    with open_result(path) as result:
+        for case in result.cases.values() if result.kind == "run" else []:
+            if not case.finished:
+                print(f"case {case.name} stopped ({case.outcome}); it is drawn over time only",
+                      file=sys.stderr)
+        for figure in FIGURES:
+            if named and figure.name not in named:
+                continue
+            try:
+                if figure.kind != result.kind:
+                    raise NotInFile(f"the file holds a {result.kind}, not a {figure.kind}")
+                drawn[figure.name] = figure.draw(result)
+            except NotInFile as reason:
+                missing[figure.name] = f"{reason}"
+    return drawn, missing
 
-    for path, _, _ in pages:
-        if path.exists() and not force:
-            raise InputError(f"{path}: error: exists; use --force to overwrite")
-    for path, drawn, ending in pages:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        save(drawn, path, ending)
-    style.plt.close("all")
-    return [path for path, _, _ in pages]
+
+def pages_of(files, named):
+    """All figures of all files as (stem of the file name, figure). A figure that is asked for by
+    name must be held by at least one file; others are explained where they are not drawn."""
+    pages, found = [], set()
+    for file in files:
+        drawn, missing = draw_all(file, named)
+        found |= drawn.keys()
+        pages += [(f"{pathlib.Path(file).stem}-{name}", figure) for name, figure in drawn.items()]
+        for name, reason in missing.items():
+            if not named:
+                where = f"{file}: " if len(files) > 1 else ""
+                print(f"{where}{name}: not drawn, {reason}", file=sys.stderr)
+        if not named and not drawn:
+            raise InputError(f"{file}: error: holds nothing that can be drawn")
+    for name in named or []:
+        if name not in found:
+            raise InputError(f"{file}: error: {name}: {missing[name]}")
+    return pages
 
 
 def main(arguments):
     reader = argparse.ArgumentParser(
         prog="plot.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    reader.add_argument("file", metavar="OUT.h5", nargs="?", help="result file")
+    reader.add_argument("files", metavar="OUT.h5", nargs="*", help="result files")
     reader.add_argument("-o", metavar="DIR", default=".", help="folder to write to (default: here)")
     reader.add_argument("--format", metavar="png,svg,pdf", default="png", help="default: png")
-    reader.add_argument("--figures", metavar="NAME,...", help="default: all that the file holds")
+    reader.add_argument("--figures", metavar="NAME,...", help="default: all that the files hold")
     reader.add_argument("--list", action="store_true", help="print the names of all figures")
     reader.add_argument("--force", action="store_true", help="overwrite existing figures")
     options = reader.parse_args(arguments)
@@ -92,17 +101,28 @@ def main(arguments):
         for figure in FIGURES:
             print(f"{figure.name:<12}{figure.kind:<7}{figure.help}")
         return 0
-    if options.file is None:
+    if not options.files:
         raise InputError("plot.py: error: no result file is named; see plot.py --help")
+    stems = [pathlib.Path(file).stem for file in options.files]
+    for stem in stems:
+        if stems.count(stem) > 1:
+            raise InputError(f"plot.py: error: two files are named {stem}; draw them apart")
     formats = chosen(options.format, FORMATS, "format")
     named = options.figures and chosen(options.figures, [f.name for f in FIGURES], "figure")
+
+    # everything is drawn before anything is written
     style.set_up()
-    with open_result(options.file) as result:
-        written = draw_all(result, named, formats, pathlib.Path(options.o), options.force)
-    for path in written:
+    folder = pathlib.Path(options.o)
+    pages = [(folder / f"{name}.{ending}", figure, ending)
+             for name, figure in pages_of(options.files, named) for ending in formats]
+    for path, _, _ in pages:
+        if path.exists() and not options.force:
+            raise InputError(f"{path}: error: exists; use --force to overwrite")
+    folder.mkdir(parents=True, exist_ok=True)
+    for path, figure, ending in pages:
+        save(figure, path, ending)
         print(path)
-    if not written:
-        raise InputError(f"{options.file}: error: holds nothing that can be drawn")
+    style.plt.close("all")
     return 0
 
 

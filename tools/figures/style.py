@@ -116,10 +116,14 @@ def number(value):
     return f"{value:.0f}" if size >= 100 else f"{value:.1f}" if size >= 1 else f"{value:.2f}"
 
 
+SAMPLES_A_PIECE = 8   # at least, of noisy_line
+
+
 def noisy_line(axes, x, y, look, buckets=300, **more):
     """Draws a curve that may carry noise: its mean over short pieces in the look of the case, so
     that dashes stay dashes, and a pale band from the lowest to the highest sample."""
-    if len(y) > 4 * buckets:
+    buckets = min(buckets, len(y) // SAMPLES_A_PIECE)
+    if buckets > 1:
         starts = np.linspace(0, len(y), buckets, endpoint=False).astype(int)
         count = np.diff(np.append(starts, len(y)))
         middle, mean = (np.add.reduceat(v, starts) / count for v in (x, y))

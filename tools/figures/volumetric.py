@@ -130,7 +130,7 @@ def _oblique_scales(ax, flat, scale):
     ax.plot([u[0]] * 2, [v[0], v[0] + bar], color=style.GREY, linewidth=2.5)
     ax.text(u[0] - 0.5 * gap, v[0] + bar / 2, "10 µm", ha="right", va="center", color=style.GREY)
     ax.margins(0.08)
-    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_aspect("equal", adjustable="box")
     ax.axis("off")
 
 
@@ -166,7 +166,7 @@ def _per_direction(run, axes, base, found):
         ax.margins(x=0.01)
         if ax is not axes[-1]:
             ax.tick_params(labelbottom=False)
-    axes[-1].set_xlabel("path length s, mm   (differences to nominal at equal s)")
+    axes[-1].set_xlabel("path length s, mm   (case minus nominal at equal s)")
     _name_sections(axes[0], base, found)
 
 
