@@ -156,6 +156,16 @@ class Looks(WithFiles):
                              ("plain", style.BLACK), ("table", style.BLUE)):
             self.assertEqual(style.look_of(File(), case).colour, colour, case)
 
+    def test_cases_with_one_strategy_differ_in_line_and_shade(self):
+        class File:
+            scenario = {"case": [{"name": n, "strategy": [{"type": "none"}]} for n in "abcd"]}
+            strategies = results.ResultFile.strategies
+
+        looks = [style.look_of(File(), case) for case in "abcd"]
+        self.assertEqual(looks[0].colour, style.BLACK)
+        self.assertEqual(len({look.colour for look in looks}), 4)
+        self.assertEqual(len({look.line for look in looks}), 4)
+
     def test_strategies_differ_in_grey_or_in_line(self):
         shown = [style.LOOKS[name] for name in ("nominal", "table", "feedback", "feedback_lead",
                                                 "gcode")]

@@ -6,6 +6,15 @@ from figures.results import NotInFile
 
 
 
+HELD = {"µm": 0.1, "deg": 1e-4}   # following error that an axis which only holds may show
+
+
+def _holds_still(case, name, letter, held):
+    reference = case.column(name.replace("following_error", "ref"), letter)
+    return (len(reference) == 0 or
+            np.ptp(reference) == 0.0 and np.abs(case.column(name, letter)).max() < held)
+
+
 def rows_of(run):
     """Panels as (title, unit, function of a case): what at least one case holds."""
     cases = list(run.cases.values())
@@ -15,9 +24,8 @@ def rows_of(run):
     for name, unit in (("following_error_linear", "µm"), ("following_error_rotary", "deg")):
         holders = [case for case in cases if case.has(name)]
         for letter in holders[0].labels(name) if holders else "":
-            if unit == "deg" and not any(np.ptp(case.column("ref_rotary", letter)) > 0.0
-                                         for case in holders if len(case.column("time"))):
-                continue                       # a rotary axis that only holds still
+            if all(_holds_still(case, name, letter, HELD[unit]) for case in holders):
+                continue
             panels.append((f"Following error of {letter} (set point minus what the NC reads)",
                            unit, lambda case, n=name, a=letter: case.column(n, a)))
     if cases[0].has("tool_deviation"):
@@ -52,7 +60,9 @@ def draw(run):
         if ax is not axes[-1]:
             ax.tick_params(labelbottom=False)
     stopped = [case for case in cases if not case.finished]
-    note = f"   (grey: rapid moves of {cases[0].name})" + ("   (X: stopped)" if stopped else "")
+    note = "   (X: stopped)" if stopped else ""
+    if (cases[0].column("rapid") > 0.5).any():
+        note = f"   (grey: rapid moves of {cases[0].name})" + note
     axes[-1].set_xlabel("time, s" + note)
     headline = run.title or run.path.stem
     if stopped:

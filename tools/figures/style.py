@@ -4,6 +4,7 @@ import dataclasses
 import matplotlib
 
 matplotlib.use("Agg")
+import matplotlib.colors
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -39,7 +40,22 @@ SPARE = ["#00876c", "#b8860b", "#4d4d4d", "#8c564b"]   # strategies that have no
 
 
 def look_of(result, case):
-    """The look of a case of a result file."""
+    """The look of a case of a result file. Of several cases with one strategy the first has the
+    look of the strategy, the next are paler and have other lines."""
+    look = _strategy_look(result, case)
+    names = [one.get("name") for one in result.scenario.get("case", [])]
+    earlier = names[:names.index(case)] if case in names else []
+    twins = sum(_strategy_look(result, name).colour == look.colour and
+                _strategy_look(result, name).line == look.line for name in earlier)
+    if twins == 0:
+        return look
+    rgb = np.array(matplotlib.colors.to_rgb(look.colour))
+    paler = 1.0 - (1.0 - rgb) * 0.65 ** min(twins, 3)
+    return dataclasses.replace(look, colour=matplotlib.colors.to_hex(paler),
+                               line=[DASH, DOT, DASH_DOT][(twins - 1) % 3])
+
+
+def _strategy_look(result, case):
     if case in LOOKS:
         return LOOKS[case]
     acting = [one for one in result.strategies(case) if one.get("type") != "none"]
@@ -49,6 +65,7 @@ def look_of(result, case):
     label = case.replace("_", " ")
     if kind in LOOKS:
         return dataclasses.replace(LOOKS[kind], label=label)
+    # a strategy without a colour of its own gets the same spare one in every file
     return Look(label, SPARE[sum(kind.encode()) % len(SPARE)], DOT, "v")
 
 
