@@ -80,7 +80,8 @@ std::vector<std::size_t> samples_of(const CaseData& one, const std::vector<std::
 }
 
 double statistic_of(const std::string& statistic, const std::vector<double>& values) {
-  if (values.empty()) return kNone;
+  const auto is_none = [](double v) { return std::isnan(v); };
+  if (values.empty() || std::any_of(values.begin(), values.end(), is_none)) return kNone;
   const auto n = static_cast<double>(values.size());
   if (statistic == "mean" || statistic == "rms") {
     double sum = 0.0;
@@ -91,10 +92,8 @@ double statistic_of(const std::string& statistic, const std::vector<double>& val
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     return *high - *low;
   }
-  double largest = 0.0;  // max: by magnitude; a NaN is not swallowed
-  for (const double v : values) {
-    if (!(std::abs(v) <= largest)) largest = std::abs(v);
-  }
+  double largest = 0.0;  // max: by magnitude
+  for (const double v : values) largest = std::max(largest, std::abs(v));
   return largest;
 }
 
