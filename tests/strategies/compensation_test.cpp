@@ -1,0 +1,85 @@
+/// The displacement that all strategies share.
+#include "strategies/compensation.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/strategies/beliefs.h"
+
+namespace servomill::strategies {
+namespace {
+
+constexpr double kAmplitude = 100.0 * um, kPeriod = 60.0 * mm;
+
+// An error of X along X: its correction changes it.
+Belief positioning_error() {
+  plant::ErrorModel errors;
+  errors.component({Axis::X, Axis::X}) = plant::harmonic(kAmplitude, kPeriod);
+  return belief_in(errors);
+}
+
+// m: distance of the true tool to the ideal one of the programmed position
+double left_by_set_point(const Belief& belief, Iterations iterations, const Joints& Q) {
+  Joints moved = Q;
+  moved.head<3>() += set_point_displacement(belief, Sign::correct, iterations, Q);
+  return (belief.model.forward(moved, belief.p_ST).p_WT -
+          plant::forward(belief.model.chain(), Q, belief.p_ST).p_WT)
+      .norm();
+}
+
+// E(x - E(x)) - E(x) = -E' E to first order: for a sine at most A^2 omega / 2 = 0.52 um here.
+TEST(SetPointDisplacement, InOneStepLeavesSlopeTimesError) {
+  const Belief belief = positioning_error();
+  const double omega = 2.0 * std::numbers::pi / kPeriod;
+  const double second_order = kAmplitude * omega;  // 1 %
+  double largest = 0.0;
+  for (double x = -60.0 * mm; x < 60.0 * mm; x += 0.37 * mm) {
+    Joints Q = belief.reference;
+    Q[0] = x;
+    const double E = kAmplitude * std::sin(omega * x),
+                 dE = kAmplitude * omega * std::cos(omega * x);
+    const double left = left_by_set_point(belief, Iterations::one, Q);
+    // next term: E'' E^2 / 2
+    EXPECT_NEAR(left, std::abs(dE * E), 0.5 * kAmplitude * second_order * second_order) << x;
+    largest = std::max(largest, left);
+  }
+  RecordProperty("left_um", std::to_string(largest / um));
+  EXPECT_NEAR(largest, 0.5 * kAmplitude * kAmplitude * omega, 0.02 * largest);
+}
+
+TEST(SetPointDisplacement, ConvergedIsTheNonidealInverse) {
+  constexpr double kConvergedTol = 1e-12;  // m
+  plant::Uniform random(17);
+  for (const Belief& belief :
+       {positioning_error(), belief_in(plant::random_errors(random, 50e-6))}) {
+    for (int n = 0; n < 50; ++n) {
+      Joints Q = belief.reference;
+      for (int j = 0; j < kLinearJoints; ++j) Q[j] = 0.15 * random();
+      EXPECT_LT(left_by_set_point(belief, Iterations::converged, Q), kConvergedTol);
+    }
+  }
+}
+
+// Both act on what they are given, and where they are exact they end in the same place:
+// Q_true + d(Q_true) = Q_cmd.
+TEST(FeedbackDisplacement, PutsTheAxesWhereTheSetPointDoes) {
+  constexpr double kSamePlaceTol = 2e-13;  // m, twice the iteration's
+  plant::Uniform random(19);
+  const Belief belief = belief_in(plant::random_errors(random, 50e-6));
+  for (const Sign sign : kBothSigns) {
+    for (int n = 0; n < 50; ++n) {
+      Joints Q_cmd = belief.reference;
+      for (int j = 0; j < kLinearJoints; ++j) Q_cmd[j] = 0.15 * random();
+      Joints Q_true = Q_cmd;
+      for (int k = 0; k < 30; ++k) {
+        Q_true.head<3>() =
+            Q_cmd.head<3>() - feedback_displacement(belief, sign, Iterations::converged, Q_true);
+      }
+      const Eigen::Vector3d by_set_point =
+          Q_cmd.head<3>() + set_point_displacement(belief, sign, Iterations::converged, Q_cmd);
+      EXPECT_LT((Q_true.head<3>() - by_set_point).norm(), kSamePlaceTol);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace servomill::strategies

@@ -1,0 +1,133 @@
+/// The virtual encoder by itself: both sides of its limits, lead and noise.
+#include "strategies/feedback.h"
+
+#include <gtest/gtest.h>
+
+#include "plant/sensing/encoder.h"
+#include "tests/strategies/beliefs.h"
+
+namespace servomill::strategies {
+namespace {
+
+constexpr double kSlope = 0.01;  // m/m: EYX = kSlope x
+
+Belief ramp_of_y_over_x() {
+  plant::ErrorModel errors;
+  errors.component({Axis::Y, Axis::X}) = plant::polynomial({0.0, kSlope});
+  Belief belief = belief_in(errors);
+  belief.reference.setZero();  // rotary axes, too: d is then along Y alone
+  return belief;
+}
+
+struct Limits {
+  double max_um = 1e9, max_rate_mm_per_s = 1e9, lead_ms = 0.0, window_ms = 3.0;
+};
+
+Acting virtual_encoder(const Belief& belief, const Limits& limits) {
+  const Entry entry = feedback_entry();
+  Parameters parameters = default_parameters(entry);
+  parameters.set("max_um", limits.max_um * um);
+  parameters.set("max_rate_mm_per_s", limits.max_rate_mm_per_s * mm);
+  parameters.set("lead_ms", limits.lead_ms * ms);
+  parameters.set("velocity_window_ms", limits.window_ms * ms);
+  return make_acting(entry, parameters, Sign::correct, belief);
+}
+
+Joints at_x(double x) {
+  Joints Q = Joints::Zero();
+  Q[0] = x;
+  return Q;
+}
+
+// d = 10 um at x = 1 mm: inside +-10.1 um it passes bit for bit, outside it is cut exactly.
+TEST(VirtualEncoder, LimitsTheDisplacement) {
+  const Belief belief = ramp_of_y_over_x();
+  const Acting free = virtual_encoder(belief, {});
+  const Acting limited = virtual_encoder(belief, {.max_um = 10.1});
+  for (const double x : {0.2 * mm, 1.0 * mm, 1.0099 * mm, -1.0099 * mm}) {
+    const Eigen::Vector3d d = free.feedback->settle(at_x(x));
+    EXPECT_NE(d[1], 0.0);
+    EXPECT_EQ(limited.feedback->settle(at_x(x)), d) << x;
+    EXPECT_EQ(limited.feedback->evaluate(at_x(x)), d) << x;
+  }
+  for (const double x : {1.0101 * mm, 50.0 * mm}) {
+    for (const double sign : {1.0, -1.0}) {
+      const Eigen::Vector3d limit(0.0, sign * (10.1 * um), 0.0);
+      EXPECT_EQ(limited.feedback->settle(at_x(sign * x)), limit) << x;
+      EXPECT_EQ(limited.feedback->evaluate(at_x(sign * x)), limit) << x;
+    }
+  }
+}
+
+// 10 mm/s over a model period of 60 us is 0.6 um.
+TEST(VirtualEncoder, LimitsTheRate) {
+  const Belief belief = ramp_of_y_over_x();
+  const double most = 0.6 * um;
+  for (const double sign : {1.0, -1.0}) {
+    const Acting free = virtual_encoder(belief, {});
+    const Acting limited = virtual_encoder(belief, {.max_rate_mm_per_s = 10.0});
+    for (const auto* acting : {&free, &limited}) acting->feedback->settle(at_x(0.0));
+    // inside: 0.599 um a period
+    for (int n = 1; n <= 20; ++n) {
+      const Joints Q = at_x(sign * n * 59.9 * um);
+      EXPECT_EQ(limited.feedback->evaluate(Q), free.feedback->evaluate(Q)) << n;
+    }
+    // outside: a jump of 10 um is walked in steps of the limit, and then reached
+    const double from = sign * 20 * 0.599 * um;
+    const Joints Q = at_x(sign * (20 * 59.9 * um + 1.0 * mm));
+    constexpr double kRounding = 1e-19;  // m, of the sum of some steps
+    for (int n = 1; n <= 16; ++n) {
+      EXPECT_NEAR(limited.feedback->evaluate(Q)[1], from + sign * n * most, kRounding) << n;
+    }
+    const Eigen::Vector3d wanted = free.feedback->evaluate(Q);
+    EXPECT_NEAR(limited.feedback->evaluate(Q)[1], wanted[1], kRounding);
+  }
+}
+
+// The model is looked up where the axis will be: with a steady velocity, exactly.
+TEST(VirtualEncoder, LeadsByItsTime) {
+  const Belief belief = ramp_of_y_over_x();
+  const Acting led = virtual_encoder(belief, {.lead_ms = 12.0, .window_ms = 3.0});
+  const double v = 20.0 * mm;  // m/s
+  led.feedback->settle(at_x(0.0));
+  double d = 0.0, x = 0.0;
+  for (int n = 1; n <= 51; ++n) {  // 50 periods of 60 us are the window
+    x = n * v * kModelPeriod;
+    d = led.feedback->evaluate(at_x(x))[1];
+  }
+  constexpr double kRounding = 1e-15;  // m
+  EXPECT_NEAR(d, kSlope * (x + v * 12.0 * ms), kRounding);
+  // standing still for a window, it leads nothing
+  for (int n = 0; n < 51; ++n) d = led.feedback->evaluate(at_x(x))[1];
+  EXPECT_NEAR(d, kSlope * x, kRounding);
+}
+
+// A reading with steps q gives a velocity with an error of up to q / window, hence a displacement
+// with up to E' (q/2 + lead q / window): a longer window, less noise.
+TEST(VirtualEncoder, KeepsTheStepsOfTheEncoderOutOfItsLead) {
+  const Belief belief = ramp_of_y_over_x();
+  const double lead = 12.0 * ms, q = 19.53125 * nm;
+  const double v = 20.0137 * mm;  // no whole number of steps in any window
+  const plant::Encoder encoder = plant::Encoder::with_step(q);
+  const auto noise = [&](double window_ms) {
+    const Acting led = virtual_encoder(belief, {.lead_ms = lead / ms, .window_ms = window_ms});
+    led.feedback->settle(at_x(0.0));
+    double largest = 0.0;
+    for (int n = 1; n < 2000; ++n) {
+      const double x = n * v * kModelPeriod;
+      const double d = led.feedback->evaluate(at_x(encoder.read(x)))[1];
+      if (n > 500) largest = std::max(largest, std::abs(d - kSlope * (x + v * lead)));
+    }
+    RecordProperty("noise_nm_window_" + std::to_string(window_ms), std::to_string(largest / nm));
+    return largest;
+  };
+  const auto bound = [&](double window) { return kSlope * (0.5 * q + lead * q / window); };
+  for (const double window_ms : {0.3, 3.0, 15.0}) {
+    EXPECT_LE(noise(window_ms), bound(window_ms * ms)) << window_ms;
+    EXPECT_GE(noise(window_ms), 0.3 * bound(window_ms * ms)) << window_ms;
+  }
+  EXPECT_LT(noise(3.0), 0.2 * noise(0.3));
+}
+
+}  // namespace
+}  // namespace servomill::strategies
