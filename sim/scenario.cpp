@@ -13,6 +13,7 @@
 #include "sim/read_errors.h"
 #include "sim/read_file.h"
 #include "sim/read_machine.h"
+#include "sim/schedule.h"
 
 namespace servomill::sim {
 namespace {
@@ -67,6 +68,7 @@ class ScenarioReader {
     read_error_models(root);
     read_hardware(root);
     read_record(root);
+    check_periods(root);
     for (Reader& table : root.tables("case")) read_case(table);
     for (Reader& table : root.tables_or_none("quantity")) read_quantity(table);
     if (root.has("sweep")) {
@@ -197,6 +199,22 @@ class ScenarioReader {
     Reader table = root.table_or_empty("record");
     out_.record_period = ticks(table, "period_ms", 1 * ms, 1);
     out_.settle_time = table.real_or("settle_ms", 100 * ms, kTime, {at_least(0.0)});
+  }
+
+  // The static schedule covers one common multiple of all periods.
+  void check_periods(Reader& root) {
+    const LoopPeriods& p = out_.machine.nc.periods;
+    if (hyperperiod({{kPositionLoop, p.position},
+                     {kVelocityLoop, p.velocity},
+                     {kCurrentLoop, p.current},
+                     {kErrorModel, out_.hardware.model_period},
+                     {kRecord, out_.record_period}}) > 0) {
+      return;
+    }
+    root.fault(root.has("record") ? "record" : "machine",
+               fmt::format("the periods of the loops, of the error model and of the recorder meet "
+                           "again only after more than {:g} s; make them multiples of each other",
+                           p.seconds(kMaxHyperperiod)));
   }
 
   Tick ticks(Reader& table, std::string_view key, double fallback, Tick least) {

@@ -9,6 +9,7 @@ namespace servomill::sim {
 Tick hyperperiod(const std::vector<Rate>& rates) {
   Tick total = 1;
   for (const Rate& rate : rates) {
+    if (rate.period > kMaxHyperperiod) return 0;
     total = std::lcm(total, rate.period);
     if (total > kMaxHyperperiod) return 0;
   }

@@ -13,9 +13,9 @@ namespace servomill::sim {
 enum Due : std::uint8_t {
   kErrorModel = 1,  // feedback hardware evaluates its model
   kSample = 2,      // the reading that the next position period will use is taken
-  kPosition = 4,
-  kVelocity = 8,
-  kCurrent = 16,
+  kPositionLoop = 4,
+  kVelocityLoop = 8,
+  kCurrentLoop = 16,
   kRecord = 32,
 };
 

@@ -28,9 +28,9 @@ std::vector<Rate> rates_of(const CaseInputs& in) {
       in.machine.scale_delay + (in.hardware.connected ? in.hardware.signal_delay : 0);
   const Tick sample_phase = (p.position - delay % p.position) % p.position;
   std::vector<Rate> rates = {{kSample, p.position, sample_phase},
-                             {kPosition, p.position, 0},
-                             {kVelocity, p.velocity, 0},
-                             {kCurrent, p.current, 0},
+                             {kPositionLoop, p.position, 0},
+                             {kVelocityLoop, p.velocity, 0},
+                             {kCurrentLoop, p.current, 0},
                              {kRecord, in.record_period, 0}};
   if (in.feedback) rates.push_back({kErrorModel, in.hardware.model_period, 0});
   return rates;
@@ -117,9 +117,9 @@ class CaseRun {
         if (n > end_ || !outcome.finished) break;
         if (instant.due & kErrorModel) evaluate_error_model();
         if (instant.due & kSample) take_reading();
-        if (instant.due & kPosition) run_position_loops(n, outcome);
-        if (instant.due & kCurrent) run_current_loops();
-        if (instant.due & kVelocity) run_velocity_loops();
+        if (instant.due & kPositionLoop) run_position_loops(n, outcome);
+        if (instant.due & kCurrentLoop) run_current_loops();
+        if (instant.due & kVelocityLoop) run_velocity_loops();
         if (instant.due & kRecord) record(n);
         drives_.advance(state_, input_, instant.step);
         n += instant.step;

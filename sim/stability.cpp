@@ -48,9 +48,9 @@ double spectral_radius(const MachineSettings& machine, int joint, Tick reading_d
   const LoopPeriods& p = machine.nc.periods;
   const Tick phase = (p.position - reading_delay % p.position) % p.position;
   const std::vector<Rate> rates = {{kSample, p.position, phase},
-                                   {kPosition, p.position, 0},
-                                   {kVelocity, p.velocity, 0},
-                                   {kCurrent, p.current, 0}};
+                                   {kPositionLoop, p.position, 0},
+                                   {kVelocityLoop, p.velocity, 0},
+                                   {kCurrentLoop, p.current, 0}};
   const std::vector<Instant> schedule = make_schedule(rates);
   std::vector<Tick> steps;
   for (const Instant& instant : schedule) steps.push_back(instant.step);
@@ -73,14 +73,14 @@ double spectral_radius(const MachineSettings& machine, int joint, Tick reading_d
     input.i_cmd[lane] = s.loop.i_cmd;
     for (const Instant& instant : schedule) {
       if (instant.due & kSample) s.reading = s.drive.x[lane];
-      if (instant.due & kPosition) {
+      if (instant.due & kPositionLoop) {
         controllers::position_loop(params, s.loop, 0.0, s.reading, 0.0, 0.0);
       }
-      if (instant.due & kCurrent) {
+      if (instant.due & kCurrentLoop) {
         controllers::current_loop(s.loop);
         input.i_cmd[lane] = s.loop.i_cmd;
       }
-      if (instant.due & kVelocity) {
+      if (instant.due & kVelocityLoop) {
         controllers::velocity_loop(params, s.loop, bank.motor_angle(s.drive, lane));
       }
       bank.advance(s.drive, input, instant.step);

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numeric>
 #include <random>
+
+#include "tests/sim/small_scenario.h"
 
 namespace servomill::sim {
 namespace {
@@ -33,9 +36,9 @@ void expect_due_exactly_at_its_multiples(const std::vector<Rate>& rates) {
 }
 
 TEST(Schedule, VisitsEveryRateAtItsMultiples) {
-  expect_due_exactly_at_its_multiples({{kPosition, 20, 0},
-                                       {kVelocity, 20, 0},
-                                       {kCurrent, 10, 0},
+  expect_due_exactly_at_its_multiples({{kPositionLoop, 20, 0},
+                                       {kVelocityLoop, 20, 0},
+                                       {kCurrentLoop, 10, 0},
                                        {kErrorModel, 6, 0},
                                        {kSample, 20, 19},
                                        {kRecord, 100, 0}});
@@ -44,8 +47,8 @@ TEST(Schedule, VisitsEveryRateAtItsMultiples) {
 TEST(Schedule, VisitsEveryRateAtItsMultiplesForRandomPeriods) {
   std::mt19937 random(23);
   for (int n = 0; n < 200; ++n) {
-    std::vector<Rate> rates = {{kPosition, static_cast<Tick>(1 + random() % 12), 0}};
-    for (const std::uint8_t due : {kErrorModel, kSample, kVelocity, kCurrent, kRecord}) {
+    std::vector<Rate> rates = {{kPositionLoop, static_cast<Tick>(1 + random() % 12), 0}};
+    for (const std::uint8_t due : {kErrorModel, kSample, kVelocityLoop, kCurrentLoop, kRecord}) {
       const auto period = static_cast<Tick>(1 + random() % 12);
       rates.push_back({due, period, static_cast<Tick>(random()) % period});
     }
@@ -55,23 +58,42 @@ TEST(Schedule, VisitsEveryRateAtItsMultiplesForRandomPeriods) {
 
 // CC424 with a reading that is taken one tick before the position loop.
 TEST(Schedule, TakesOneStepOverWhatNobodyNeeds) {
-  const std::vector<Rate> rates = {{kPosition, 20, 0}, {kCurrent, 10, 0}, {kSample, 20, 19}};
+  const std::vector<Rate> rates = {
+      {kPositionLoop, 20, 0}, {kCurrentLoop, 10, 0}, {kSample, 20, 19}};
   const std::vector<Instant> schedule = make_schedule(rates);
   ASSERT_EQ(schedule.size(), 3U);
-  EXPECT_EQ(schedule[0].due, kPosition | kCurrent);
+  EXPECT_EQ(schedule[0].due, kPositionLoop | kCurrentLoop);
   EXPECT_EQ(schedule[0].step, 10);
-  EXPECT_EQ(schedule[1].due, kCurrent);
+  EXPECT_EQ(schedule[1].due, kCurrentLoop);
   EXPECT_EQ(schedule[1].step, 9);
   EXPECT_EQ(schedule[2].due, kSample);
   EXPECT_EQ(schedule[2].step, 1);
 }
 
 TEST(Hyperperiod, IsTheLeastCommonMultipleUpToItsLimit) {
-  EXPECT_EQ(hyperperiod({{kPosition, 20}, {kErrorModel, 6}, {kRecord, 100}}), 300);
-  EXPECT_EQ(hyperperiod({{kPosition, kMaxHyperperiod}}), kMaxHyperperiod);
-  EXPECT_EQ(hyperperiod({{kPosition, kMaxHyperperiod + 1}}), 0);
-  EXPECT_EQ(hyperperiod({{kPosition, 1000}, {kRecord, 999}}), 999'000);
-  EXPECT_EQ(hyperperiod({{kPosition, 1001}, {kRecord, 1000}}), 0);
+  EXPECT_EQ(hyperperiod({{kPositionLoop, 20}, {kErrorModel, 6}, {kRecord, 100}}), 300);
+  EXPECT_EQ(hyperperiod({{kPositionLoop, kMaxHyperperiod}}), kMaxHyperperiod);
+  EXPECT_EQ(hyperperiod({{kPositionLoop, kMaxHyperperiod + 1}}), 0);
+  EXPECT_EQ(hyperperiod({{kPositionLoop, 1000}, {kRecord, 999}}), 999'000);
+  EXPECT_EQ(hyperperiod({{kPositionLoop, 1001}, {kRecord, 1000}}), 0);
+  EXPECT_EQ(hyperperiod({{kPositionLoop, 7}, {kRecord, std::numeric_limits<Tick>::max()}}), 0);
+}
+
+// 999.99 ms are 99999 ticks: with position periods of 20 ticks, only every 20 s are both due at
+// once.
+TEST(ReadScenario, RefusesPeriodsThatHardlyEverMeet) {
+  try {
+    small_scenario("G1 X1 F600\nM30\n", "[record]\nperiod_ms = 999.99\n[[case]]\nname = \"one\"\n");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(
+        error.what(), SERVOMILL_SOURCE_DIR
+        "/scenarios/small.toml:2:1: error: record = {...}; the periods of the loops, of the error "
+        "model and of the recorder meet again only after more than 10 s; make them "
+        "multiples of each other");
+  }
+  EXPECT_NO_THROW(small_scenario("G1 X1 F600\nM30\n",
+                                 "[record]\nperiod_ms = 1000.0\n[[case]]\nname = \"one\"\n"));
 }
 
 }  // namespace
