@@ -42,6 +42,10 @@ std::vector<Tick> steps_of(const std::vector<Instant>& schedule) {
   return steps;
 }
 
+Outcome interrupted(double time) {
+  return {false, fmt::format("interrupted at {:.4f} s", time), '-', time};
+}
+
 // The last position periods, kept in a ring so that a case that stops can be looked into.
 class LastTicks {
  public:
@@ -112,7 +116,7 @@ class CaseRun {
     Tick n = 0;
     while (n <= end_ && outcome.finished) {
       progress.store(static_cast<float>(n) / static_cast<float>(end_), std::memory_order_relaxed);
-      if (stop.load(std::memory_order_relaxed)) interrupt(outcome, n);
+      if (stop.load(std::memory_order_relaxed)) outcome = interrupted(nc_.periods.seconds(n));
       for (const Instant& instant : schedule_) {
         if (n > end_ || !outcome.finished) break;
         if (instant.due & kErrorModel) evaluate_error_model();
@@ -218,11 +222,6 @@ class CaseRun {
     recorder_.record(now);
   }
 
-  void interrupt(Outcome& outcome, Tick n) const {
-    outcome = {false, fmt::format("interrupted at {:.4f} s", nc_.periods.seconds(n)), '-',
-               nc_.periods.seconds(n)};
-  }
-
   void halt(Outcome& outcome, int joint, double time) const {
     if (!outcome.finished) return;
     outcome.finished = false;
@@ -262,12 +261,17 @@ class IdealRun {
         set_point_(in.machine.nc, in.reference, std::move(in.set_points)),
         recorder_(in.machine, in.truth, in.imposed, in.path, in.tips) {}
 
-  CaseResult run() {
+  CaseResult run(const StopFlag& stop, std::atomic<float>& progress) {
     CaseResult result;
     const double end = in_.reference.duration() + in_.settle_time;
     Tick n = 0;
     SetPoint::Output set = set_point_.settle();
     for (; periods_.seconds(n) <= end; n += periods_.position) {
+      progress.store(static_cast<float>(periods_.seconds(n) / end), std::memory_order_relaxed);
+      if (stop.load(std::memory_order_relaxed)) {
+        result.outcome = interrupted(periods_.seconds(n));
+        break;
+      }
       set = set_point_.advance(periods_.seconds(n));
       if (n % in_.record_period == 0) record(n, set);
     }
@@ -302,7 +306,7 @@ class IdealRun {
 
 CaseResult simulate(CaseInputs& inputs, const StopFlag& stop, std::atomic<float>& progress) {
   const auto begin = std::chrono::steady_clock::now();
-  CaseResult result = inputs.servo == ServoModel::ideal ? IdealRun(inputs).run()
+  CaseResult result = inputs.servo == ServoModel::ideal ? IdealRun(inputs).run(stop, progress)
                                                         : CaseRun(inputs).run(stop, progress);
   result.wall_time =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

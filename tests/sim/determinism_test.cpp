@@ -118,9 +118,11 @@ TEST(RunScenario, EndsEarlyWhenAskedTo) {
       small_scenario("G1 X10 F2000\nM30\n",
                      "[[case]]\nname = \"one\"\n[[case]]\nname = \"ideal\"\nservo = \"ideal\"\n"),
       control);
-  EXPECT_FALSE(out.cases[0].result.outcome.finished);
-  EXPECT_EQ(out.cases[0].result.outcome.reason, "interrupted at 0.0000 s");
-  EXPECT_EQ(out.cases[0].result.outcome.axis, '-');
+  for (const CaseOutput& one : out.cases) {
+    EXPECT_FALSE(one.result.outcome.finished) << one.name;
+    EXPECT_EQ(one.result.outcome.reason, "interrupted at 0.0000 s") << one.name;
+    EXPECT_EQ(one.result.outcome.axis, '-') << one.name;
+  }
 }
 
 }  // namespace
