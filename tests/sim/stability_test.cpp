@@ -28,7 +28,8 @@ TEST(SpectralRadius, IsBelowOneForEveryAxisOfTheMachineFile) {
 // exp(-Kv T).
 TEST(SpectralRadius, OfALowGainIsThatOfAFirstOrderLoop) {
   MachineSettings machine = hsm600u();
-  constexpr double kVelocityLoopShare = 1e-3;  // a lag of the velocity loop of a millisecond at most
+  constexpr double kVelocityLoopShare =
+      1e-3;  // a lag of the velocity loop of a millisecond at most
   machine.nc.cascade[0].Kv = 1.0;
   const double rate = -std::log(spectral_radius(machine, 0, 0)) / 0.2e-3;
   RecordProperty("rate", fmt::format("{:.6f}", rate));
