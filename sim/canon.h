@@ -16,6 +16,9 @@ void canon(const std::string& program_file, const std::string& tool_table,
            const std::function<void(const std::string&)>& line);
 
 /// All faults of a file: scenario or machine (.toml) or program (anything else).
-std::vector<Fault> check_file(const std::string& path);
+/// @param changes     what --set says, for scenarios
+/// @param tool_table  file in LinuxCNC's format, or empty, for programs
+std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,
+                              const std::string& tool_table);
 
 }  // namespace servomill::sim

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "controllers/servo/cascade.h"
 #include "plant/drives/feed_drive.h"
@@ -22,6 +23,10 @@ struct LoopPeriods {
   Tick current = 10;
   double seconds(Tick ticks) const { return static_cast<double>(ticks) * base; }
 };
+
+/// Whether all these periods (ticks) fit into one static schedule: sim/schedule.h bounds its
+/// length.
+bool can_be_scheduled(const std::vector<Tick>& periods);
 
 /// Nominal-position filter of the NC: length in position periods; 0: none.
 struct NominalFilter {

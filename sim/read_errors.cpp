@@ -51,7 +51,13 @@ ErrorFunction read_polynomial(Reader& table, const Units& units) {
 ErrorFunction read_table(Reader& table, const Units& units) {
   auto at = table.reals(units.travel("at"), units.travel_quantity());
   auto values = table.reals(units.value("value"), units.value_quantity());
-  if (const auto fault = plant::table_fault(at, values)) {
+  const auto in_unit = [](std::vector<double> all, double unit) {
+    for (double& x : all) x /= unit;
+    return all;
+  };
+  // asked in the units of the keys, so that it shows the numbers that the user wrote
+  const double travel = units.travel_is_length ? mm : deg;
+  if (const auto fault = plant::table_fault(in_unit(at, travel), in_unit(values, um))) {
     table.fault(*fault);
     return {};
   }

@@ -25,13 +25,18 @@ struct Preset {
 constexpr std::array<Preset, 2> kPresetPeriods = {
     {{1.8e-3, 0.6e-3, 0.1e-3}, {0.2e-3, 0.2e-3, 0.1e-3}}};
 
+constexpr double kLeastBase = 0.1 * us;  // more ticks than that no run can count
+constexpr double kLongestPeriod = 1.0;   // s
+
 Tick period(Reader& nc, std::string_view key, double fallback, double base) {
-  const double seconds = nc.real_or(key, fallback, kTime, {above(0.0)});
+  const std::size_t before = nc.faults();
+  const double seconds = nc.real_or(key, fallback, kTime, {above(0.0), at_most(kLongestPeriod)});
+  if (nc.faults() > before) return 1;
   const auto ticks = whole_ticks(seconds, base);
   if (ticks && *ticks > 0) return *ticks;
   if (nc.has(key)) {
     nc.fault(key, fmt::format("must be a whole multiple of base_period_us = {:g}", base / us));
-  } else if (nc.faults() == 0) {
+  } else {
     nc.fault("base_period_us",
              fmt::format("must divide the preset's {} of {:g} us", key, seconds / us));
   }
@@ -40,12 +45,19 @@ Tick period(Reader& nc, std::string_view key, double fallback, double base) {
 
 LoopPeriods read_periods(Reader& nc) {
   LoopPeriods periods;
-  periods.base = nc.real_or("base_period_us", 10 * us, kTime, {above(0.0)});
+  const std::size_t before = nc.faults();
+  periods.base = nc.real_or("base_period_us", 10 * us, kTime, {at_least(kLeastBase)});
   const Preset& preset = kPresetPeriods[nc.choice_or("preset", 1, kPresets)];
-  if (!(periods.base > 0.0)) return periods;
+  if (nc.faults() > before) return {};
   periods.position = period(nc, "position_period_us", preset.position, periods.base);
   periods.velocity = period(nc, "velocity_period_us", preset.velocity, periods.base);
   periods.current = period(nc, "current_period_us", preset.current, periods.base);
+  if (!can_be_scheduled({periods.position, periods.velocity, periods.current})) {
+    nc.fault(
+        "the periods of position, velocity and current loop meet too seldom; let them be "
+        "multiples of one another");
+    return {};
+  }
   return periods;
 }
 
@@ -84,13 +96,20 @@ plant::FeedDriveParams read_drive(Reader& axis, bool linear) {
   return p;
 }
 
-controllers::CascadeParams read_cascade(Reader& axis, Reader& nc, const plant::FeedDriveParams& p,
-                                        const LoopPeriods& periods) {
+// What all axes have in common unless they say otherwise.
+controllers::CascadeParams read_common_cascade(Reader& nc) {
   controllers::CascadeParams c;
-  const double Kv = nc.real("Kv", kRate, {above(0.0)});
-  c.Kv = axis.real_or("Kv", Kv, kRate, {above(0.0)});
+  c.Kv = nc.real("Kv", kRate, {above(0.0)});
   c.kvf = nc.real_or("velocity_feed_forward", 1.0, kNumber, {at_least(0.0)});
   c.kaf = nc.real_or("acceleration_feed_forward", 1.0, kNumber, {at_least(0.0)});
+  return c;
+}
+
+controllers::CascadeParams read_cascade(Reader& axis, const controllers::CascadeParams& common,
+                                        const plant::FeedDriveParams& p,
+                                        const LoopPeriods& periods) {
+  controllers::CascadeParams c = common;
+  c.Kv = axis.real_or("Kv", common.Kv, kRate, {above(0.0)});
   c.J = p.J_total();
   c.Kp = axis.real("velocity_bandwidth", kAngularVelocity, {above(0.0)}) * c.J;
   const double Tn = axis.real_or("velocity_reset_time_ms", 0.0, kTime, {at_least(0.0)});
@@ -120,16 +139,17 @@ void read_limits(Reader& axis, bool linear, int j, NcSettings& nc) {
   nc.upper[j] = travel[1];
 }
 
-void read_axis(Reader& axis, Reader& nc_table, int j, MachineSettings& machine) {
+void read_axis(Reader& axis, const controllers::CascadeParams& common, const Place& Kv_place, int j,
+               MachineSettings& machine) {
   const auto lane = static_cast<std::size_t>(j);
   const bool linear = j < kLinearJoints;
   machine.drives[lane] = read_drive(axis, linear);
-  machine.nc.cascade[lane] = read_cascade(axis, nc_table, machine.drives[lane], machine.nc.periods);
+  machine.nc.cascade[lane] = read_cascade(axis, common, machine.drives[lane], machine.nc.periods);
   machine.scale[lane] = plant::Encoder::with_step(
       axis.real_or("scale_step", 0.0, quantities_of(linear).position, {at_least(0.0)}));
   machine.motor[lane] =
       plant::Encoder::with_step(axis.real_or("motor_step", 0.0, kAngle, {at_least(0.0)}));
-  machine.nc.gain_place[lane] = axis.has("Kv") ? axis.place("Kv") : nc_table.place("Kv");
+  machine.nc.gain_place[lane] = axis.has("Kv") ? axis.place("Kv") : Kv_place;
   read_limits(axis, linear, j, machine.nc);
   auto& chain_axis = machine.chain.at(*machine.chain.layout.axis[lane]);
   if (axis.has("centre_mm")) {
@@ -192,16 +212,28 @@ MachineSettings read_machine(Reader& table) {
   machine.nc.following_error_limit =
       nc.real_or("following_error_limit_mm", 10 * mm, kLength, {above(0.0)});
   machine.nc.check_stability = nc.boolean_or("check_stability", true);
-  const double delay = nc.real_or("scale_delay_us", 0.0, kTime, {at_least(0.0)});
-  const auto delay_ticks = whole_ticks(delay, machine.nc.periods.base);
-  if (!delay_ticks) nc.fault("scale_delay_us", "must be a whole multiple of base_period_us");
+  const double delay =
+      nc.real_or("scale_delay_us", 0.0, kTime, {at_least(0.0), at_most(kLongestPeriod)});
+  const double base = machine.nc.periods.base;
+  const auto delay_ticks = whole_ticks(delay, base);
+  if (!delay_ticks) {
+    nc.fault("scale_delay_us",
+             fmt::format("must be a whole multiple of base_period_us = {:g}", base / us));
+  }
   machine.scale_delay = delay_ticks.value_or(0);
 
+  const controllers::CascadeParams common = read_common_cascade(nc);
+  const Place Kv_place = nc.place("Kv");
+
+  if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
+    table.raw("axis");
+    return machine;
+  }
   Reader axes = table.table("axis");
   for (int j = 0; j < kJoints; ++j) {
     if (!machine.chain.layout.has(j)) continue;
     Reader axis = axes.table(std::string(1, machine.chain.layout.letter_of(j)));
-    read_axis(axis, nc, j, machine);
+    read_axis(axis, common, Kv_place, j, machine);
   }
   return machine;
 }

@@ -126,6 +126,98 @@ void check_stability(const MachineSettings& machine, Tick reading_delay) {
   if (!faults.empty()) throw InputError(std::move(faults));
 }
 
+// Words of axes that the machine lacks would have no effect.
+void refuse_absent_axes(const std::vector<Move>& moves, const Scenario& scenario,
+                        const AxisWords& start) {
+  std::vector<Fault> faults;
+  for (const Axis axis : kAllAxes) {
+    if (scenario.machine.chain.layout.joint_of(axis)) continue;
+    const auto moved = std::find_if(moves.begin(), moves.end(), [&](const Move& move) {
+      return is_motion(move.kind) && move.end_machine[index_of(axis)] != start[index_of(axis)];
+    });
+    if (moved == moves.end()) continue;
+    faults.push_back({{scenario.program.file, moved->line},
+                      fmt::format("moves {0}; the machine has no axis {0}", letter(axis))});
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+void refuse_start_outside(const Scenario& scenario, const Joints& start) {
+  const MachineSettings& machine = scenario.machine;
+  std::vector<Fault> faults;
+  for (int j = 0; j < kJoints; ++j) {
+    if (!machine.chain.layout.has(j)) continue;
+    if (start[j] >= machine.nc.lower[j] && start[j] <= machine.nc.upper[j]) continue;
+    const bool linear = j < kLinearJoints;
+    const double unit = linear ? mm : deg;
+    faults.push_back(
+        {scenario.program.start_place,
+         fmt::format("program.start: {} = {:.4f} {} with all work offsets, outside the travel; "
+                     "must be >= {:.4f} and <= {:.4f}",
+                     machine.chain.layout.letter_of(j), start[j] / unit, linear ? "mm" : "deg",
+                     machine.nc.lower[j] / unit, machine.nc.upper[j] / unit)});
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+// Sections that quantities name, among those that the program has.
+void refuse_absent_sections(const Scenario& scenario, const std::vector<std::string>& sections) {
+  std::vector<std::string_view> known;
+  for (const std::string& name : sections) {
+    if (!name.empty()) known.push_back(name);
+  }
+  std::vector<Fault> faults;
+  for (const QuantitySpec& quantity : scenario.quantities) {
+    for (const std::string& name : quantity.sections) {
+      if (std::find(sections.begin(), sections.end(), name) != sections.end()) continue;
+      const std::string near = did_you_mean(name, known);
+      faults.push_back(
+          {quantity.sections_place,
+           fmt::format("{} has no section '{}'{}", scenario.program.file, name,
+                       !near.empty()   ? near
+                       : known.empty() ? "; a comment (MSG, NAME) begins one"
+                                       : fmt::format("; there are: {}", fmt::join(known, ", ")))});
+    }
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+// Faults of several cases, each said once; with the case if not all cases have it.
+class CaseFaults {
+ public:
+  void add(const std::string& case_name, const InputError& error) {
+    for (const Fault& fault : error.faults()) {
+      const auto same = std::find_if(found_.begin(), found_.end(), [&](const Found& other) {
+        return other.fault.place == fault.place && other.fault.message == fault.message;
+      });
+      if (same == found_.end()) {
+        found_.push_back({fault, {case_name}});
+      } else {
+        same->cases.push_back(case_name);
+      }
+    }
+  }
+  void report(std::size_t cases) {
+    if (found_.empty()) return;
+    std::vector<Fault> faults;
+    for (Found& one : found_) {
+      const std::string who = fmt::format("case {}: ", fmt::join(one.cases, ", "));
+      if (one.cases.size() < cases && !one.fault.message.starts_with(who)) {
+        one.fault.message = who + one.fault.message;
+      }
+      faults.push_back(std::move(one.fault));
+    }
+    throw InputError(std::move(faults));
+  }
+
+ private:
+  struct Found {
+    Fault fault;
+    std::vector<std::string> cases;
+  };
+  std::vector<Found> found_;
+};
+
 controllers::PathOptions path_options(const Scenario& scenario) {
   controllers::PathOptions options;
   options.tolerance = scenario.machine.nc.path_tolerance;
@@ -156,6 +248,8 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec)
   parts.tips = tips_of(moves, scenario.program.tools);
   parts.path = std::make_unique<ProgramPath>(moves, machine_start(scenario, spec));
   if (parts.path->size() == 0) throw InputError({scenario.program.file}, "moves no axis");
+  refuse_absent_axes(moves, scenario, machine_start(scenario, spec));
+  refuse_start_outside(scenario, machine.chain.layout.joints(machine_start(scenario, spec)));
 
   // the strategies, each of which may rewrite what the one before left
   const Eigen::Vector3d tip = first_tip(moves, parts.tips);
@@ -222,13 +316,21 @@ CaseOutput PreparedCase::run(const StopFlag& stop, std::atomic<float>& progress)
   return out;
 }
 
+const std::vector<std::string>& PreparedCase::sections() const { return parts_->path->sections(); }
+
 CaseData CaseOutput::data() const {
   return {name, &result.servo, sections, duration, blocks, result.outcome.finished};
 }
 
 std::vector<Move> read_program(const Scenario& scenario, const CaseSpec& spec) {
-  return controllers::interpret(scenario.program.text, scenario.program.file,
-                                setup_of(scenario, spec));
+  const ProgramSpec& program = scenario.program;
+  try {
+    return controllers::interpret(program.text, program.file, setup_of(scenario, spec));
+  } catch (const InputError&) {  // stopped at the first fault; the user wants all of them
+    auto faults = controllers::check_program(program.text, program.file, setup_of(scenario, spec));
+    if (faults.empty()) throw;
+    throw InputError(std::move(faults));
+  }
 }
 
 namespace {
@@ -242,13 +344,26 @@ std::vector<PreparedCase> prepare(const Scenario& scenario) {
   }
   check_stability(scenario.machine, delay);
   std::vector<PreparedCase> prepared;
-  for (const CaseSpec& spec : scenario.cases) prepared.emplace_back(scenario, spec);
+  CaseFaults faults;
+  for (const CaseSpec& spec : scenario.cases) {
+    try {
+      prepared.emplace_back(scenario, spec);
+    } catch (const InputError& error) {
+      faults.add(spec.name, error);
+    }
+  }
+  faults.report(scenario.cases.size());
+  refuse_absent_sections(scenario, prepared.front().sections());
   return prepared;
 }
 
 }  // namespace
 
 void check_scenario(const Scenario& scenario) { prepare(scenario); }
+
+void check_machine(const MachineSettings& machine) {
+  check_stability(machine, machine.scale_delay);
+}
 
 RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
   const auto begin = std::chrono::steady_clock::now();
@@ -279,6 +394,13 @@ RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
   std::vector<std::jthread> pool;
   for (unsigned t = 0; t < std::min<std::size_t>(threads, count); ++t) pool.emplace_back(work);
 
+  // should the result not be writable, no further case begins
+  struct NoMore {
+    std::atomic<std::size_t>& next;
+    std::size_t count;
+    ~NoMore() { next = count; }
+  };
+  const NoMore no_more{next, count};
   for (std::size_t i = 0; i < count;) {
     if (!done[i]) {
       std::this_thread::sleep_for(kProgressPeriod);

@@ -30,6 +30,9 @@ class PreparedCase {
   ~PreparedCase();
   PreparedCase(PreparedCase&&) noexcept;
 
+  /// Names of the sections of the original program.
+  const std::vector<std::string>& sections() const;
+
   CaseOutput run(const StopFlag& stop, std::atomic<float>& progress);
 
  private:
@@ -56,8 +59,12 @@ struct RunOutput {
 RunOutput run_scenario(const Scenario& scenario, const RunControl& control);
 
 /// Prepares every case as for a run.
-/// @throws InputError
+/// @throws InputError with the faults of all cases
 void check_scenario(const Scenario& scenario);
+
+/// Checks what reading a machine leaves open: whether its loops are stable.
+/// @throws InputError
+void check_machine(const MachineSettings& machine);
 
 /// Interprets the program of a case as its machine would (work offset, tools, parameters).
 std::vector<Move> read_program(const Scenario& scenario, const CaseSpec& spec);

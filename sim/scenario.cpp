@@ -20,6 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kNoBound = 1e300;           // of a parameter's specification
+constexpr double kLongestPeriod = 60.0;      // s
+constexpr double kLongestSettling = 3600.0;  // s
 constexpr std::array<std::string_view, 2> kSigns = {"generate", "correct"};
 constexpr std::array<std::string_view, 2> kServos = {"cascade", "ideal"};
 constexpr std::array<std::string_view, 4> kKinds = {"identified", "predicted", "chosen", "bound"};
@@ -36,6 +39,11 @@ std::string listed(const Names& names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+template <class Names>
+std::string all_there_are(const Names& names) {
+  return names.empty() ? std::string("; there is none") : "; there are: " + listed(names);
+}
+
 // A name that must be one of a list; a fault with the nearest one if it is not.
 template <class Names>
 bool must_be_known(Reader& table, std::string_view key, const std::string& name,
@@ -43,9 +51,7 @@ bool must_be_known(Reader& table, std::string_view key, const std::string& name,
   if (std::find(names.begin(), names.end(), name) != names.end()) return true;
   const std::vector<std::string_view> views(names.begin(), names.end());
   const std::string near = did_you_mean(name, views);
-  table.fault(key,
-              fmt::format("no such {}{}", what,
-                          near.empty() ? fmt::format("; there are: {}", listed(names)) : near));
+  table.fault(key, fmt::format("no such {}{}", what, near.empty() ? all_there_are(names) : near));
   return false;
 }
 
@@ -69,7 +75,10 @@ class ScenarioReader {
     read_hardware(root);
     read_record(root);
     check_periods(root);
-    for (Reader& table : root.tables("case")) read_case(table);
+    const std::size_t before = root.faults();
+    std::vector<Reader> cases = root.tables("case");
+    cases_are_known_ = root.faults() == before;
+    for (Reader& table : cases) read_case(table);
     for (Reader& table : root.tables_or_none("quantity")) read_quantity(table);
     if (root.has("sweep")) {
       Reader sweep = root.table("sweep");
@@ -91,6 +100,7 @@ class ScenarioReader {
     for (const std::string& change : changes_) {
       if (comes_first(change)) document_.set(change);
     }
+    refuse_machine();
     const Value* machine = document_.root().find("machine");
     if (machine != nullptr && machine->type == Value::Type::text) {
       const std::string path = beside(machine->place, machine->text);
@@ -98,11 +108,34 @@ class ScenarioReader {
       document_.merge(as_machine(Document::from_text(out_.machine_text, path).root()));
     }
     if (const Value* overrides = document_.root().find("machine_override")) {
+      if (overrides->type != Value::Type::table) {
+        throw InputError(overrides->place, fmt::format("machine_override = {}; must be a table",
+                                                       inline_toml(*overrides)));
+      }
       document_.merge(as_machine(*overrides));
+      // done: read again, the resolved document must not undo what later changes say
+      document_.set("machine_override={}");
     }
     for (const std::string& change : changes_) {
       if (!comes_first(change)) document_.set(change);
     }
+  }
+
+  // What would make all that follows meaningless.
+  void refuse_machine() const {
+    const Value& root = document_.root();
+    const Value* machine = root.find("machine");
+    if (machine == nullptr && root.find("structure") != nullptr) {
+      throw InputError({document_.name()},
+                       "is a machine, not a scenario; name it in a scenario: machine = \"FILE\"");
+    }
+    if (machine == nullptr || machine->type == Value::Type::text ||
+        machine->type == Value::Type::table) {
+      return;
+    }
+    throw InputError(machine->place,
+                     fmt::format("machine = {}; must be the name of a machine file, or a table",
+                                 inline_toml(*machine)));
   }
 
   // { program = { text = "..." } }: a resolved document needs no other file.
@@ -138,6 +171,7 @@ class ScenarioReader {
       program.file = beside(at, program.file);
       program.text = read_file(program.file, at, "program");
     }
+    refuse_unwritable(program);
     program.feed_override = table.real_or("feed_override", 1.0, kNumber, {above(0.0)});
     if (table.has("parameters")) {
       Reader parameters = table.table("parameters");
@@ -149,13 +183,60 @@ class ScenarioReader {
     const JointLayout& layout = out_.machine.chain.layout;
     if (table.has("work_offset")) {
       Reader words = table.table("work_offset");
-      program.work_offset = read_words(words, layout);
+      program.work_offset = read_offsets(words, layout);
     }
+    program.start_place = table.place("start");
     if (table.has("start")) {
       Reader words = table.table("start");
-      program.start = read_words(words, layout);
+      program.start = read_offsets(words, layout);
     }
     for (Reader& tool : table.tables_or_none("tool")) read_tool(tool);
+  }
+
+  // A program becomes a text of the result file, which is UTF-8 without NUL.
+  static void refuse_unwritable(const ProgramSpec& program) {
+    int line = 1, column = 1;
+    for (std::size_t i = 0; i < program.text.size();) {
+      const std::size_t length = utf8_length(std::string_view(program.text).substr(i));
+      const auto byte = static_cast<unsigned char>(program.text[i]);
+      if (length == 0) {
+        throw InputError(
+            {program.file, line, column},
+            fmt::format("byte 0x{:02x} is not UTF-8; save the program as UTF-8", byte));
+      }
+      if (byte == 0) throw InputError({program.file, line, column}, "byte 0x00 in a program");
+      i += length;
+      column = byte == '\n' ? 1 : column + 1;
+      if (byte == '\n') ++line;
+    }
+  }
+
+  // Bytes of the character at the beginning; 0: none of UTF-8.
+  static std::size_t utf8_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const std::size_t length = byte(0) < 0x80   ? 1
+                               : byte(0) < 0xC2 ? 0
+                               : byte(0) < 0xE0 ? 2
+                               : byte(0) < 0xF0 ? 3
+                               : byte(0) < 0xF5 ? 4
+                                                : 0;
+    if (length > text.size()) return 0;
+    for (std::size_t i = 1; i < length; ++i) {
+      if ((byte(i) & 0xC0) != 0x80) return 0;
+    }
+    const bool overlong =
+        (byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xF0 && byte(1) < 0x90);
+    const bool surrogate = byte(0) == 0xED && byte(1) >= 0xA0;
+    const bool beyond = byte(0) == 0xF4 && byte(1) >= 0x90;
+    return overlong || surrogate || beyond ? 0 : length;
+  }
+
+  // Words of axes; anything goes when the machine's axes are not known.
+  AxisWords read_offsets(Reader& table, const JointLayout& layout) const {
+    if (layout == JointLayout{}) {
+      for (const std::string& key : table.keys()) table.raw(key);
+    }
+    return read_words(table, layout);
   }
 
   void read_tool(Reader& table) {
@@ -172,13 +253,17 @@ class ScenarioReader {
   }
 
   void read_error_models(Reader& root) {
-    std::vector<std::string> names;
+    std::vector<std::string>& names = error_models_;
     if (root.has("errors")) {
       Reader models = root.table("errors");
       for (const std::string& name : models.keys()) {
+        names.push_back(name);
+        if (out_.machine.chain.layout == JointLayout{}) {  // its errors have no axes
+          models.raw(name);
+          continue;
+        }
         Reader model = models.table(name);
         out_.errors[name] = read_errors(model, out_.machine.chain.layout);
-        names.push_back(name);
       }
     }
     for (auto [key, to] : {std::pair{"truth", &out_.truth}, std::pair{"imposed", &out_.imposed}}) {
@@ -198,12 +283,14 @@ class ScenarioReader {
   void read_record(Reader& root) {
     Reader table = root.table_or_empty("record");
     out_.record_period = ticks(table, "period_ms", 1 * ms, 1);
-    out_.settle_time = table.real_or("settle_ms", 100 * ms, kTime, {at_least(0.0)});
+    out_.settle_time =
+        table.real_or("settle_ms", 100 * ms, kTime, {at_least(0.0), at_most(kLongestSettling)});
   }
 
   // The static schedule covers one common multiple of all periods.
   void check_periods(Reader& root) {
     const LoopPeriods& p = out_.machine.nc.periods;
+    if (!can_be_scheduled({p.position, p.velocity, p.current})) return;  // said with the machine
     if (hyperperiod({{kPositionLoop, p.position},
                      {kVelocityLoop, p.velocity},
                      {kCurrentLoop, p.current},
@@ -218,32 +305,69 @@ class ScenarioReader {
   }
 
   Tick ticks(Reader& table, std::string_view key, double fallback, Tick least) {
-    const double seconds = table.real_or(key, fallback, kTime, {at_least(0.0)});
+    const Tick harmless = std::max<Tick>(least, 1);
+    const std::size_t before = table.faults();
+    const double seconds =
+        least > 0 ? table.real_or(key, fallback, kTime, {above(0.0), at_most(kLongestPeriod)})
+                  : table.real_or(key, fallback, kTime, {at_least(0.0), at_most(kLongestPeriod)});
+    if (table.faults() > before) return harmless;
     const double base = out_.machine.nc.periods.base;
     const auto whole = whole_ticks(seconds, base);
     if (whole && *whole >= least) return *whole;
-    table.fault(
-        fmt::format("{}: must be a whole multiple of base_period_us = {:g}", key, base / us));
-    return std::max<Tick>(least, 1);
+    const std::string rule =
+        fmt::format("must be a whole multiple of base_period_us = {:g} of the machine", base / us);
+    if (table.has(key)) {
+      table.fault(key, rule);
+    } else {
+      table.fault(fmt::format("{} is not set, and its default {:g} {}", key,
+                              fallback / unit_of(key), rule));
+    }
+    return harmless;
   }
+
+  static double unit_of(std::string_view key) { return key.ends_with("_us") ? us : ms; }
 
   void read_case(Reader& table) {
     CaseSpec spec;
+    const std::size_t before = table.faults();
     spec.name = table.text("name");
-    if (spec.name.find('/') != std::string::npos) table.fault("name", "must not contain '/'");
-    if (out_.find_case(spec.name) != nullptr) {
-      table.fault("name", "is the name of an earlier case");
-    }
+    if (table.faults() == before) check_case_name(table, spec.name);
+    if (table.faults() > before) cases_are_known_ = false;
     if (table.has("work_offset")) {
       Reader words = table.table("work_offset");
-      spec.work_offset = read_words(words, out_.machine.chain.layout);
+      spec.work_offset = read_offsets(words, out_.machine.chain.layout);
     }
     spec.feedback_hardware = table.boolean_or("feedback_hardware", out_.hardware.connected);
     spec.servo = static_cast<ServoModel>(table.choice_or("servo", 0, kServos));
+    if (spec.servo == ServoModel::ideal &&
+        out_.record_period % out_.machine.nc.periods.position != 0) {
+      table.fault(
+          "servo",
+          fmt::format("is recorded at its position periods: record.period_ms must "
+                      "be a whole multiple of {:g} ms",
+                      out_.machine.nc.periods.seconds(out_.machine.nc.periods.position) / ms));
+    }
     for (Reader& strategy : table.tables_or_none("strategy")) {
       read_strategy(strategy, spec);
     }
+    if (spec.has_feedback()) {
+      if (table.has("feedback_hardware") && !spec.feedback_hardware) {
+        table.fault("feedback_hardware", "a case with the strategy feedback needs its hardware");
+      }
+      spec.feedback_hardware = true;
+    }
     out_.cases.push_back(std::move(spec));
+  }
+
+  // The name becomes a group of the result file.
+  void check_case_name(Reader& table, const std::string& name) const {
+    if (name.empty() || name == "." || name == "..") {
+      table.fault("name", "must name the case");
+    } else if (name.find('/') != std::string::npos) {
+      table.fault("name", "must not contain '/'");
+    } else if (out_.find_case(name) != nullptr) {
+      table.fault("name", "is the name of an earlier case");
+    }
   }
 
   void read_strategy(Reader& table, CaseSpec& spec) {
@@ -261,20 +385,15 @@ class ScenarioReader {
       strategy.sign = table.choice_or("sign", 1, kSigns) == 0 ? strategies::Sign::generate
                                                               : strategies::Sign::correct;
       strategy.model = table.text("model");
-      std::vector<std::string> models;
-      for (const auto& [name, model] : out_.errors) models.push_back(name);
       if (!strategy.model.empty()) {
-        must_be_known(table, "model", strategy.model, "error model", models);
+        must_be_known(table, "model", strategy.model, "error model", error_models_);
       }
     }
     for (const ParameterSpec& parameter : strategy.entry->parameters) {
       read_parameter(table, parameter, strategy.parameters);
     }
-    if (strategy.entry->name == "feedback") spec.feedback_hardware = true;
-    for (const StrategySpec& other : spec.strategies) {
-      if (other.entry == strategy.entry && strategy.entry->name == "feedback") {
-        table.fault("type", "a case has one feedback hardware: this is the second");
-      }
+    if (strategy.entry->name == "feedback" && spec.has_feedback()) {
+      table.fault("type", "a case has one feedback hardware: this is the second");
     }
     spec.strategies.push_back(std::move(strategy));
   }
@@ -299,21 +418,38 @@ class ScenarioReader {
         }
       }
       table.raw(spec.name);
-      table.fault(spec.name, fmt::format("must be one of: {}", listed(spec.words)));
+      const std::string near = table.is(spec.name, Value::Type::text)
+                                   ? did_you_mean(table.text(spec.name), spec.words)
+                                   : std::string();
+      table.fault(spec.name, fmt::format("must be one of {}{}", listed(spec.words), near));
       out.set(spec.name, spec.words.front());
       return;
     }
     const ParsedUnit unit = parse_unit(spec.unit);
     const double factor = unit.unit ? unit.unit->factor : 1.0;
     const Quantity quantity = unit.unit ? unit.unit->quantity : kNumber;
-    const Rules rules = {at_least(spec.min * factor), at_most(spec.max * factor)};
-    if (given) {
-      out.set(spec.name, table.real(spec.name, quantity, rules));
-    } else if (spec.default_text.empty()) {
-      out.set(spec.name, table.real(spec.name, quantity, rules));
+    const Rule least = at_least(spec.min * factor);
+    const Rules rules = {least, at_most(spec.max * factor)};
+    if (given && !spec.words.empty() && is_word(table, spec.name)) {
+      const std::string word = table.text(spec.name);
+      table.fault(spec.name, fmt::format("must be a number or {}{}", listed(spec.words),
+                                         did_you_mean(word, spec.words)));
+      out.set(spec.name, 0.0);
+    } else if (given || spec.default_text.empty()) {
+      const double value = spec.max < kNoBound    ? table.real(spec.name, quantity, rules)
+                           : spec.min > -kNoBound ? table.real(spec.name, quantity, {least})
+                                                  : table.real(spec.name, quantity);
+      out.set(spec.name, value);
     } else {
       out.set(spec.name, std::stod(std::string(spec.default_text)) * factor);
     }
+  }
+
+  // Whether a text does not even begin like a number with its unit.
+  static bool is_word(Reader& table, std::string_view key) {
+    if (!table.is(key, Value::Type::text)) return false;
+    const std::string text = table.text(key);
+    return text.find_first_of("0123456789") == std::string::npos;
   }
 
   void read_quantity(Reader& table) {
@@ -329,6 +465,12 @@ class ScenarioReader {
     const QuantityInfo& info = quantity_info(spec.name);
     if (info.needs_axis) {
       spec.axis = info.axes[table.choice("axis", letters_of(info.axes))];
+      const JointLayout& layout = out_.machine.chain.layout;
+      const auto axis = axis_of(spec.axis);
+      if (layout != JointLayout{} && table.is("axis", Value::Type::text) && axis &&
+          !layout.joint_of(*axis)) {
+        table.fault("axis", "the machine has no such axis");
+      }
     }
     static constexpr std::array<std::string_view, 4> kStatistics = {"max", "rms", "mean", "range"};
     if (info.has_statistic) {
@@ -337,15 +479,19 @@ class ScenarioReader {
     std::vector<std::string> all;
     for (const CaseSpec& one : out_.cases) all.push_back(one.name);
     spec.cases = table.texts_or("cases", all);
-    for (const std::string& name : spec.cases) must_be_known(table, "cases", name, "case", all);
+    for (const std::string& name : spec.cases) {
+      if (cases_are_known_) must_be_known(table, "cases", name, "case", all);
+    }
     if (info.needs_base) {
       spec.base = table.text("base");
-      if (!spec.base.empty()) must_be_known(table, "base", spec.base, "case", all);
+      if (!spec.base.empty() && cases_are_known_)
+        must_be_known(table, "base", spec.base, "case", all);
     }
     if (info.needs_imposed && out_.imposed.empty()) {
       table.fault("name", "needs the key 'imposed' of the scenario");
     }
     spec.sections = table.texts_or("sections", {});
+    spec.sections_place = table.place("sections");
     spec.reference = table.text_or("reference", "");
     if (table.has("kind")) spec.kind = kKinds[table.choice("kind", kKinds)];
     out_.quantities.push_back(std::move(spec));
@@ -364,7 +510,7 @@ class ScenarioReader {
         table.fault(key, "must be a list of at least one value");
         continue;
       }
-      SweepKey sweep{key, {}};
+      SweepKey sweep{key, {}, value->place};
       for (const Value& one : value->children) sweep.values.push_back(inline_toml(one));
       out_.sweep.push_back(std::move(sweep));
     }
@@ -373,6 +519,8 @@ class ScenarioReader {
   Document document_;
   const std::vector<std::string>& changes_;
   Scenario& out_;
+  std::vector<std::string> error_models_;  // names, as far as read
+  bool cases_are_known_ = true;            // all have names of their own
 };
 
 constexpr int kMostBases = 8;
@@ -408,6 +556,11 @@ Scenario read(Document document, const std::vector<std::string>& changes, const 
 }
 
 }  // namespace
+
+bool CaseSpec::has_feedback() const {
+  return std::any_of(strategies.begin(), strategies.end(),
+                     [](const StrategySpec& one) { return one.entry->name == "feedback"; });
+}
 
 const CaseSpec* Scenario::find_case(std::string_view case_name) const {
   for (const CaseSpec& one : cases) {

@@ -25,6 +25,7 @@ struct ProgramSpec {
   double feed_override = 1.0;
   AxisWords work_offset = AxisWords::Zero();  // G54, m, rad, machine coordinates
   AxisWords start = AxisWords::Zero();        // m, rad, in work coordinates
+  Place start_place;                          // for a start outside the travel
   controllers::ToolTable tools;
 };
 
@@ -42,6 +43,8 @@ struct CaseSpec {
   std::vector<StrategySpec> strategies;
   bool feedback_hardware = false;
   ServoModel servo = ServoModel::cascade;
+
+  bool has_feedback() const;  ///< among its strategies
 };
 
 /// One line of the comparison, for one or several cases.
@@ -52,14 +55,16 @@ struct QuantitySpec {
   std::vector<std::string> cases;
   std::string base;                   // case compared with, for differences
   std::vector<std::string> sections;  // of the program; empty: all
-  std::string reference;              // the paper's number with unit, or empty
-  std::string kind;                   // identified, predicted, chosen, bound or empty
+  Place sections_place;
+  std::string reference;  // the paper's number with unit, or empty
+  std::string kind;       // identified, predicted, chosen, bound or empty
 };
 
 /// One key that a sweep varies.
 struct SweepKey {
   std::string key;                  // dotted, as --set takes it
   std::vector<std::string> values;  // as TOML
+  Place place;
 };
 
 struct Scenario {

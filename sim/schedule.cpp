@@ -4,6 +4,8 @@
 #include <map>
 #include <numeric>
 
+#include "sim/machine.h"
+
 namespace servomill::sim {
 
 Tick hyperperiod(const std::vector<Rate>& rates) {
@@ -14,6 +16,12 @@ Tick hyperperiod(const std::vector<Rate>& rates) {
     if (total > kMaxHyperperiod) return 0;
   }
   return total;
+}
+
+bool can_be_scheduled(const std::vector<Tick>& periods) {
+  std::vector<Rate> rates;
+  for (const Tick period : periods) rates.push_back({0, period, 0});
+  return hyperperiod(rates) > 0;
 }
 
 std::vector<Instant> make_schedule(const std::vector<Rate>& rates) {

@@ -43,7 +43,7 @@ std::vector<Tick> steps_of(const std::vector<Instant>& schedule) {
 }
 
 Outcome interrupted(double time) {
-  return {false, fmt::format("interrupted at {:.4f} s", time), '-', time};
+  return {false, true, fmt::format("interrupted at {:.4f} s", time), '-', time};
 }
 
 // The last position periods, kept in a ring so that a case that stops can be looked into.

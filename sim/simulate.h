@@ -48,6 +48,7 @@ struct CaseInputs {
 /// How a case ended. A machine that stops is an outcome, not an exception.
 struct Outcome {
   bool finished = true;
+  bool interrupted = false;  // from outside
   std::string reason;  // "axis Y: following error beyond 10 mm"
   char axis = '-';
   double time = 0.0;  // s

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "plant/vocabulary/units.h"
 #include "sim/hdf5/series_writer.h"
@@ -164,7 +165,7 @@ void check_schema(const InputFile& file, const std::string& path, const std::str
 }  // namespace
 
 RunStore::RunStore(const std::string& path, bool force, const Scenario& scenario)
-    : file_(path, force) {
+    : file_(writable_name(path, force), force) {
   Hdf5Group root = file_.root();
   write_inputs(root, scenario, "run");
   write_errors(root, scenario);
@@ -213,31 +214,59 @@ StoredRun read_run(const std::string& path) {
   return run;
 }
 
-void refuse_existing(const std::string& path, bool force) {
-  if (!force && std::filesystem::exists(path)) {
-    throw InputError({path}, "exists; use --force to overwrite");
-  }
+namespace {
+
+bool is_hdf5(const std::string& path) {
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  std::array<char, kSignature.size()> begin{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin.data(), begin.size());
+  return file && std::string_view(begin.data(), begin.size()) == kSignature;
 }
 
-void write_sweep(const std::string& path, bool force, const Scenario& scenario,
-                 const std::vector<SweepPoint>& points) {
-  OutputFile file(path, force);
-  Hdf5Group root = file.root();
+}  // namespace
+
+std::string writable_name(const std::string& path, bool force) {
+  namespace fs = std::filesystem;
+  if (path.empty()) throw InputError({"--output"}, "the name of the result file is empty");
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) throw InputError({path}, "is a folder; name a file");
+  for (const std::string& name : {path, path + ".partial"}) {
+    if (!fs::exists(name, ignored)) continue;
+    if (force && (fs::is_empty(name, ignored) || is_hdf5(name))) continue;
+    if (force) {
+      throw InputError({name}, "exists and is no result file; --force does not overwrite others");
+    }
+    throw InputError({name}, name == path ? "exists; use --force to overwrite"
+                                          : "exists, left by a run that did not end; use --force "
+                                            "to overwrite");
+  }
+  return path;
+}
+
+SweepStore::SweepStore(const std::string& path, bool force, const Scenario& scenario)
+    : file_(writable_name(path, force), force), keys_(scenario.sweep) {
+  Hdf5Group root = file_.root();
   write_inputs(root, scenario, "sweep");
+  root.flush_file();
+}
+
+void SweepStore::write(const std::vector<SweepPoint>& points) {
+  Hdf5Group root = file_.root();
   Hdf5Group table = root.group("sweep");
   std::vector<double> numbers(points.size());
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<double>(i);
   table.list("point", numbers, {"1", "number of the point"});
-  for (std::size_t key = 0; key < scenario.sweep.size(); ++key) {
+  for (std::size_t key = 0; key < keys_.size(); ++key) {
     std::vector<std::string> texts;
     for (std::size_t i = 0; i < points.size(); ++i) {
       texts.push_back(points[i].values[key]);
       numbers[i] = number_of(points[i].values[key]);
     }
     Hdf5Group group = table.group(fmt::format("keys/{}", key));
-    group.attribute("key", scenario.sweep[key].key);
+    group.attribute("key", keys_[key].key);
     group.attribute("values", fmt::format("{}", fmt::join(texts, "\n")));
-    group.list("value", numbers, {"1", scenario.sweep[key].key + ", NaN where it is no number"});
+    group.list("value", numbers, {"1", keys_[key].key + ", NaN where it is no number"});
   }
   const std::size_t quantities = points.empty() ? 0 : points.front().rows.size();
   for (std::size_t q = 0; q < quantities; ++q) {
@@ -248,7 +277,9 @@ void write_sweep(const std::string& path, bool force, const Scenario& scenario,
     }
     group.list("value", numbers, {points.front().rows[q].unit, points.front().rows[q].quantity});
   }
-  file.commit();
+  root.flush_file();
 }
+
+void SweepStore::commit() { file_.commit(); }
 
 }  // namespace servomill::sim

@@ -41,11 +41,25 @@ struct StoredRun {
 /// @throws InputError if the file is none of ours or of another schema version
 StoredRun read_run(const std::string& path);
 
-/// @throws InputError if a result file of that name exists and `force` is not set
-void refuse_existing(const std::string& path, bool force);
+/// `path`, if a result file may be made there: it is no folder, and neither it nor its partial file
+/// exists, or `force` is set and it is a result file (anything else is never overwritten).
+/// @throws InputError
+std::string writable_name(const std::string& path, bool force);
 
-/// Table of a sweep: one list for each key and each quantity, over the points.
-void write_sweep(const std::string& path, bool force, const Scenario& scenario,
-                 const std::vector<SweepPoint>& points);
+/// Table of a sweep on disk: one list for each key and each quantity, over the points.
+class SweepStore {
+ public:
+  /// @throws InputError if the file cannot be had under that name, SystemError
+  SweepStore(const std::string& path, bool force, const Scenario& scenario);
+  /// Writes all points; once.
+  void write(const std::vector<SweepPoint>& points);
+  /// Gives the file its final name.
+  void commit();
+  const std::string& partial_path() const { return file_.partial_path(); }
+
+ private:
+  OutputFile file_;
+  std::vector<SweepKey> keys_;
+};
 
 }  // namespace servomill::sim

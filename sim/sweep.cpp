@@ -25,10 +25,34 @@ std::vector<std::vector<std::string>> grid_of(const Scenario& scenario) {
   return points;
 }
 
-std::vector<SweepPoint> run_sweep(const std::string& scenario_path,
-                                  const std::vector<std::string>& changes,
-                                  const RunControl& control,
-                                  const std::function<void(const SweepPoint&)>& point_done) {
+namespace {
+
+struct Grid {
+  std::vector<std::vector<std::string>> values;
+  std::vector<Scenario> scenarios;
+};
+
+std::string assignment(const SweepKey& key, const std::string& value) {
+  return key.key + "=" + value;
+}
+
+// The user wrote a list in the scenario, not --set: faults of its values stand there.
+InputError at_the_list(const InputError& error, const Scenario& base,
+                       const std::vector<std::string>& values) {
+  std::vector<Fault> faults = error.faults();
+  for (Fault& fault : faults) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (fault.place.file == "--set " + assignment(base.sweep[k], values[k])) {
+        fault.place = base.sweep[k].place;
+        fault.message = fmt::format("sweep.\"{}\": {}", base.sweep[k].key, fault.message);
+      }
+    }
+  }
+  return InputError(std::move(faults));
+}
+
+// All points, read and prepared: a fault of the last is told before the first one runs.
+Grid read_grid(const std::string& scenario_path, const std::vector<std::string>& changes) {
   const Scenario base = read_scenario(scenario_path, changes);
   if (base.sweep.empty()) {
     throw InputError({scenario_path},
@@ -36,30 +60,53 @@ std::vector<SweepPoint> run_sweep(const std::string& scenario_path,
                      "\"program.feed_override\" = [0.5, 1.0]");
   }
   if (base.sweep.size() > kMostKeys) {
-    throw InputError({scenario_path}, fmt::format("[sweep] has {} keys; at most {} are supported",
-                                                  base.sweep.size(), kMostKeys));
+    throw InputError(
+        base.sweep[kMostKeys].place,
+        fmt::format("sweep has {} keys; at most {} are supported", base.sweep.size(), kMostKeys));
   }
-  const auto grid = grid_of(base);
-  std::vector<Scenario> scenarios;
-  for (const auto& values : grid) {
+  Grid grid{grid_of(base), {}};
+  for (const auto& values : grid.values) {
     std::vector<std::string> all = changes;
     for (std::size_t k = 0; k < values.size(); ++k) {
-      all.push_back(base.sweep[k].key + "=" + values[k]);
+      all.push_back(assignment(base.sweep[k], values[k]));
     }
-    scenarios.push_back(read_scenario(scenario_path, all));
+    try {
+      grid.scenarios.push_back(read_scenario(scenario_path, all));
+      check_scenario(grid.scenarios.back());
+    } catch (const InputError& error) {
+      throw at_the_list(error, base, values);
+    }
   }
+  return grid;
+}
+
+}  // namespace
+
+void check_sweep(const std::string& scenario_path, const std::vector<std::string>& changes) {
+  read_grid(scenario_path, changes);
+}
+
+std::vector<SweepPoint> run_sweep(const std::string& scenario_path,
+                                  const std::vector<std::string>& changes,
+                                  const RunControl& control,
+                                  const std::function<void(const SweepPoint&)>& point_done) {
+  const auto [grid, scenarios] = read_grid(scenario_path, changes);
+  if (control.prepared) control.prepared();
 
   std::vector<SweepPoint> points;
+  const auto count = static_cast<double>(grid.size());
   for (std::size_t i = 0; i < grid.size(); ++i) {
     RunControl one = control;
+    one.prepared = nullptr;
     if (control.progress) {
-      one.progress = [&](double share) {
-        control.progress((static_cast<double>(i) + share) / static_cast<double>(grid.size()));
+      one.progress = [&, i](double share) {
+        control.progress((static_cast<double>(i) + share) / count);
       };
     }
-    points.push_back({grid[i], run_scenario(scenarios[i], one).comparison});
+    auto rows = run_scenario(scenarios[i], one).comparison;
+    if (control.stop != nullptr && *control.stop) break;  // half a point is none
+    points.push_back({grid[i], std::move(rows)});
     if (point_done) point_done(points.back());
-    if (control.stop != nullptr && *control.stop) break;
   }
   return points;
 }

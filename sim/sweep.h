@@ -17,8 +17,13 @@ struct SweepPoint {
 /// Points of the grid; the last key varies fastest.
 std::vector<std::vector<std::string>> grid_of(const Scenario& scenario);
 
+/// Reads and prepares all points of a sweep.
+/// @throws InputError at the point that is refused
+void check_sweep(const std::string& scenario_path, const std::vector<std::string>& changes);
+
 /// Reads the scenario anew for every point, with the values set as --set would, and runs it.
-/// All points are read and checked before the first one runs.
+/// All points are read and prepared before the first one runs. A point that was interrupted is not
+/// among those returned.
 /// @throws InputError if there is no [sweep] table, or a point's value is refused
 std::vector<SweepPoint> run_sweep(const std::string& scenario_path,
                                   const std::vector<std::string>& changes,

@@ -7,18 +7,24 @@
 namespace servomill::tools {
 
 int check_command(const Arguments& arguments) {
+  namespace po = boost::program_options;
   Options options(
-      "check", "FILE...",
+      "check", "FILE... [--set KEY=VALUE]... [--tools TABLE]",
       "Checks scenarios and machines (.toml) and programs (all others) and prints every "
       "fault with file:line:column. Scenarios are prepared as for a run, up to the first "
-      "tick.",
+      "tick, at every point of their sweep.",
       "FILE");
+  options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
+                "changes a key of the scenarios, as for servomill run");
+  options.add()("tools", po::value<std::string>()->value_name("TABLE"),
+                "tool table for the programs, in LinuxCNC's format, mm");
   options.add()("quiet,q", "prints nothing but faults");
   if (!options.parse(arguments)) return kDone;
   if (options.words().empty()) throw InputError({"servomill check"}, "needs a FILE; see --help");
+  const std::string tools = options.has("tools") ? options.get<std::string>("tools") : "";
   std::size_t faults = 0;
   for (const std::string& path : options.words()) {
-    const auto found = sim::check_file(path);
+    const auto found = sim::check_file(path, options.list("set"), tools);
     for (const Fault& fault : found) fmt::print(stderr, "{}\n", to_string(fault));
     if (found.empty() && !options.has("quiet")) fmt::print("{}: no faults\n", path);
     faults += found.size();

@@ -80,6 +80,9 @@ class ProgressBar {
   std::size_t shown_ = 0;
 };
 
+/// What --threads says. @throws InputError
+unsigned thread_count(const Options& options);
+
 /// "OUT.h5" for a scenario: its name in the current folder unless the user says otherwise.
 std::string output_name(const Options& options, const std::string& scenario_name,
                         std::string_view suffix);

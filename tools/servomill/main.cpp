@@ -3,8 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <new>
+#include <stdexcept>
+#include <system_error>
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/hdf5/system_error.h"
@@ -18,8 +23,8 @@ constexpr std::array<Command, 6> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
-    {"sweep", "SCENARIO.toml [-o OUT.h5]", "runs a scenario over the grid of its [sweep] table",
-     sweep_command},
+    {"sweep", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
+     "runs a scenario over the grid of its [sweep] table", sweep_command},
     {"check", "FILE...", "checks scenarios, machines and programs", check_command},
     {"canon", "PROGRAM", "prints the canonical moves of a program, one JSON object a line",
      canon_command},
@@ -69,18 +74,38 @@ int dispatch(const Arguments& arguments) {
 }  // namespace
 }  // namespace servomill::tools
 
-int main(int argc, char** argv) {
+namespace {
+
+int guarded(const servomill::tools::Arguments& arguments) {
   using namespace servomill;
   try {
-    return tools::dispatch({argv + 1, argv + argc});
+    return tools::dispatch(arguments);
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return tools::kInputWrong;
   } catch (const sim::SystemError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return tools::kSystemFailed;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "servomill: not enough memory\n");
+    return tools::kSystemFailed;
+  } catch (const std::length_error&) {  // more than any memory could hold
+    fmt::print(stderr, "servomill: not enough memory\n");
+    return tools::kSystemFailed;
+  } catch (const std::system_error& error) {  // standard output, threads
+    fmt::print(stderr, "servomill: {}\n", error.what());
+    return tools::kSystemFailed;
   } catch (const std::exception& error) {
     fmt::print(stderr, "servomill: internal error: {}\n", error.what());
     return tools::kSystemFailed;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int status = guarded({argv + 1, argv + argc});
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  fmt::print(stderr, "standard output: cannot be written: {}\n", std::strerror(errno));
+  return servomill::tools::kSystemFailed;
 }

@@ -56,7 +56,12 @@ bool Options::parse(const Arguments& arguments) {
   } catch (const po::error& error) {
     throw InputError(place, error.what());
   }
-  if (!has("help")) return true;
+  if (!has("help")) {
+    for (const std::string& one : words()) {
+      if (one.empty()) throw InputError(place, fmt::format("{} is empty; see --help", words_));
+    }
+    return true;
+  }
   std::cout << fmt::format("Usage: servomill {} {}\n\n{}\n\n", command_, synopsis_, summary_)
             << description_;
   return false;
@@ -92,6 +97,13 @@ void ProgressBar::clear() {
   fmt::print(stderr, "\r{:<{}}\r", "", shown_);
   std::fflush(stderr);
   shown_ = 0;
+}
+
+unsigned thread_count(const Options& options) {
+  constexpr int kMost = 1024;
+  const int threads = options.get<int>("threads");
+  if (threads >= 0 && threads <= kMost) return static_cast<unsigned>(threads);
+  throw InputError({"--threads"}, fmt::format("{}; must be >= 0 and <= {}", threads, kMost));
 }
 
 std::string output_name(const Options& options, const std::string& scenario_name,

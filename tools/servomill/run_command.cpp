@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/hdf5/system_error.h"
 #include "sim/run.h"
 #include "sim/store.h"
 #include "tools/servomill/command.h"
@@ -26,6 +27,19 @@ void print_outcomes(const sim::RunOutput& output) {
   }
 }
 
+// What a run that did not end leaves behind.
+void print_kept(const std::string& partial_path, const std::vector<std::string>& complete,
+                const std::vector<std::string>& incomplete) {
+  fmt::print(stderr, "kept in {}: ", partial_path);
+  if (complete.empty()) {
+    fmt::print(stderr, "no complete case");
+  } else {
+    fmt::print(stderr, "complete cases {}", fmt::join(complete, ", "));
+  }
+  if (!incomplete.empty()) fmt::print(stderr, "; interrupted {}", fmt::join(incomplete, ", "));
+  fmt::print(stderr, "\n");
+}
+
 }  // namespace
 
 int run_command(const Arguments& arguments) {
@@ -38,7 +52,7 @@ int run_command(const Arguments& arguments) {
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario, such as program.feed_override=0.5, "
                 "case[2].strategy[0].lead_ms=auto or machine.nc.Kv=\"4 m/min/mm\"");
-  options.add()("threads,j", po::value<unsigned>()->default_value(0)->value_name("N"),
+  options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads (default: one a core); results do not depend on it");
   options.add()("force,f", "replaces the result file if it exists");
   options.add()("json", "prints the comparison as one JSON object a line");
@@ -46,25 +60,38 @@ int run_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
 
   const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
-  const std::string path = output_name(options, scenario.name, "");
+  const std::string path =
+      sim::writable_name(output_name(options, scenario.name, ""), options.has("force"));
   const bool json = options.has("json"), quiet = options.has("quiet");
   const auto& stop = stop_on_interrupt();
   std::optional<sim::RunStore> store;
   ProgressBar bar(quiet);
   sim::RunControl control;
-  control.threads = options.get<unsigned>("threads");
+  control.threads = thread_count(options);
   control.stop = &stop;
   control.progress = [&](double share) { bar.show(share); };
-  control.case_done = [&](const sim::CaseOutput& one) { store->add(one); };
+  std::vector<std::string> complete, incomplete;
+  control.case_done = [&](const sim::CaseOutput& one) {
+    store->add(one);
+    (one.result.outcome.interrupted ? incomplete : complete).push_back(one.name);
+  };
   control.prepared = [&] { store.emplace(path, options.has("force"), scenario); };
-  const sim::RunOutput output = sim::run_scenario(scenario, control);
-  bar.clear();
-  if (stop) {
-    fmt::print(stderr, "interrupted; what was simulated until then is kept in {}\n",
-               store->partial_path());
-    return kInterrupted;
+  sim::RunOutput output;
+  try {
+    output = sim::run_scenario(scenario, control);
+    bar.clear();
+    if (!incomplete.empty()) {
+      fmt::print(stderr, "interrupted; ");
+      print_kept(store->partial_path(), complete, incomplete);
+      return kInterrupted;
+    }
+    store->commit(output.comparison);
+  } catch (const sim::SystemError& error) {
+    bar.clear();
+    fmt::print(stderr, "{}\n", error.what());
+    if (store) print_kept(store->partial_path(), complete, {});
+    return kSystemFailed;
   }
-  store->commit(output.comparison);
 
   bool finished = true;
   for (const sim::CaseOutput& one : output.cases) finished &= one.result.outcome.finished;

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "plant/vocabulary/input_error.h"
 #include "sim/store.h"
 #include "sim/sweep.h"
@@ -20,7 +22,7 @@ int sweep_command(const Arguments& arguments) {
                 "result file (default: name of the scenario with _sweep.h5, in this folder)");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario at all points");
-  options.add()("threads,j", po::value<unsigned>()->default_value(0)->value_name("N"),
+  options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads (default: one a core); results do not depend on it");
   options.add()("force,f", "replaces the result file if it exists");
   options.add()("json", "prints one JSON object a point and quantity");
@@ -30,13 +32,15 @@ int sweep_command(const Arguments& arguments) {
   const std::string path = options.word();
   const sim::Scenario scenario = sim::read_scenario(path, options.list("set"));
   const std::string out = output_name(options, scenario.name, "_sweep");
-  sim::refuse_existing(out, options.has("force"));
+  sim::writable_name(out, options.has("force"));
+  std::optional<sim::SweepStore> store;
   const auto& stop = stop_on_interrupt();
   ProgressBar bar(options.has("quiet"));
   sim::RunControl control;
-  control.threads = options.get<unsigned>("threads");
+  control.threads = thread_count(options);
   control.stop = &stop;
   control.progress = [&](double share) { bar.show(share); };
+  control.prepared = [&] { store.emplace(out, options.has("force"), scenario); };
   const auto point_done = [&](const sim::SweepPoint& point) {
     if (options.has("quiet")) return;
     bar.clear();
@@ -55,11 +59,13 @@ int sweep_command(const Arguments& arguments) {
   };
   const auto points = sim::run_sweep(path, options.list("set"), control, point_done);
   bar.clear();
-  if (stop) {
-    fmt::print(stderr, "interrupted after {} points; nothing was written\n", points.size());
+  store->write(points);
+  if (points.size() < sim::grid_of(scenario).size()) {
+    fmt::print(stderr, "interrupted; kept in {}: {} complete points of {}\n", store->partial_path(),
+               points.size(), sim::grid_of(scenario).size());
     return kInterrupted;
   }
-  sim::write_sweep(out, options.has("force"), scenario, points);
+  store->commit();
   if (!options.has("quiet") && !options.has("json")) fmt::print("written to {}\n", out);
   return kDone;
 }

@@ -21,6 +21,17 @@ BASE = ("scenario.toml", "machine.toml", "part.ngc")
 TIME_LIMIT = 60  # s, for one command: far more than any takes
 
 
+def changed_lines(name, before, after):
+    """Every line that is new, with its number, and those that went without one in their place."""
+    out = []
+    for tag, i1, i2, j1, j2 in difflib.SequenceMatcher(None, before, after, autojunk=False).get_opcodes():
+        if tag in ("replace", "insert"):
+            out += [f"    {name}:{j + 1}: {after[j]}" for j in range(j1, j2)]
+        elif tag == "delete":
+            out += [f"    {name}: without {line}" for line in before[i1:i2] if line]
+    return out
+
+
 def make_folder(folder, wrong):
     """Fills a folder with the right input, then makes it wrong; returns what to show of that."""
     for name in BASE:
@@ -28,12 +39,13 @@ def make_folder(folder, wrong):
     shown = []
     for name, old, new in wrong.get("edit", ()):
         path = os.path.join(folder, name)
-        with open(path, encoding="utf-8", newline="") as file:
-            text = file.read()
-        assert text.count(old) >= 1, f"{name} has no '{old}'"
-        with open(path, "w", encoding="utf-8", newline="") as file:
-            file.write(text.replace(old, new, 1))
-        shown += [f"    {name}: {line}" for line in (new.strip("\n").split("\n") if new.strip() else [f"(without) {old.strip()}"])]
+        with open(path, encoding="utf-8") as file:
+            before = file.read()
+        assert old in before, f"{name} has no '{old}'"
+        after = before.replace(old, new, 1)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(after)
+        shown += changed_lines(name, before.splitlines(), after.splitlines())
     for name, content in wrong.get("write", {}).items():
         data = content if isinstance(content, bytes) else content.encode()
         os.makedirs(os.path.dirname(os.path.join(folder, name)), exist_ok=True)

@@ -30,8 +30,8 @@ COMMAND_LINE = [
     typed("no file, or too many", "servomill run", "servomill run scenario.toml machine.toml", "servomill check",
           "servomill compare", "servomill canon", "servomill sweep", "servomill list"),
     typed("something that cannot be listed", "servomill list strategy", "servomill list machines --folder nowhere"),
-    typed("standard output is full", "servomill canon part.ngc > /dev/full", "servomill list strategies > /dev/full",
-          "servomill --help > /dev/full"),
+    typed("standard output is full", "servomill canon moves.ngc > /dev/full", "servomill list strategies > /dev/full",
+          "servomill --help > /dev/full", write={"moves.ngc": "G1 X10 F100\nM2\n"}, about="a right program"),
 ]
 
 FILES = [
@@ -68,7 +68,7 @@ SCENARIO = [
      "edit": [("scenario.toml", "feed_override = 1.0", "feed_override = -1.0"),
               ("machine.toml", "lead_mm = 20.0", "lead_mm = 0.0")], "commands": CHECK},
     line("a program parameter without #", '"#101" = 1394.0', '"101" = 1394.0'),
-    line("a program parameter of the machine", '"#101" = 1394.0', '"#5220" = 2'),
+    line("a program parameter that no program has", '"#101" = 1394.0', '"#101" = 1394.0, "#1e9" = 2'),
     line("a tool twice", "length_mm = 110.0", "length_mm = 110.0\n[[program.tool]]\nnumber = 1\nlength_mm = 90.0"),
     line("an unknown strategy", 'type = "table"', 'type = "tabel"'),
     line("an unknown error model", 'model = "imposed"', 'model = "imposd"'),
@@ -97,6 +97,11 @@ SCENARIO = [
     line("a recorder period that is no multiple", "period_ms = 1.0", "period_ms = 1.005"),
     line("a recorder period of the wrong type", "period_ms = 1.0", "period_ms = true"),
     line("a recorder period of nothing", "period_ms = 1.0", "period_ms = 0"),
+    line("a recorder period that seldom meets the loops", "period_ms = 1.0", "period_ms = 7919.01"),
+    line("an ideal servo recorded between its position periods", 'name = "nominal"', 'name = "nominal"\nservo = "ideal"', "scenario.toml",
+         ["servomill check scenario.toml --set record.period_ms=0.13"]),
+    line("a run that no memory holds", "feed_override = 1.0", "feed_override = 1e-9", "scenario.toml",
+         ["servomill check scenario.toml"]),
     line("a delay that is no multiple", "signal_delay_us = 10.0", "signal_delay_us = 12.0"),
 ]
 
@@ -108,6 +113,9 @@ MACHINE = [
     line("machine: a period that is no multiple", "base_period_us = 10", "base_period_us = 10\nposition_period_us = 205", "machine.toml"),
     line("machine: a base period that does not divide the preset's", "base_period_us = 10", "base_period_us = 30", "machine.toml"),
     line("machine: a period of the wrong type", "base_period_us = 10", "base_period_us = 10\nposition_period_us = \"slow\"", "machine.toml"),
+    line("machine: periods that meet too seldom", "base_period_us = 10",
+         "base_period_us = 1\nposition_period_us = 9973\nvelocity_period_us = 9967", "machine.toml"),
+    line("machine: a base period that no run could count", "base_period_us = 10", "base_period_us = 1e-9", "machine.toml"),
     line("machine: travel the wrong way round", "travel_mm = [-400.0, 400.0]", "travel_mm = [400.0, -400.0]", "machine.toml"),
     line("machine: travel of one number", "travel_mm = [-400.0, 400.0]", "travel_mm = [400.0]", "machine.toml"),
     line("machine: the same, checked alone", "lead_mm = 20.0", "lead_mm = -20.0", "machine.toml",
@@ -142,14 +150,15 @@ MACHINE_REFUSES = [
     line("the start is outside the travel", "feed_override = 1.0", "start = { X_mm = -500.0 }"),
     line("an axis word that the machine does not have", "G1 X10", "G1 X10 C90", "part.ngc"),
     line("a work offset of an axis that the machine does not have", "feed_override = 1.0", "work_offset = { C_deg = 3.0 }"),
-    line("gains that make the loop unstable", 'Kv = "60 1/s"', 'Kv = "2000 1/s"'),
+    line("gains that make the loop unstable", 'Kv = "60 1/s"', 'Kv = "5000 1/s"'),
     line("a table too steep for the NC", "amplitude_um = 150.0", "amplitude_um = 300.0"),
     line("a table too long for the NC", "spacing_mm = 1.6384", "spacing_mm = 0.8192"),
     line("a spacing that is not 2^n", "spacing_mm = 1.6384", "spacing_mm = 2.0"),
     line("a table that ends before it begins", "to_mm = 200.0", "to_mm = -300.0"),
-    line("a table over an axis that the machine does not have", 'axis = "X"', 'axis = "Z"', "scenario.toml",
-         ["servomill check scenario.toml --set 1=2"]),
-    line("a table beyond the travel", "to_mm = 200.0", "to_mm = 200.0\nupdate_period_ms = -1.0"),
+    {"title": "a table over an axis that the machine does not have",
+     "edit": [("machine.toml", '"[w X b Y Z t]"', '"[w X b Y t]"'), ("scenario.toml", 'axis = "X"', 'axis = "Z"')],
+     "commands": CHECK},
+    line("a table that the NC looks into at times before now", "to_mm = 200.0", "to_mm = 200.0\nupdate_period_ms = -1.0"),
 ]
 
 PROGRAM = [
@@ -172,7 +181,8 @@ PROGRAM = [
 ]
 
 OUTPUT = [
-    typed("the result file exists", "servomill run scenario.toml -o out.h5", "servomill sweep scenario.toml --set sweep='{}' -o out.h5",
+    typed("the result file exists", "servomill run scenario.toml -o out.h5", "servomill sweep scenario.toml -o out.h5",
+          "servomill run scenario.toml -o out.h5 --force",
           write={"out.h5": "precious"}),
     typed("the partial file of another run exists", "servomill run scenario.toml -o out.h5", write={"out.h5.partial": "precious"}),
     typed("--force on a file that is no result", "servomill run scenario.toml -o scenario.toml --force",
@@ -180,6 +190,11 @@ OUTPUT = [
     typed("the result is a folder", "servomill run scenario.toml -o folder", "servomill run scenario.toml -o folder --force",
           folders=["folder"]),
     typed("the folder of the result is not there", "servomill run scenario.toml -o nowhere/out.h5"),
+    typed("a program checked with and without its tools", "servomill check part.ngc", "servomill check part.ngc --tools tools.tbl",
+          write={"tools.tbl": "T1 P1 Z110 D8\n"}),
+    line("a machine that is unstable, checked alone", 'Kv = "60 1/s"', 'Kv = "5000 1/s"', "machine.toml",
+         ["servomill check machine.toml"]),
+    typed("a sweep's file compared", "servomill sweep scenario.toml -q -o out.h5 --set 'sweep={title=[\"a\"]}'", "servomill compare out.h5"),
     typed("a result file that is none", "servomill compare scenario.toml", "servomill compare part.ngc"),
 ]
 
@@ -189,7 +204,7 @@ SWEEP = [
          commands=["servomill check scenario.toml", "servomill sweep scenario.toml -o out.h5"]),
     line("a sweep whose last point is wrong", "[record]", '[sweep]\n"program.feed_override" = [1.0, -1.0]\n[record]',
          commands=["servomill check scenario.toml", "servomill sweep scenario.toml -o out.h5"]),
-    line("a sweep to where the loop is unstable", "[record]", '[sweep]\n"machine.nc.Kv" = ["60 1/s", "2000 1/s"]\n[record]',
+    line("a sweep to where the loop is unstable", "[record]", '[sweep]\n"machine.nc.Kv" = ["60 1/s", "5000 1/s"]\n[record]',
          commands=["servomill check scenario.toml", "servomill sweep scenario.toml -o out.h5"]),
     line("a sweep over three keys", "[record]",
          '[sweep]\n"program.feed_override" = [1.0]\ntitle = ["a"]\nsource = ["b"]\n[record]',
