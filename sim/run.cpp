@@ -112,16 +112,16 @@ void check_stability(const MachineSettings& machine, Tick reading_delay) {
     if (!machine.chain.layout.has(j)) continue;
     const double radius = spectral_radius(machine, j, reading_delay);
     if (radius < 1.0 + 1e-9) continue;
-    faults.push_back(
-        {machine.nc.gain_place[static_cast<std::size_t>(j)],
-         fmt::format(
-             "axis {}: the servo loop is unstable with Kv = {:.4g} 1/s and "
-             "velocity_bandwidth = {:.4g} rad/s (grows by {:.3g} each period); lower one of "
-             "them, or set nc.check_stability = false to watch it diverge",
-             machine.chain.layout.letter_of(j), machine.nc.cascade[static_cast<std::size_t>(j)].Kv,
-             machine.nc.cascade[static_cast<std::size_t>(j)].Kp /
-                 machine.nc.cascade[static_cast<std::size_t>(j)].J,
-             radius)});
+    faults.push_back({machine.nc.gain_place[static_cast<std::size_t>(j)],
+                      fmt::format("axis {}: the servo loop is unstable with Kv = {:.4g} 1/s and "
+                                  "velocity_bandwidth = {:.4g} rad/s (grows by a factor {:.6g} "
+                                  "each period); lower one of "
+                                  "them, or set nc.check_stability = false to watch it diverge",
+                                  machine.chain.layout.letter_of(j),
+                                  machine.nc.cascade[static_cast<std::size_t>(j)].Kv,
+                                  machine.nc.cascade[static_cast<std::size_t>(j)].Kp /
+                                      machine.nc.cascade[static_cast<std::size_t>(j)].J,
+                                  radius)});
   }
   if (!faults.empty()) throw InputError(std::move(faults));
 }

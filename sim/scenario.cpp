@@ -177,7 +177,7 @@ class ScenarioReader {
       Reader parameters = table.table("parameters");
       for (const std::string& key : parameters.keys()) {
         program.parameters[key] = parameters.real(key, kNumber);
-        if (key.size() < 2 || key[0] != '#') parameters.fault(key, "must be named #N or #<name>");
+        if (!is_parameter_name(key)) parameters.fault(key, "must be named #N or #<name>");
       }
     }
     const JointLayout& layout = out_.machine.chain.layout;
@@ -191,6 +191,13 @@ class ScenarioReader {
       program.start = read_offsets(words, layout);
     }
     for (Reader& tool : table.tables_or_none("tool")) read_tool(tool);
+  }
+
+  // "#101" or "#<name>"
+  static bool is_parameter_name(std::string_view key) {
+    if (key.starts_with("#<")) return key.size() > 3 && key.ends_with('>');
+    return key.size() > 1 && key.size() < 8 && key[0] == '#' &&
+           key.find_first_not_of("0123456789", 1) == std::string_view::npos;
   }
 
   // A program becomes a text of the result file, which is UTF-8 without NUL.

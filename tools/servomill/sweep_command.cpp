@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <optional>
 
 #include "plant/vocabulary/input_error.h"
@@ -56,6 +57,7 @@ int sweep_command(const Arguments& arguments) {
     } else {
       fmt::print("{}\n\n{}\n", where, sim::format_table(point.rows));
     }
+    std::fflush(stdout);  // a point is told when it is known, to a pipe, too
   };
   const auto points = sim::run_sweep(path, options.list("set"), control, point_done);
   bar.clear();

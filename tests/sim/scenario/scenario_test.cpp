@@ -1,0 +1,165 @@
+/// What holds for every scenario, machine and strategy that there is.
+#include "sim/scenario.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "sim/comparison.h"
+#include "sim/run.h"
+#include "sim/store.h"
+#include "strategies/registry.h"
+
+namespace servomill::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kFolder = SERVOMILL_SOURCE_DIR "/scenarios";
+const std::string kSmall = SERVOMILL_SOURCE_DIR "/tests/cli/gallery/scenario.toml";
+
+std::vector<std::string> files(bool machines) {
+  std::vector<std::string> out;
+  for (const auto& entry : fs::recursive_directory_iterator(kFolder)) {
+    const bool is_machine = entry.path().parent_path().filename() == "machines";
+    if (entry.path().extension() == ".toml" && is_machine == machines) {
+      out.push_back(entry.path().string());
+    }
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::string test_name(const testing::TestParamInfo<std::string>& file) {
+  std::string name = fs::path(file.param).stem().string();
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  return name;
+}
+
+class EveryMachine : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryMachine, ReadsWithoutFaultAndIsStable) {
+  EXPECT_NO_THROW(check_machine(read_machine_file(GetParam())));
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios, EveryMachine, testing::ValuesIn(files(true)), test_name);
+
+class EveryScenario : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryScenario, SurvivesWriteAndReadUnchanged) {
+  const Scenario scenario = read_scenario(GetParam());
+  const Scenario again = read_resolved_scenario(scenario.resolved, "again");
+  EXPECT_EQ(again.resolved, scenario.resolved);
+  EXPECT_EQ(again.program.text, scenario.program.text);
+  EXPECT_EQ(again.cases.size(), scenario.cases.size());
+}
+
+TEST_P(EveryScenario, CanBePrepared) {
+  const Scenario scenario = read_scenario(GetParam());
+  EXPECT_NO_THROW(check_scenario(scenario));
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios, EveryScenario, testing::ValuesIn(files(false)), test_name);
+
+TEST(Resolved, HoldsTheChangesOfTheCommandLine) {
+  // the scenario overrides this key of its machine, and the command line has the last word
+  const Scenario scenario =
+      read_scenario(kSmall, {"machine.nc.Kv=42", "program.feed_override=0.5"});
+  const Scenario again = read_resolved_scenario(scenario.resolved, "again");
+  EXPECT_EQ(again.machine.nc.cascade[0].Kv, 42.0);
+  EXPECT_EQ(again.program.feed_override, 0.5);
+}
+
+TEST(Changes, OfAFileNameAreReadRelativeToTheScenario) {
+  const Scenario scenario = read_scenario(kSmall, {"machine=./machine.toml"});
+  EXPECT_EQ(scenario.resolved, read_scenario(kSmall).resolved);
+}
+
+TEST(Faults, StandInTheFileThatSaysThem) {
+  const auto place_of = [](const std::vector<std::string>& changes) {
+    try {
+      read_scenario(kSmall, changes);
+    } catch (const InputError& error) {
+      return fs::path(to_string(error.faults().at(0).place)).filename().string();
+    }
+    return std::string("no fault");
+  };
+  EXPECT_EQ(place_of({}), "no fault");
+  EXPECT_EQ(place_of({"machine.axis.X.lead_mm=-1"}), "--set machine.axis.X.lead_mm=-1");
+  EXPECT_EQ(place_of({"machine_override.nc.Kv=-1"}), "--set machine_override.nc.Kv=-1");
+  // the base period of the machine file no longer divides what the scenario says
+  EXPECT_EQ(place_of({"machine.nc.base_period_us=20"}), "scenario.toml:21:19");
+}
+
+// Strategy with nothing said but what has no default.
+std::string required_keys(const strategies::Entry& entry) {
+  if (entry.name == "none") return "";
+  std::string out = ",model=\"imposed\"";
+  for (const ParameterSpec& parameter : entry.parameters) {
+    if (!parameter.default_text.empty()) continue;
+    out += fmt::format(",{}={}", parameter.name, std::max(parameter.min, 1.0));
+  }
+  return out;
+}
+
+// Keys and values as the registry prints them for users.
+std::string all_defaults(const strategies::Entry& entry) {
+  std::string out;
+  for (const ParameterSpec& parameter : entry.parameters) {
+    if (parameter.default_text.empty()) continue;
+    const bool is_word = std::find(parameter.words.begin(), parameter.words.end(),
+                                   parameter.default_text) != parameter.words.end();
+    const std::string quote = is_word ? "\"" : "";
+    out += fmt::format(",{0}={1}{2}{1}", parameter.name, quote, parameter.default_text);
+  }
+  return out;
+}
+
+TEST(EveryStrategy, CanBeNamedWithItsDefaultsSaidOrNot) {
+  for (const strategies::Entry& entry : strategies::entries()) {
+    const std::string silent = required_keys(entry);
+    const auto read = [&](const std::string& keys) {
+      return read_scenario(kSmall,
+                           {fmt::format("case[1].strategy=[{{type=\"{}\"{}}}]", entry.name, keys)});
+    };
+    const auto quiet = read(silent).cases.at(1).strategies.at(0).parameters;
+    const Scenario scenario = read(silent + all_defaults(entry));
+    const auto& said = scenario.cases.at(1).strategies.at(0).parameters;
+    for (const ParameterSpec& parameter : entry.parameters) {
+      if (parameter.default_text.empty()) continue;
+      ASSERT_EQ(quiet.is_word(parameter.name), said.is_word(parameter.name)) << parameter.name;
+      if (said.is_word(parameter.name)) {
+        EXPECT_EQ(quiet.word(parameter.name), said.word(parameter.name)) << parameter.name;
+      } else {
+        EXPECT_EQ(quiet.number(parameter.name), said.number(parameter.name)) << parameter.name;
+      }
+    }
+  }
+}
+
+TEST(Store, ComparesAgainAsTheRunDid) {
+  const Scenario scenario = read_scenario(kSmall);
+  const std::string path = testing::TempDir() + "scenario_test.h5";
+  std::string printed;
+  {
+    RunStore store(path, true, scenario);
+    RunControl control;
+    control.case_done = [&](const CaseOutput& one) { store.add(one); };
+    const RunOutput output = run_scenario(scenario, control);
+    store.commit(output.comparison);
+    printed = format_table(output.comparison);
+  }
+  const StoredRun stored = read_run(path);
+  EXPECT_EQ(format_table(compare(stored.quantities, stored.cases)), printed);
+  EXPECT_NE(printed.find("20 um"), std::string::npos);
+  fs::remove(path);
+}
+
+}  // namespace
+}  // namespace servomill::sim
