@@ -75,7 +75,10 @@ NominalFilter read_filter(Reader& nc, const LoopPeriods& periods) {
 plant::FeedDriveParams read_drive(Reader& axis, bool linear) {
   const AxisQuantities& q = quantities_of(linear);
   plant::FeedDriveParams p;
+  const std::size_t before = axis.faults();
   p.kind = static_cast<plant::DriveKind>(axis.choice_or("drive", 0, kDriveKinds));
+  // which keys are required is open then: complain about none
+  if (axis.faults() > before) p.kind = plant::DriveKind::rigid;
   p.r = linear ? axis.real("lead_mm", kLength, {above(0.0)}) / (2.0 * std::numbers::pi)
                : axis.real_or("ratio", 1.0, kNumber, {above(0.0)});
   p.J = axis.real("motor_inertia", kInertia, {above(0.0)});
@@ -130,7 +133,9 @@ void read_limits(Reader& axis, bool linear, int j, NcSettings& nc) {
   nc.lower[j] = -std::numeric_limits<double>::infinity();
   nc.upper[j] = std::numeric_limits<double>::infinity();
   if (!axis.has(key)) return;  // endless
+  const std::size_t before = axis.faults();
   const auto travel = axis.reals(key, q.position);
+  if (axis.faults() > before) return;
   if (travel.size() != 2 || !(travel[0] < travel[1])) {
     axis.fault(key, "must be [lower, upper] with lower < upper");
     return;
@@ -152,22 +157,25 @@ void read_axis(Reader& axis, const controllers::CascadeParams& common, const Pla
   machine.nc.gain_place[lane] = axis.has("Kv") ? axis.place("Kv") : Kv_place;
   read_limits(axis, linear, j, machine.nc);
   auto& chain_axis = machine.chain.at(*machine.chain.layout.axis[lane]);
+  if (!linear) {
+    chain_axis.sense = static_cast<plant::Sense>(axis.choice_or("sense", 0, kSenses));
+  }
   if (axis.has("centre_mm")) {
+    const std::size_t before = axis.faults();
     const auto centre = axis.reals("centre_mm", kLength);
+    if (axis.faults() > before) return;
     if (centre.size() == 3) {
       chain_axis.centre << centre[0], centre[1], centre[2];
     } else {
       axis.fault("centre_mm", "must be [x, y, z]");
     }
   }
-  if (!linear) {
-    chain_axis.sense = static_cast<plant::Sense>(axis.choice_or("sense", 0, kSenses));
-  }
 }
 
 plant::MachineChain read_chain(Reader& machine) {
+  const std::size_t before = machine.faults();
   const std::string text = machine.text("structure");
-  if (text.empty()) return {};
+  if (machine.faults() > before) return {};
   try {
     return plant::make_chain(plant::parse_structure(text, machine.place("structure")));
   } catch (const InputError& error) {

@@ -160,6 +160,18 @@ void refuse_start_outside(const Scenario& scenario, const Joints& start) {
   if (!faults.empty()) throw InputError(std::move(faults));
 }
 
+// A slip of the unit can make a program last for years.
+void refuse_endless(const Scenario& scenario, double duration) {
+  constexpr double kMostSamples = 1e8;  // of some 500 bytes: more than most machines hold
+  const double period = scenario.machine.nc.periods.seconds(scenario.record_period);
+  const double samples = (duration + scenario.settle_time) / period;
+  if (samples <= kMostSamples) return;
+  throw InputError({scenario.program.file},
+                   fmt::format("takes {:.3g} s: {:.3g} samples at record.period_ms = {:g}; must be "
+                               "<= {:g}; check feeds, feed_override and the limits of the axes",
+                               duration, samples, period / ms, kMostSamples));
+}
+
 // Sections that quantities name, among those that the program has.
 void refuse_absent_sections(const Scenario& scenario, const std::vector<std::string>& sections) {
   std::vector<std::string_view> known;
@@ -267,6 +279,7 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec)
   parts.trajectory = std::make_unique<controllers::Trajectory>(controllers::plan(
       moves, machine.chain.layout, start, {machine.nc.v_max, machine.nc.a_max, machine.nc.j_max},
       path_options(scenario)));
+  refuse_endless(scenario, parts.trajectory->duration());
   parts.blocks = static_cast<double>(
       std::count_if(moves.begin(), moves.end(), [](const Move& m) { return is_motion(m.kind); }));
 

@@ -171,6 +171,9 @@ class ScenarioReader {
       program.file = beside(at, program.file);
       program.text = read_file(program.file, at, "program");
     }
+    if (table.is("file", Value::Type::text) && table.text("file").empty()) {
+      table.fault("file", "must name the program");
+    }
     refuse_unwritable(program);
     program.feed_override = table.real_or("feed_override", 1.0, kNumber, {above(0.0)});
     if (table.has("parameters")) {
@@ -392,7 +395,7 @@ class ScenarioReader {
       strategy.sign = table.choice_or("sign", 1, kSigns) == 0 ? strategies::Sign::generate
                                                               : strategies::Sign::correct;
       strategy.model = table.text("model");
-      if (!strategy.model.empty()) {
+      if (table.is("model", Value::Type::text)) {
         must_be_known(table, "model", strategy.model, "error model", error_models_);
       }
     }
@@ -491,7 +494,7 @@ class ScenarioReader {
     }
     if (info.needs_base) {
       spec.base = table.text("base");
-      if (!spec.base.empty() && cases_are_known_)
+      if (table.is("base", Value::Type::text) && cases_are_known_)
         must_be_known(table, "base", spec.base, "case", all);
     }
     if (info.needs_imposed && out_.imposed.empty()) {

@@ -130,6 +130,10 @@ std::unique_ptr<Series> read_series(const InputFile& file, const std::string& gr
     const std::string path = group + "/" + name;
     if (name.starts_with("axis") || name == "xyz" || name == "ijk") continue;  // labels
     const auto shape = file.shape(path);
+    if (shape.empty() || shape.size() > 2 || (!signals.empty() && shape[0] != rows)) {
+      throw InputError({file.path()},
+                       fmt::format("'{}' is not as long as the signals before it", path));
+    }
     std::string labels;
     if (shape.size() == 2) labels = file.text(path, "columns");
     rows = shape.at(0);
@@ -146,6 +150,20 @@ std::unique_ptr<Series> read_series(const InputFile& file, const std::string& gr
     }
   }
   return series;
+}
+
+// What every comparison needs, and what the other cases have.
+void check_signals(const InputFile& file, const std::string& group, const Series& series,
+                   const Series& first) {
+  std::vector<std::string> needed = {"s", "rapid", "section"};
+  for (const Signal& signal : first.signals()) needed.push_back(signal.name);
+  for (const std::string& name : needed) {
+    const auto& has = series.signals();
+    if (std::any_of(has.begin(), has.end(), [&](const Signal& one) { return one.name == name; })) {
+      continue;
+    }
+    throw InputError({file.path()}, fmt::format("has no '{}/{}'", group, name));
+  }
 }
 
 void check_schema(const InputFile& file, const std::string& path, const std::string& kind) {
@@ -174,15 +192,16 @@ RunStore::RunStore(const std::string& path, bool force, const Scenario& scenario
 
 void RunStore::add(const CaseOutput& one) {
   Hdf5Group group = file_.root().group("cases/" + one.name);
-  group.attribute("finished", one.result.outcome.finished ? 1 : 0);
+  write_series(group.group("servo"), one.result.servo);
+  if (one.result.last_ticks.rows() > 0)
+    write_series(group.group("last_ticks"), one.result.last_ticks);
   group.attribute("outcome", one.result.outcome.reason);
   group.attribute("duration_s", one.duration);
   group.attribute("blocks", one.blocks);
   group.attribute("sections", fmt::format("{}", fmt::join(one.sections, "\n")));
   if (!one.program.empty()) group.attribute("program", one.program);
-  write_series(group.group("servo"), one.result.servo);
-  if (one.result.last_ticks.rows() > 0)
-    write_series(group.group("last_ticks"), one.result.last_ticks);
+  // last: with it the case is complete
+  group.attribute("finished", one.result.outcome.finished ? 1 : 0);
   group.flush_file();
 }
 
@@ -206,7 +225,10 @@ StoredRun read_run(const std::string& path) {
       read_resolved_scenario(file.text("/inputs", "resolved"), path + ":/inputs").quantities;
   for (const std::string& name : file.groups("/cases")) {
     const std::string group = "/cases/" + name;
+    // cut off while it was written: no complete case
+    if (!file.has("/comparison") && !file.has_attribute(group, "finished")) continue;
     run.series.push_back(read_series(file, group + "/servo"));
+    check_signals(file, group + "/servo", *run.series.back(), *run.series.front());
     run.cases.push_back({name, run.series.back().get(), split_lines(file.text(group, "sections")),
                          file.number(group, "duration_s"), file.number(group, "blocks"),
                          file.number(group, "finished") != 0.0});

@@ -146,6 +146,7 @@ class InputFile {
  public:
   explicit InputFile(std::string path);
 
+  const std::string& path() const { return path_; }
   bool has(const std::string& object) const;
   std::vector<std::string> groups(const std::string& group) const;    // in the order of making
   std::vector<std::string> datasets(const std::string& group) const;  // in the order of making

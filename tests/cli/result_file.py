@@ -67,6 +67,60 @@ class ResultFile(unittest.TestCase):
         with h5py.File(self.path, "r") as file:
             self.assertEqual(len(file["comparison"]), len(rows))
 
+    def compare(self, path):
+        result = subprocess.run([SERVOMILL, "compare", path], capture_output=True, text=True, check=False)
+        return result.returncode, result.stderr.replace(self.folder.name + "/", "")
+
+    def changed(self, change):
+        """Path of a copy that went through `change`."""
+        path = os.path.join(self.folder.name, "changed.h5")
+        shutil.copy(self.path, path)
+        with h5py.File(path, "r+") as file:
+            change(file)
+        return path
+
+    def test_files_of_others_are_refused(self):
+        def of_tomorrow(file):
+            file.attrs["schema_version"] = 99
+
+        def of_others(file):
+            del file.attrs["schema_version"]
+
+        def without_signal(file):
+            del file[f"{SERVO}/meas_linear"]
+
+        def with_a_short_signal(file):
+            name = f"{SERVO}/line"
+            short = file[name][:5]
+            units, long_name = (file[name].attrs[key] for key in ("units", "long_name"))
+            del file[name]
+            file[name] = short
+            file[name].attrs["units"], file[name].attrs["long_name"] = units, long_name
+
+        def without_inputs(file):
+            del file["inputs"]
+
+        self.assertEqual(self.compare(self.changed(of_tomorrow)),
+                         (2, "changed.h5: error: has schema version 99; this program reads version 1\n"))
+        self.assertEqual(self.compare(self.changed(of_others)),
+                         (2, "changed.h5: error: is not a result file of servomill\n"))
+        self.assertEqual(self.compare(self.changed(without_inputs)), (2, "changed.h5: error: has no '/inputs'\n"))
+        self.assertEqual(self.compare(self.changed(with_a_short_signal)),
+                         (2, f"changed.h5: error: '/{SERVO}/line' is not as long as the signals before it\n"))
+        self.assertEqual(self.compare(self.changed(without_signal)),
+                         (2, f"changed.h5: error: has no '/{SERVO}/meas_linear'\n"))
+
+    def test_a_truncated_file_is_an_input_error(self):
+        with open(self.path, "rb") as file:
+            data = file.read()
+        path = os.path.join(self.folder.name, "short.h5")
+        for share in (0.001, 0.01, 0.1, 0.5, 0.9, 0.99):
+            with open(path, "wb") as file:
+                file.write(data[: int(share * len(data))])
+            status, stderr = self.compare(path)
+            self.assertEqual(status, 2, share)
+            self.assertRegex(stderr, r"^short\.h5: error: .+\n$")
+
     @unittest.skipUnless(shutil.which("h5dump"), "h5dump is not installed")
     def test_h5dump_reads_all(self):
         result = subprocess.run(["h5dump", "-H", self.path], capture_output=True, text=True, check=False)

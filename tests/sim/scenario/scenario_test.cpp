@@ -97,6 +97,41 @@ TEST(Faults, StandInTheFileThatSaysThem) {
   EXPECT_EQ(place_of({"machine.nc.base_period_us=20"}), "scenario.toml:21:19");
 }
 
+// Dotted paths of everything in a document, as --set takes them.
+void collect_paths(const Value& value, const std::string& path, std::vector<std::string>& out) {
+  if (!path.empty()) out.push_back(path);
+  std::size_t item = 0;
+  for (const Value& child : value.children) {
+    const bool is_list = value.type == Value::Type::list;
+    collect_paths(child,
+                  is_list ? fmt::format("{}[{}]", path, item++) : joined_key(path, child.key), out);
+  }
+}
+
+TEST(Nonsense, InAnyKeyIsAnInputErrorOrAMeaningButNeverACrash) {
+  const Document document = Document::from_text(read_scenario(kSmall).resolved, "resolved");
+  std::vector<std::string> paths;
+  collect_paths(document.root(), "", paths);
+  std::size_t refused = 0;
+  for (const std::string& path : paths) {
+    if (path == "program.text") continue;  // any text is one
+    for (const char* value :
+         {"true", "-1", "x", "[]", "{}", "nan", "1e300", "0", "1e-300", "\"\""}) {
+      try {
+        check_scenario(read_scenario(kSmall, {fmt::format("{}={}", path, value)}));
+      } catch (const InputError& error) {
+        ++refused;
+        ASSERT_FALSE(error.faults().empty());
+        for (const Fault& fault : error.faults()) {
+          EXPECT_FALSE(fault.place.file.empty()) << path << "=" << value << ": " << error.what();
+          EXPECT_FALSE(fault.message.empty());
+        }
+      }
+    }
+  }
+  EXPECT_GT(refused, 6 * paths.size());
+}
+
 // Strategy with nothing said but what has no default.
 std::string required_keys(const strategies::Entry& entry) {
   if (entry.name == "none") return "";
