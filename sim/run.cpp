@@ -83,6 +83,19 @@ std::vector<Move> through_text(const std::vector<Move>& rewritten, const Scenari
   return read;
 }
 
+// Where the key stands that a strategy's complaint names first; the strategy if it is not given.
+Place place_in(const StrategySpec& spec, const std::string& complaint) {
+  Place place = spec.place;
+  std::size_t first = std::string::npos;
+  for (const auto& [key, at] : spec.key_places) {
+    const std::size_t found = complaint.find(key);
+    if (found >= first) continue;
+    first = found;
+    place = at;
+  }
+  return place;
+}
+
 std::unique_ptr<strategies::Strategy> make_strategy(const StrategySpec& spec,
                                                     const Scenario& scenario, const CaseSpec& one,
                                                     const Eigen::Vector3d& tip) {
@@ -100,8 +113,9 @@ std::unique_ptr<strategies::Strategy> make_strategy(const StrategySpec& spec,
   try {
     return spec.entry->make(spec.parameters, spec.sign, belief);
   } catch (const InputError& error) {  // a strategy knows what is wrong, not where it stands
-    throw InputError(spec.place, fmt::format("case {}: strategy {}: {}", one.name, spec.entry->name,
-                                             error.faults().front().message));
+    const std::string& why = error.faults().front().message;
+    throw InputError(place_in(spec, why),
+                     fmt::format("case {}: strategy {}: {}", one.name, spec.entry->name, why));
   }
 }
 

@@ -400,6 +400,9 @@ class ScenarioReader {
       }
     }
     for (const ParameterSpec& parameter : strategy.entry->parameters) {
+      if (table.has(parameter.name)) {
+        strategy.key_places.emplace(parameter.name, table.place(parameter.name));
+      }
       read_parameter(table, parameter, strategy.parameters);
     }
     if (strategy.entry->name == "feedback" && spec.has_feedback()) {
@@ -490,7 +493,8 @@ class ScenarioReader {
     for (const CaseSpec& one : out_.cases) all.push_back(one.name);
     spec.cases = table.texts_or("cases", all);
     for (const std::string& name : spec.cases) {
-      if (cases_are_known_) must_be_known(table, "cases", name, "case", all);
+      if (cases_are_known_)
+        must_be_known(table, "cases", name, fmt::format("case '{}'", name), all);
     }
     if (info.needs_base) {
       spec.base = table.text("base");

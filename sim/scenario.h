@@ -33,8 +33,9 @@ struct StrategySpec {
   const strategies::Entry* entry = nullptr;
   Parameters parameters;
   strategies::Sign sign = strategies::Sign::correct;
-  std::string model;  // name of the believed error model
-  Place place;        // for what the strategy itself refuses
+  std::string model;                                     // name of the believed error model
+  Place place;                                           // for what the strategy itself refuses
+  std::map<std::string, Place, std::less<>> key_places;  // of the parameters that are given
 };
 
 struct CaseSpec {
