@@ -124,11 +124,14 @@ controllers::CascadeParams read_cascade(Reader& axis, const controllers::Cascade
   return c;
 }
 
+// SI; far from any machine, and near enough that a path can be planned with them.
+constexpr double kLeastLimit = 1e-6, kMostLimit = 1e7;
+
 void read_limits(Reader& axis, bool linear, int j, NcSettings& nc) {
   const AxisQuantities& q = quantities_of(linear);
-  nc.v_max[j] = axis.real("v_max", q.velocity, {above(0.0)});
-  nc.a_max[j] = axis.real("a_max", q.acceleration, {above(0.0)});
-  nc.j_max[j] = axis.real("j_max", q.jerk, {above(0.0)});
+  nc.v_max[j] = axis.real("v_max", q.velocity, {at_least(kLeastLimit), at_most(kMostLimit)});
+  nc.a_max[j] = axis.real("a_max", q.acceleration, {at_least(kLeastLimit), at_most(kMostLimit)});
+  nc.j_max[j] = axis.real("j_max", q.jerk, {at_least(kLeastLimit), at_most(kMostLimit)});
   const std::string_view key = linear ? "travel_mm" : "travel_deg";
   nc.lower[j] = -std::numeric_limits<double>::infinity();
   nc.upper[j] = std::numeric_limits<double>::infinity();

@@ -116,6 +116,7 @@ MACHINE = [
     line("machine: periods that meet too seldom", "base_period_us = 10",
          "base_period_us = 1\nposition_period_us = 9973\nvelocity_period_us = 9967", "machine.toml"),
     line("machine: a base period that no run could count", "base_period_us = 10", "base_period_us = 1e-9", "machine.toml"),
+    line("machine: limits far from any machine", 'j_max = "100 m/s^3"', "j_max = 1e300", "machine.toml"),
     line("machine: travel the wrong way round", "travel_mm = [-400.0, 400.0]", "travel_mm = [400.0, -400.0]", "machine.toml"),
     line("machine: travel of one number", "travel_mm = [-400.0, 400.0]", "travel_mm = [400.0]", "machine.toml"),
     line("machine: the same, checked alone", "lead_mm = 20.0", "lead_mm = -20.0", "machine.toml",

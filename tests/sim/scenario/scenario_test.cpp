@@ -76,8 +76,10 @@ TEST(Resolved, HoldsTheChangesOfTheCommandLine) {
   EXPECT_EQ(again.program.feed_override, 0.5);
 }
 
-TEST(Changes, OfAFileNameAreReadRelativeToTheScenario) {
-  const Scenario scenario = read_scenario(kSmall, {"machine=./machine.toml"});
+TEST(Changes, OfAFileNameAreReadFromWhereTheUserIs) {
+  const std::string machine = fs::path(kSmall).parent_path().string() + "/machine.toml";
+  const std::string here = fs::relative(machine).string();
+  const Scenario scenario = read_scenario(kSmall, {"machine=" + here});
   EXPECT_EQ(scenario.resolved, read_scenario(kSmall).resolved);
 }
 
