@@ -308,10 +308,10 @@ class ScenarioReader {
                      {kRecord, out_.record_period}}) > 0) {
       return;
     }
-    root.fault(root.has("record") ? "record" : "machine",
-               fmt::format("the periods of the loops, of the error model and of the recorder meet "
-                           "again only after more than {:g} s; make them multiples of each other",
-                           p.seconds(kMaxHyperperiod)));
+    root.table_or_empty("record").fault(fmt::format(
+        "the periods of the loops, of the error model and of the recorder meet again only "
+        "after more than {:g} s; make them multiples of each other",
+        p.seconds(kMaxHyperperiod)));
   }
 
   Tick ticks(Reader& table, std::string_view key, double fallback, Tick least) {

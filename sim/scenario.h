@@ -65,7 +65,7 @@ struct QuantitySpec {
 struct SweepKey {
   std::string key;                  // dotted, as --set takes it
   std::vector<std::string> values;  // as TOML
-  Place place;
+  Place place = {};
 };
 
 struct Scenario {

@@ -26,8 +26,7 @@ double response(double T) {
 }
 
 std::string a_case(const std::string& name, const std::string& type, const std::string& more) {
-  return "[[case]]\nname = \"" + name +
-         "\"\nfeedback_hardware = false\n[[case.strategy]]\ntype = \"" + type +
+  return "[[case]]\nname = \"" + name + "\"\n[[case.strategy]]\ntype = \"" + type +
          "\"\nmodel = \"imposed\"\nsign = \"generate\"\n" + more;
 }
 std::string table(const std::string& name, const std::string& more) {
