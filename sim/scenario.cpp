@@ -539,7 +539,28 @@ class ScenarioReader {
 
 constexpr int kMostBases = 8;
 
-// A document laid over the one that it is based on: what it says wins, lists as a whole.
+// The cases of two documents: one of the same name takes the place of the other, a new one comes
+// behind them.
+Value merged_cases(Value cases, const Value& above) {
+  const auto name_of = [](const Value& one) {
+    const Value* name = one.find("name");
+    return name == nullptr ? std::string() : name->text;
+  };
+  for (const Value& one : above.children) {
+    const auto known =
+        std::find_if(cases.children.begin(), cases.children.end(),
+                     [&](const Value& other) { return name_of(other) == name_of(one); });
+    if (known == cases.children.end()) {
+      cases.children.push_back(one);
+    } else {
+      *known = one;
+    }
+  }
+  return cases;
+}
+
+// A document laid over the one that it is based on: what it says wins, lists as a whole, but for
+// the cases.
 Document with_base(const std::string& path, int bases_left) {
   Document document = Document::from_file(path);
   const Value* base = document.root().find("based_on");
@@ -558,7 +579,14 @@ Document with_base(const std::string& path, int bases_left) {
     throw InputError(base->place, fmt::format("based_on = \"{}\"; no such file", base->text));
   }
   Document below = with_base(base_path, bases_left - 1);
-  below.merge(document.root());
+  Value above = document.root();
+  const Value* cases = below.root().find("case");
+  Value* more = above.find("case");
+  constexpr auto kList = Value::Type::list;
+  if (cases != nullptr && more != nullptr && cases->type == kList && more->type == kList) {
+    *more = merged_cases(*cases, *more);
+  }
+  below.merge(above);
   return below;
 }
 

@@ -198,5 +198,62 @@ TEST(Store, ComparesAgainAsTheRunDid) {
   fs::remove(path);
 }
 
+// A folder of its own, removed at the end.
+class BasedOn : public testing::Test {
+ protected:
+  BasedOn() : folder_(fs::path(testing::TempDir()) / "servomill_based_on") {
+    fs::create_directories(folder_);
+  }
+  ~BasedOn() override { fs::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  const fs::path folder_;
+};
+
+TEST_F(BasedOn, WinsOverTheScenarioBelowAndKeepsTheRest) {
+  const std::string path = write("above.toml", fmt::format("based_on = \"{}\"\ntitle = \"above\"\n"
+                                                           "[program]\nfeed_override = 0.5\n",
+                                                           kSmall));
+  const Scenario above = read_scenario(path), below = read_scenario(kSmall);
+  EXPECT_EQ(above.title, "above");
+  EXPECT_EQ(above.program.feed_override, 0.5);
+  EXPECT_EQ(above.program.text, below.program.text);  // found beside the scenario that names it
+  EXPECT_EQ(above.cases.size(), below.cases.size());
+}
+
+TEST_F(BasedOn, ReplacesCasesOfTheSameNameAndAddsOthers) {
+  const Scenario below = read_scenario(kSmall);
+  const std::string first = below.cases.front().name;
+  const std::string path = write(
+      "above.toml", fmt::format("based_on = \"{}\"\n[[case]]\nname = \"{}\"\nwork_offset = {{ "
+                                "X_mm = 1.0 }}\n[[case]]\nname = \"new\"\n",
+                                kSmall, first));
+  const Scenario above = read_scenario(path);
+  ASSERT_EQ(above.cases.size(), below.cases.size() + 1);
+  EXPECT_EQ(above.cases.front().name, first);
+  EXPECT_EQ(above.cases.front().work_offset[0], 1e-3);
+  EXPECT_EQ(above.cases.back().name, "new");
+}
+
+TEST_F(BasedOn, RefusesACircleAndAFileThatIsNotThere) {
+  const auto message = [](const std::string& path) -> std::string {
+    try {
+      read_scenario(path);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  const std::string circle = write("circle.toml", "based_on = \"circle.toml\"\n");
+  EXPECT_EQ(message(circle), circle +
+                                 ":1:12: error: based_on: more than 8 scenarios stand on each "
+                                 "other; is one of them based on itself?");
+  const std::string lost = write("lost.toml", "based_on = \"nowhere.toml\"\n");
+  EXPECT_EQ(message(lost), lost + ":1:12: error: based_on = \"nowhere.toml\"; no such file");
+}
+
 }  // namespace
 }  // namespace servomill::sim
