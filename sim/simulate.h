@@ -49,7 +49,7 @@ struct CaseInputs {
 struct Outcome {
   bool finished = true;
   bool interrupted = false;  // from outside
-  std::string reason;  // "axis Y: following error beyond 10 mm"
+  std::string reason;        // "axis Y: following error beyond 10 mm"
   char axis = '-';
   double time = 0.0;  // s
 };
