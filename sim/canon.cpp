@@ -1,5 +1,7 @@
 #include "sim/canon.h"
 
+#include <cmath>
+
 #include "controllers/gcode/canon_json.h"
 #include "controllers/gcode/interpreter.h"
 #include "sim/config/document.h"
@@ -22,32 +24,41 @@ void check_toml(const std::string& path, const std::vector<std::string>& changes
   if (!scenario.sweep.empty()) check_sweep(path, changes);
 }
 
-controllers::ToolTable read_tools(const std::string& file) {
-  if (file.empty()) return {};
-  return controllers::ToolTable::parse(read_file(file, {}, "tool table"), file);
+controllers::ProgramSetup setup_of(const ProgramInputs& inputs) {
+  controllers::ProgramSetup setup;
+  if (!inputs.tool_table.empty()) {
+    setup.tools = controllers::ToolTable::parse(read_file(inputs.tool_table, {}, "tool table"),
+                                                inputs.tool_table);
+  }
+  for (const std::string& parameter : inputs.parameters) {
+    const std::size_t equals = parameter.find('=');
+    const double value =
+        equals == std::string::npos ? std::nan("") : number_of(parameter.substr(equals + 1));
+    if (!std::isfinite(value)) {
+      throw InputError({"--parameter " + parameter}, "must be #N=NUMBER, such as '#101=1394'");
+    }
+    setup.parameters[parameter.substr(0, equals)] = value;
+  }
+  return setup;
 }
 
 }  // namespace
 
-void canon(const std::string& program_file, const std::string& tool_table,
+void canon(const std::string& program_file, const ProgramInputs& inputs,
            const std::function<void(const std::string&)>& line) {
-  controllers::ProgramSetup setup;
-  setup.tools = read_tools(tool_table);
   controllers::Interpreter interpreter(read_file(program_file, {}, "program"), program_file,
-                                       std::move(setup));
+                                       setup_of(inputs));
   while (const auto move = interpreter.next()) line(controllers::canon_json(*move));
 }
 
 std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,
-                              const std::string& tool_table) {
+                              const ProgramInputs& inputs) {
   try {
     if (path.ends_with(".toml")) {
       check_toml(path, changes);
       return {};
     }
-    controllers::ProgramSetup setup;
-    setup.tools = read_tools(tool_table);
-    return controllers::check_program(read_file(path, {}, "program"), path, std::move(setup));
+    return controllers::check_program(read_file(path, {}, "program"), path, setup_of(inputs));
   } catch (const InputError& error) {
     return error.faults();
   }

@@ -9,16 +9,21 @@
 
 namespace servomill::sim {
 
+/// What a program needs beside its text.
+struct ProgramInputs {
+  std::string tool_table;               // file in LinuxCNC's format, or empty
+  std::vector<std::string> parameters;  // "#101=1394"
+};
+
 /// Hands every canonical move of a program to `line`, as one JSON object (no newline).
-/// @param tool_table  file in LinuxCNC's format, or empty
 /// @throws InputError
-void canon(const std::string& program_file, const std::string& tool_table,
+void canon(const std::string& program_file, const ProgramInputs& inputs,
            const std::function<void(const std::string&)>& line);
 
 /// All faults of a file: scenario or machine (.toml) or program (anything else).
 /// @param changes     what --set says, for scenarios
-/// @param tool_table  file in LinuxCNC's format, or empty, for programs
+/// @param inputs   for programs
 std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,
-                              const std::string& tool_table);
+                              const ProgramInputs& inputs);
 
 }  // namespace servomill::sim

@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 2> kSenses = {"tool", "table"};
 struct Preset {
   double position, velocity, current;  // s
 };
-// DOMAIN 1.1: position / speed / current
+// CC 424: Service Manual iTNC 530 (2010), p. 648, and estimates for what it does not give
 constexpr std::array<Preset, 2> kPresetPeriods = {
     {{1.8e-3, 0.6e-3, 0.1e-3}, {0.2e-3, 0.2e-3, 0.1e-3}}};
 
@@ -64,11 +64,14 @@ LoopPeriods read_periods(Reader& nc) {
 NominalFilter read_filter(Reader& nc, const LoopPeriods& periods) {
   NominalFilter filter;
   const std::size_t kind = nc.choice_or("nominal_filter", 0, kFilters);
-  const double length = nc.real_or("nominal_filter_ms", 0.0, kTime, {at_least(0.0)});
+  const double length = nc.real_or("nominal_filter_ms", 0.0, kTime, {at_least(0.0), at_most(10.0)});
   if (kind == 0) return filter;
   filter.triangle = kind == 2;
   filter.length = static_cast<Tick>(std::lround(length / periods.seconds(periods.position)));
   if (filter.length < 1) nc.fault("nominal_filter", "needs nominal_filter_ms of a position period");
+  if (filter.triangle && filter.length % 2 != 0) {
+    nc.fault("nominal_filter_ms", "must be an even number of position periods for the triangle");
+  }
   return filter;
 }
 

@@ -97,7 +97,9 @@ void Recorder::record(const Snapshot& now) {
   // where the original program is
   piece_ = path_.piece_at(now.s, piece_);
   const ProgramPath::Piece& piece = path_.piece(piece_);
-  const Joints Q_prog = machine_.chain.layout.joints(path_.at(piece_, now.s));
+  // Rotary axes turn at standing s, too, and nobody displaces them: theirs is the reference.
+  Joints Q_prog = machine_.chain.layout.joints(path_.at(piece_, now.s));
+  Q_prog.tail<kJoints - kLinearJoints>() = now.Q_ref.tail<kJoints - kLinearJoints>();
   const auto tip = tips_.find(piece.tool_offset);
   const Eigen::Vector3d p_ST = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;
 

@@ -4,7 +4,6 @@
 
 #include <map>
 
-#include "controllers/path/trajectory.h"
 #include "plant/geometry/volumetric.h"
 #include "sim/machine.h"
 #include "sim/program_path.h"

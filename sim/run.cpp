@@ -109,7 +109,7 @@ std::unique_ptr<strategies::Strategy> make_strategy(const StrategySpec& spec,
       machine.nc.lower,
       machine.nc.upper,
       machine.chain.layout.joints(machine_start(scenario, one)),
-      machine.nc.cascade[0].Kv};
+      {machine.nc.cascade[0].Kv, machine.nc.cascade[1].Kv, machine.nc.cascade[2].Kv}};
   try {
     return spec.entry->make(spec.parameters, spec.sign, belief);
   } catch (const InputError& error) {  // a strategy knows what is wrong, not where it stands

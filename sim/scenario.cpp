@@ -287,6 +287,13 @@ class ScenarioReader {
     Reader table = root.table_or_empty("feedback_hardware");
     hardware.connected = table.boolean_or("connected", false);
     hardware.signal_delay = ticks(table, "signal_delay_us", 10 * us, 0);
+    if (table.faults() == 0 &&
+        hardware.signal_delay + out_.machine.scale_delay >= out_.machine.nc.periods.position) {
+      table.fault(
+          fmt::format("signal_delay_us and nc.scale_delay_us together must be shorter than the "
+                      "position period of {:g} us",
+                      out_.machine.nc.periods.seconds(out_.machine.nc.periods.position) / us));
+    }
     hardware.model_period = ticks(table, "model_period_us", 60 * us, 1);
   }
 
@@ -407,6 +414,15 @@ class ScenarioReader {
     }
     if (strategy.entry->name == "feedback" && spec.has_feedback()) {
       table.fault("type", "a case has one feedback hardware: this is the second");
+    }
+    const auto same = [&](const StrategySpec& other) {
+      return other.entry == strategy.entry && other.model == strategy.model;
+    };
+    if (strategy.entry->name == "table" &&
+        std::any_of(spec.strategies.begin(), spec.strategies.end(), same)) {
+      table.fault("type",
+                  "a case has one table strategy for a model (each adds the value at the start); "
+                  "use axis = \"all\"");
     }
     spec.strategies.push_back(std::move(strategy));
   }

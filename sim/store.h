@@ -15,7 +15,7 @@ namespace servomill::sim {
 inline constexpr int kSchemaVersion = 1;
 
 /// Writes a run case by case, so that complete cases can be read even if it ends early. Layout:
-/// DESIGN in README, section "The result file".
+/// README, section "The result file".
 class RunStore {
  public:
   /// @throws InputError if the file exists and `force` is not set, SystemError

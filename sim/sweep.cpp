@@ -103,9 +103,14 @@ std::vector<SweepPoint> run_sweep(const std::string& scenario_path,
         control.progress((static_cast<double>(i) + share) / count);
       };
     }
-    auto rows = run_scenario(scenarios[i], one).comparison;
+    RunOutput output = run_scenario(scenarios[i], one);
     if (control.stop != nullptr && *control.stop) break;  // half a point is none
-    points.push_back({grid[i], std::move(rows)});
+    points.push_back({grid[i], std::move(output.comparison), {}});
+    for (const CaseOutput& run : output.cases) {
+      if (run.result.outcome.finished) continue;
+      points.back().stopped.push_back(
+          fmt::format("case {} stopped: {}", run.name, run.result.outcome.reason));
+    }
     if (point_done) point_done(points.back());
   }
   return points;

@@ -12,6 +12,7 @@ namespace servomill::sim {
 struct SweepPoint {
   std::vector<std::string> values;
   std::vector<ComparisonRow> rows;
+  std::vector<std::string> stopped;  // "case NAME stopped: why"
 };
 
 /// Points of the grid; the last key varies fastest.

@@ -28,12 +28,14 @@ const std::array<ParameterSpec, 5>& specs() {
        .unit = "ms",
        .default_text = "0",
        .min = 0.0,
+       .max = 1e4,
        .words = kAuto},
       {.name = "velocity_window_ms",
        .help = "time over which the lead takes the velocity from the encoder",
        .unit = "ms",
        .default_text = "3",
-       .min = 0.0},
+       .min = 0.0,
+       .max = 1e4},
       kIterationsSpec,
   }};
   return kSpecs;
@@ -42,10 +44,10 @@ const std::array<ParameterSpec, 5>& specs() {
 struct FeedbackParams {
   Sign sign = Sign::correct;
   Iterations iterations = Iterations::one;
-  double max = 0.0;       // m
-  double max_rate = 0.0;  // m/s
-  double lead = 0.0;      // s
-  double window = 0.0;    // s
+  double max = 0.0;                                // m
+  double max_rate = 0.0;                           // m/s
+  Eigen::Vector3d lead = Eigen::Vector3d::Zero();  // s, of each displaced axis
+  double window = 0.0;                             // s
 };
 
 // Velocity of the linear joints as the difference of readings over a window.
@@ -86,14 +88,28 @@ class VirtualEncoder final : public FeedbackPart {
   }
 
   Eigen::Vector3d evaluate(const Joints& Q_meas) override {
-    Joints Q = Q_meas;
-    if (params_.lead > 0.0) Q.head<3>() += params_.lead * velocity_.advance(Q_meas.head<3>());
-    const Eigen::Vector3d wanted = limited(displacement(Q));
+    const Eigen::Vector3d wanted = limited(ahead(Q_meas));
     out_ += (wanted - out_).cwiseMax(-max_change_).cwiseMin(max_change_);
     return out_;
   }
 
  private:
+  // Displacement where the machine will be when an axis has followed it: each displaced axis has
+  // its own lag, hence its own lead.
+  Eigen::Vector3d ahead(const Joints& Q_meas) {
+    const Eigen::Vector3d& lead = params_.lead;
+    if (lead.isZero(0.0)) return displacement(Q_meas);
+    const Eigen::Vector3d velocity = velocity_.advance(Q_meas.head<3>());
+    const auto after = [&](double time) {
+      Joints Q = Q_meas;
+      Q.head<3>() += time * velocity;
+      return displacement(Q);
+    };
+    Eigen::Vector3d d = after(lead[0]);
+    for (int j = 1; j < kLinearJoints; ++j) d[j] = lead[j] == lead[0] ? d[j] : after(lead[j])[j];
+    return d;
+  }
+
   Eigen::Vector3d displacement(const Joints& Q) const {
     return feedback_displacement(belief_, params_.sign, params_.iterations, Q);
   }
@@ -127,7 +143,13 @@ std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& bel
   params.iterations = iterations_of(p);
   params.max = p.number("max_um");
   params.max_rate = p.number("max_rate_mm_per_s");
-  params.lead = p.is_word("lead_ms") ? 1.0 / belief.Kv : p.number("lead_ms");
+  if (p.is_word("lead_ms")) {
+    for (int j = 0; j < kLinearJoints; ++j) {
+      if (belief.layout.has(j)) params.lead[j] = 1.0 / belief.Kv[j];
+    }
+  } else {
+    params.lead.setConstant(p.number("lead_ms"));
+  }
   params.window = p.number("velocity_window_ms");
   return std::make_unique<ModifiedFeedback>(belief, params);
 }

@@ -38,16 +38,23 @@ struct RewriteParams {
 // Displaces one programmed move after the other and appends the blocks that result.
 class Rewriter {
  public:
-  Rewriter(const Belief& belief, const RewriteParams& params, std::vector<Move>& out)
-      : belief_(belief), params_(params), out_(out) {}
+  Rewriter(const Belief& belief, const RewriteParams& params, const AxisWords& start,
+           std::vector<Move>& out)
+      : belief_(belief), params_(params), out_(out), out_at_(start) {}
 
   void rewrite(const AxisWords& from, const Move& move) {
     move_ = &move;
     curve_ = MoveCurve(from, move);
     s_ = move.s_begin;
-    // Rapids are displaced at their ends only: nothing is cut on the way.
     if (move.kind == MoveKind::rapid) {
+      // displaced at its end only: nothing is cut on the way
       emit(1.0, displaced(1.0));
+    } else if (curve_.length() == 0.0 && (move.end_machine - from).tail<3>().any()) {
+      // Rotary axes alone keep their angular feed: X, Y and Z wait where they are, and the next
+      // move takes them to where they belong.
+      AxisWords target = move.end_machine;
+      target.head<3>() = out_at_.head<3>();
+      emit(1.0, target);
     } else {
       cut();
     }
@@ -104,6 +111,7 @@ class Rewriter {
     // work offsets do not rotate here: what displaces the machine displaces the work coordinates
     block.end += target - block.end_machine;
     block.end_machine = target;
+    out_at_ = target;
     block.s_begin = s_;
     block.s_end = move_->s_begin + t * (move_->s_end - move_->s_begin);
     s_ = block.s_end;
@@ -114,6 +122,7 @@ class Rewriter {
   const RewriteParams& params_;
   std::vector<Move>& out_;
   const Move* move_ = nullptr;
+  AxisWords out_at_;  // displaced end of the block before
   MoveCurve curve_;
   double s_ = 0.0;
 };
@@ -127,8 +136,8 @@ class RewrittenProgram final : public Strategy {
 
   std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
     std::vector<Move> out;
-    Rewriter rewriter(belief_, params_, out);
     AxisWords at = belief_.layout.words(belief_.reference);
+    Rewriter rewriter(belief_, params_, at, out);
     for (const Move& move : moves) {
       if (!is_motion(move.kind)) {
         out.push_back(move);

@@ -25,8 +25,8 @@ struct Belief {
   Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();  // m, tool tip at the spindle nose
   Joints lower = Joints::Zero();                   // m, rad; travel of the machine
   Joints upper = Joints::Zero();
-  Joints reference = Joints::Zero();  // m, rad; where the machine starts
-  double Kv = 0.0;                    // 1/s, position gain that the NC is set to
+  Joints reference = Joints::Zero();             // m, rad; where the machine starts
+  Eigen::Vector3d Kv = Eigen::Vector3d::Zero();  // 1/s, position gains that the NC is set to
 };
 
 /// Offset of the linear set points, added in the NC where `entry` says.

@@ -18,7 +18,8 @@ constexpr std::array<std::string_view, 2> kGrids = {"power_of_two", "free"};
 constexpr std::array<std::string_view, 3> kEntryPoints = {"before_filter", "position_command",
                                                           "feed_forward"};
 constexpr std::array<std::string_view, 1> kTravel = {"travel"};
-constexpr double kGridStep = 0.1 * um;  // DOMAIN 1.3: point spacing is 2^n times this
+constexpr double kGridStep =
+    0.1 * um;  // spacing is 2^n times this (TNC 407/415/425 Technical Manual, 1998, p. 153)
 
 const std::array<ParameterSpec, 12>& specs() {
   static const std::array<ParameterSpec, 12> kSpecs = {{
@@ -65,17 +66,20 @@ const std::array<ParameterSpec, 12>& specs() {
        .help = "first-order lag of the NC's answer to a value",
        .unit = "ms",
        .default_text = "0",
-       .min = 0.0},
+       .min = 0.0,
+       .max = 1e4},
       {.name = "dead_time_ms",
        .help = "delay before the NC answers",
        .unit = "ms",
        .default_text = "0",
-       .min = 0.0},
+       .min = 0.0,
+       .max = 1e4},
       {.name = "update_period_ms",
        .help = "how often the NC looks into the table; 0: every position period",
        .unit = "ms",
        .default_text = "0",
-       .min = 0.0},
+       .min = 0.0,
+       .max = 1e4},
       kIterationsSpec,
   }};
   return kSpecs;
@@ -164,7 +168,7 @@ AxisTable tabulate(const Belief& belief, const Parameters& p, Sign sign, int joi
     throw InputError({}, fmt::format("table over {}: from_mm = {:g} must be < to_mm = {:g}", axis,
                                      table.first / mm, to / mm));
   }
-  const double intervals = std::ceil((to - table.first) / table.spacing - 1e-9);
+  const double intervals = std::max(1.0, std::ceil((to - table.first) / table.spacing - 1e-9));
   constexpr double kMostIntervals = 1e7;
   if (intervals > kMostIntervals) {
     throw InputError({}, fmt::format("table over {}: {:.3g} points are more than any NC holds",

@@ -1,4 +1,4 @@
-/// Lags of corrections and of the axes themselves, against their closed forms (DOMAIN.md 9).
+/// Lags of corrections and of the axes themselves, against their closed forms.
 ///
 /// An axis whose velocity loop has no standing error follows a ramp of its set point without
 /// feed-forward 1/Kv behind: e = v / Kv. A correction of slope E' that the feed-forward does not
@@ -102,7 +102,7 @@ TEST(Lag, IsAConstantTimeWhateverTheFeed) {
   }
 }
 
-// PAPERS.md, "Beyond [G]": the lag of feedback is predictable, so the model is evaluated ahead.
+// The lag of feedback is predictable, so the model is evaluated ahead.
 TEST(Lag, OfFeedbackIsTakenAwayByItsLead) {
   const Scenario scenario = ramp(1394.0);
   const double without = lag_of(scenario, "feedback", 1394.0);

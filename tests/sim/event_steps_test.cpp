@@ -30,7 +30,7 @@ struct FiveAxisCase {
   FiveAxisCase() {
     machine.scale.fill({});
     machine.motor.fill({});
-    belief.Kv = machine.nc.cascade[0].Kv;
+    belief.Kv.setConstant(machine.nc.cascade[0].Kv);
     const strategies::Entry* entry = strategies::find("feedback");
     Parameters p;
     p.set("max_um", 500.0 * um);

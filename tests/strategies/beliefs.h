@@ -25,7 +25,7 @@ inline Belief belief_in(const plant::ErrorModel& errors) {
   belief.reference = belief.lower;
   belief.reference.head<3>().array() += 100 * 1.6384 * mm;
   belief.reference.tail<2>() << 20.0 * deg, 30.0 * deg;
-  belief.Kv = 80.0;
+  belief.Kv.setConstant(80.0);
   return belief;
 }
 

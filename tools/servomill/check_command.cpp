@@ -18,13 +18,16 @@ int check_command(const Arguments& arguments) {
                 "changes a key of the scenarios, as for servomill run");
   options.add()("tools", po::value<std::string>()->value_name("TABLE"),
                 "tool table for the programs, in LinuxCNC's format, mm");
+  options.add()("parameter", po::value<std::vector<std::string>>()->value_name("#N=NUMBER"),
+                "sets a parameter before the program runs, such as '#101=1394'");
   options.add()("quiet,q", "prints nothing but faults");
   if (!options.parse(arguments)) return kDone;
   if (options.words().empty()) throw InputError({"servomill check"}, "needs a FILE; see --help");
-  const std::string tools = options.has("tools") ? options.get<std::string>("tools") : "";
+  const sim::ProgramInputs inputs = {options.has("tools") ? options.get<std::string>("tools") : "",
+                                     options.list("parameter")};
   std::size_t faults = 0;
   for (const std::string& path : options.words()) {
-    const auto found = sim::check_file(path, options.list("set"), tools);
+    const auto found = sim::check_file(path, options.list("set"), inputs);
     for (const Fault& fault : found) fmt::print(stderr, "{}\n", to_string(fault));
     if (found.empty() && !options.has("quiet")) fmt::print("{}: no faults\n", path);
     faults += found.size();

@@ -42,7 +42,11 @@ int sweep_command(const Arguments& arguments) {
   control.stop = &stop;
   control.progress = [&](double share) { bar.show(share); };
   control.prepared = [&] { store.emplace(out, options.has("force"), scenario); };
+  bool finished = true;
   const auto point_done = [&](const sim::SweepPoint& point) {
+    bar.clear();
+    for (const std::string& why : point.stopped) fmt::print(stderr, "{}\n", why);
+    finished &= point.stopped.empty();
     if (options.has("quiet")) return;
     bar.clear();
     std::string where;
@@ -69,7 +73,7 @@ int sweep_command(const Arguments& arguments) {
   }
   store->commit();
   if (!options.has("quiet") && !options.has("json")) fmt::print("written to {}\n", out);
-  return kDone;
+  return finished ? kDone : kMachineStopped;
 }
 
 }  // namespace servomill::tools

@@ -44,7 +44,7 @@ TEST(NominalFilter, LagsARampByItsDelay) {
   }
 }
 
-// DOMAIN: (sqrt(2)/8) v T_f for a corner of 90 degrees; samples change it by 1/n^2.
+// (sqrt(2)/8) v T_f for a corner of 90 degrees; samples change it by 1/n^2.
 TEST(NominalFilter, CutsACornerByTheClosedForm) {
   const int n = 40;
   const double v = 23.2 * mm;
@@ -59,7 +59,7 @@ TEST(NominalFilter, CutsACornerByTheClosedForm) {
   EXPECT_NEAR(least, expected, expected * 2.5 / (n * n));
 }
 
-// DOMAIN: -R (w T_f)^2 / 24, and / 48 for the triangle.
+// -R (w T_f)^2 / 24, and / 48 for the triangle.
 TEST(NominalFilter, ShrinksACircleByTheClosedForm) {
   const int n = 40;
   const double R = 10 * mm, w = 2.32, phase = w * n * kCycle;

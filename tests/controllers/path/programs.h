@@ -11,7 +11,7 @@ namespace servomill::controllers::test {
 
 inline const JointLayout kLayout{{Axis::X, Axis::Y, Axis::Z, Axis::B, Axis::C}};
 
-/// DOMAIN: 40 m/min; 6, 7, 8 m/s^2; 100 m/s^3; 100 and 200 rpm; 50 and 100 rad/s^2.
+/// 40 m/min; 6, 7, 8 m/s^2; 100 m/s^3; 100 and 200 rpm; 50 and 100 rad/s^2.
 inline JointLimits machine_limits() {
   JointLimits limits;
   limits.v << 40.0 * m_per_min, 40.0 * m_per_min, 40.0 * m_per_min, 100.0 * rpm, 200.0 * rpm;

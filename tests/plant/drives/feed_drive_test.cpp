@@ -157,7 +157,7 @@ TEST(FeedDrive, ResonatesWhereTheTwoMassFormulaSays) {
   const double f = (crossings - 1) / (last - first);
   const double expected = std::sqrt(p.k * (1 / p.M + p.r * p.r / p.J)) / (2 * std::numbers::pi);
   EXPECT_NEAR(f, expected, 1e-5 * expected);
-  EXPECT_NEAR(expected, 115.0, 0.5);  // DOMAIN: 115 Hz
+  EXPECT_NEAR(expected, 115.0, 0.5);  // what the set is known for, Hz
 }
 
 TEST(FeedDrive, RigidIsTheStiffLimit) {

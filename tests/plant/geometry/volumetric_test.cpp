@@ -74,7 +74,7 @@ TEST(LeverArm, OfAToolSideAxisReachesFromTheSlideToTheTip) {
       (first_order_volumetric_error(chain, roll_X, Q, tool).dk_W - turn_x.cross(Vector3d::UnitZ()))
           .norm(),
       kRounding);
-  // 20 urad x 0.3 m = 6 um (DOMAIN.md 5)
+  // 20 urad x 0.3 m = 6 um
   const Joints Q_300{0.0, 0.3, 0.0, 0.0, 0.0};
   EXPECT_NEAR(first_order_volumetric_error(chain, roll_X, Q_300, Vector3d::Zero()).dp_W.z(), 6 * um,
               kRounding);
@@ -142,7 +142,7 @@ TEST(RotationOfAnError, IsTheSameFromSeriesAndFromSines) {
   }
 }
 
-// DOMAIN.md 6.2: ball at p on C, linear axes following.
+// R-test: ball at p on C, linear axes following.
 TEST(RTest, BallMovesByTheFormulaOfIso10791) {
   const double size = 1e-6;  // m, rad
   const Vector3d e{3.0 * size, -2.0 * size, 0.0}, turn{1.5 * size, 2.5 * size, 0.0};
@@ -189,7 +189,7 @@ TEST(AngularPositioning, TurnsTheToolWithTheAxisWhateverTheSenseOfItsCoordinate)
   }
 }
 
-// --- the virtual encoder of bench/REFERENCE.md --------------------------------------------------
+// --- the virtual encoder of the speed reference --------------------------------------------------
 
 using Cubic = std::array<double, 4>;
 // d and e of X, Y, Z in the order dx dy dz ex ey ez.

@@ -64,7 +64,7 @@ TEST(Chain, OrientationOfTheBedComesFromTheWorkpieceSideOnly) {
   EXPECT_EQ(R_WM(chain_of("[w b C B X Y Z t]"), Q), Eigen::Matrix3d::Identity());
 }
 
-// PAPERS.md [L], corrected inverse kinematics of a dual rotary table: S is where the linear axes
+// Li 2024, corrected inverse kinematics of a dual rotary table: S is where the linear axes
 // go.
 TEST(Chain, AgreesWithTheDualRotaryTableOfLi) {
   MachineChain chain = chain_of("[w C' A' b X Y Z t]");
@@ -91,7 +91,7 @@ TEST(Chain, AgreesWithTheDualRotaryTableOfLi) {
   }
 }
 
-// PAPERS.md [L], example 1 with the centre at the origin: joints interpolated linearly between the
+// Li 2024, example 1 with the centre at the origin: joints interpolated linearly between the
 // two posts leave the chord by 0.156 mm.
 TEST(Chain, BendsTheFirstSegmentOfLiAsJointInterpolationDoes) {
   MachineChain chain = chain_of("[w C' A' b X Y Z t]");
