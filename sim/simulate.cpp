@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "plant/drives/drive_bank.h"
 #include "plant/vocabulary/units.h"
 #include "sim/recorder.h"
 #include "sim/schedule.h"
@@ -152,7 +153,7 @@ class CaseRun {
     for (const int j : joints_) {
       auto& loop = loops_[lane(j)];
       loop.phi = in_.machine.motor[lane(j)].read(drives_.motor_angle(state_, lane(j)));
-      loop.i_next = loop.i_cmd = input_.i_cmd[lane(j)] = state_.i[lane(j)];
+      loop.i_next = loop.i_cmd = input_.command[lane(j)] = state_.i[lane(j)];
       loop.integral = state_.i[lane(j)] * nc_.cascade[lane(j)].Kt;
     }
     take_reading();
@@ -192,7 +193,7 @@ class CaseRun {
   void run_current_loops() {
     for (const int j : joints_) {
       controllers::current_loop(loops_[lane(j)]);
-      input_.i_cmd[lane(j)] = loops_[lane(j)].i_cmd;
+      input_.command[lane(j)] = loops_[lane(j)].i_cmd;
     }
   }
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "plant/drives/drive_bank.h"
 #include "sim/schedule.h"
 
 namespace servomill::sim {
@@ -70,7 +71,7 @@ double spectral_radius(const MachineSettings& machine, int joint, Tick reading_d
     int k = 0;
     s.each(lane, [&](double& x) { x = k++ == column ? 1.0 : 0.0; });
     plant::DriveInput input;
-    input.i_cmd[lane] = s.loop.i_cmd;
+    input.command[lane] = s.loop.i_cmd;
     for (const Instant& instant : schedule) {
       if (instant.due & kSample) s.reading = s.drive.x[lane];
       if (instant.due & kPositionLoop) {
@@ -78,7 +79,7 @@ double spectral_radius(const MachineSettings& machine, int joint, Tick reading_d
       }
       if (instant.due & kCurrentLoop) {
         controllers::current_loop(s.loop);
-        input.i_cmd[lane] = s.loop.i_cmd;
+        input.command[lane] = s.loop.i_cmd;
       }
       if (instant.due & kVelocityLoop) {
         controllers::velocity_loop(params, s.loop, bank.motor_angle(s.drive, lane));

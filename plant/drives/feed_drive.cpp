@@ -1,9 +1,6 @@
 #include "plant/drives/feed_drive.h"
 
-#include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <unsupported/Eigen/MatrixFunctions>
 
 namespace servomill::plant {
 namespace {
@@ -11,19 +8,20 @@ namespace {
 enum State : int { kCurrent, kSpeed, kWindUp, kVelocity, kPosition };
 enum Input : int { kCommand = 5, kForce = 6 };
 
-Eigen::Matrix<double, 5, 7> two_mass_equations(const FeedDriveParams& p) {
+Eigen::Matrix<double, 5, 7> two_mass_equations(const FeedDriveParams& p, bool gap) {
+  const double k = gap ? 0.0 : p.k, c = gap ? 0.0 : p.c;
   Eigen::Matrix<double, 5, 7> A = Eigen::Matrix<double, 5, 7>::Zero();
   // J dw/dt = Kt i - r F_s - b_motor w,   F_s = k delta + c d(delta)/dt,   d(delta)/dt = r w - v
   A(kSpeed, kCurrent) = p.Kt / p.J;
-  A(kSpeed, kSpeed) = -(p.b_motor + p.r * p.r * p.c) / p.J;
-  A(kSpeed, kWindUp) = -p.r * p.k / p.J;
-  A(kSpeed, kVelocity) = p.r * p.c / p.J;
+  A(kSpeed, kSpeed) = -(p.b_motor + p.r * p.r * c) / p.J;
+  A(kSpeed, kWindUp) = -p.r * k / p.J;
+  A(kSpeed, kVelocity) = p.r * c / p.J;
   A(kWindUp, kSpeed) = p.r;
   A(kWindUp, kVelocity) = -1.0;
   // M dv/dt = F_s - b_load v - F
-  A(kVelocity, kSpeed) = p.r * p.c / p.M;
-  A(kVelocity, kWindUp) = p.k / p.M;
-  A(kVelocity, kVelocity) = -(p.c + p.b_load) / p.M;
+  A(kVelocity, kSpeed) = p.r * c / p.M;
+  A(kVelocity, kWindUp) = k / p.M;
+  A(kVelocity, kVelocity) = -(c + p.b_load) / p.M;
   A(kVelocity, kForce) = -1.0 / p.M;
   return A;
 }
@@ -31,39 +29,39 @@ Eigen::Matrix<double, 5, 7> two_mass_equations(const FeedDriveParams& p) {
 Eigen::Matrix<double, 5, 7> rigid_equations(const FeedDriveParams& p) {
   Eigen::Matrix<double, 5, 7> A = Eigen::Matrix<double, 5, 7>::Zero();
   // (M + J / r^2) dv/dt = Kt i / r - (b_load + b_motor / r^2) v - F,   w = v / r
-  const double mass = p.M + p.J / (p.r * p.r);
-  A(kVelocity, kCurrent) = p.Kt / p.r / mass;
-  A(kVelocity, kVelocity) = -(p.b_load + p.b_motor / (p.r * p.r)) / mass;
-  A(kVelocity, kForce) = -1.0 / mass;
+  A(kVelocity, kCurrent) = p.Kt / p.r / p.slide_mass();
+  A(kVelocity, kVelocity) = -(p.b_load + p.b_motor / (p.r * p.r)) / p.slide_mass();
+  A(kVelocity, kForce) = -1.0 / p.slide_mass();
   A.row(kSpeed) = A.row(kVelocity) / p.r;
   return A;
 }
 
-using Matrix7l = Eigen::Matrix<long double, 7, 7>;
-
-// [A B; 0 0] h -> exp: the first rows hold exp(A h) and the integral that multiplies the input.
-// Computed in variables of equal size (all m/s or m/s^2) and in long double: in SI the entries span
-// eight decades, and a slide at rest under load would creep by what the exponential loses.
-Eigen::Matrix<double, 5, 7> hold_matrix(const FeedDriveParams& p, double h) {
-  const double stiffness = p.kind == DriveKind::two_mass ? p.k : 0.0;
-  const double omega = std::sqrt(stiffness / p.M) + 1.0;
-  Eigen::Matrix<double, 7, 1> scale;
-  scale << 1.0, 1.0 / p.r, 1.0 / omega, 1.0, 1.0 / omega, 1.0, p.M;
-  Matrix7l generator = Matrix7l::Zero();
-  generator.topRows<5>() = drive_equations(p).cast<long double>() * static_cast<long double>(h);
-  const Eigen::Matrix<long double, 7, 1> S = scale.cast<long double>();
-  const Matrix7l scaled = S.cwiseInverse().asDiagonal() * generator * S.asDiagonal();
-  const Matrix7l E = S.asDiagonal() * Matrix7l(scaled.exp()) * S.cwiseInverse().asDiagonal();
-  return E.topRows<5>().cast<double>();
-}
-
 }  // namespace
 
-Eigen::Matrix<double, 5, 7> drive_equations(const FeedDriveParams& p) {
-  Eigen::Matrix<double, 5, 7> A =
-      p.kind == DriveKind::rigid ? rigid_equations(p) : two_mass_equations(p);
+void DriveState::set_lane(std::size_t j, const LaneState& s) {
+  i[j] = s.i;
+  w[j] = s.w;
+  delta[j] = s.delta;
+  v[j] = s.v;
+  x[j] = s.x;
+  z[j] = s.z;
+  slide[j] = s.slide;
+  contact[j] = s.contact;
+}
+
+Eigen::Matrix<double, 5, 7> drive_equations(const FeedDriveParams& p, bool sticking, bool gap) {
+  Eigen::Matrix<double, 5, 7> A = p.is_rigid() ? rigid_equations(p) : two_mass_equations(p, gap);
   A(kPosition, kVelocity) = 1.0;
-  if (p.T_i > 0.0) {
+  if (sticking) {
+    A.row(kVelocity).setZero();
+    A.row(kPosition).setZero();
+    if (p.is_rigid()) A.row(kSpeed).setZero();
+  }
+  if (p.has_winding()) {
+    A(kCurrent, kCurrent) = -p.R / p.L;
+    A(kCurrent, kSpeed) = -p.Ke / p.L;
+    A(kCurrent, kCommand) = 1.0 / p.L;
+  } else if (p.T_i > 0.0) {
     A(kCurrent, kCurrent) = -1.0 / p.T_i;
     A(kCurrent, kCommand) = 1.0 / p.T_i;
   } else {  // the current is the command
@@ -73,68 +71,75 @@ Eigen::Matrix<double, 5, 7> drive_equations(const FeedDriveParams& p) {
   return A;
 }
 
-DriveBank::DriveBank(const std::array<FeedDriveParams, kJoints>& params,
-                     const std::array<bool, kJoints>& present, double base_period,
-                     std::span<const Tick> steps)
-    : params_(params), present_(present) {
-  for (std::size_t j = 0; j < kJoints; ++j) {
-    if (!present_[j]) continue;
-    inverse_r_[j] = 1.0 / params_[j].r;
-    F_load_[j] = params_[j].F_load;
+double contact_offset(const FeedDriveParams& p, ContactMode contact) {
+  switch (contact) {
+    case ContactMode::positive:
+      return 0.5 * p.gap;
+    case ContactMode::negative:
+      return -0.5 * p.gap;
+    case ContactMode::gap:
+      break;
   }
-  for (const Tick step : steps) {
-    assert(step > 0);
-    const auto index = static_cast<std::size_t>(step);
-    if (index >= matrix_of_step_.size()) matrix_of_step_.resize(index + 1, -1);
-    if (matrix_of_step_[index] >= 0) continue;
-    matrix_of_step_[index] = static_cast<int>(matrices_.size());
-    StepMatrix& matrix = matrices_.emplace_back();
-    for (std::size_t j = 0; j < kJoints; ++j) {
-      if (!present_[j]) continue;
-      const auto E = hold_matrix(params_[j], static_cast<double>(step) * base_period);
-      for (std::size_t row = 0; row < kStates; ++row) {
-        for (std::size_t col = 0; col < kColumns; ++col) {
-          matrix.coefficient[row * kColumns + col][j] =
-              E(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(col));
-        }
-      }
-    }
-  }
+  return 0.0;
 }
 
-void DriveBank::advance(DriveState& s, const DriveInput& input, Tick step) const {
-  assert(static_cast<std::size_t>(step) < matrix_of_step_.size());
-  const int index = matrix_of_step_[static_cast<std::size_t>(step)];
-  assert(index >= 0);
-  const auto& c = matrices_[static_cast<std::size_t>(index)].coefficient;
-  DriveState::Lanes force;
-  for (std::size_t j = 0; j < kJoints; ++j) force[j] = input.F[j] + F_load_[j];
-
-  const std::array<const DriveState::Lanes*, kColumns> in = {&s.i, &s.w,         &s.delta, &s.v,
-                                                             &s.x, &input.i_cmd, &force};
-  std::array<DriveState::Lanes, kStates> out;
-  for (std::size_t row = 0; row < kStates; ++row) {
-    DriveState::Lanes sum{};
-    for (std::size_t col = 0; col < kColumns; ++col) {
-      const DriveState::Lanes& a = c[row * kColumns + col];
-      const DriveState::Lanes& u = *in[col];
-      for (std::size_t j = 0; j < kJoints; ++j) sum[j] += a[j] * u[j];
-    }
-    out[row] = sum;
-  }
-  s = {out[0], out[1], out[2], out[3], out[4]};
+double screw_force(const FeedDriveParams& p, const LaneState& s) {
+  if (p.is_rigid() || s.contact == ContactMode::gap) return 0.0;
+  return p.k * (s.delta - contact_offset(p, s.contact)) + p.c * (p.r * s.w - s.v);
 }
 
-DriveState DriveBank::at_rest(const Joints& Q) const {
-  DriveState s;
-  for (std::size_t j = 0; j < kJoints; ++j) {
-    if (!present_[j]) continue;
-    const FeedDriveParams& p = params_[j];
-    s.x[j] = Q[static_cast<Eigen::Index>(j)];
-    s.i[j] = p.r * p.F_load / p.Kt;
-    s.delta[j] = p.kind == DriveKind::two_mass ? p.F_load / p.k : 0.0;
-  }
+double driving_force(const FeedDriveParams& p, const LaneState& s, double F) {
+  const double against = p.F_load + F + cogging_force(p, s.x) + p.b_load * s.v;
+  if (p.is_rigid()) return (p.Kt * s.i - p.b_motor * s.w) / p.r - against;
+  return screw_force(p, s) - against;
+}
+
+double cogging_force(const FeedDriveParams& p, double x) {
+  if (p.cogging.T == 0.0) return 0.0;
+  return p.cogging.T / p.r * std::sin(p.cogging.n * x / p.r + p.cogging.phase);
+}
+
+SlideMode slide_from_rest(const FrictionParams& friction, double force) {
+  if (force > friction.Fs_positive) return SlideMode::positive;
+  if (force < -friction.Fs_negative) return SlideMode::negative;
+  return SlideMode::sticking;
+}
+
+LaneState at_rest(const FeedDriveParams& p, double x) {
+  LaneState s;
+  s.x = x;
+  const double load = p.F_load + cogging_force(p, x);
+  s.i = p.r * load / p.Kt;
+  if (p.is_rigid()) return s;
+  s.contact = load < 0.0 ? ContactMode::negative : ContactMode::positive;
+  s.delta = load / p.k + contact_offset(p, s.contact);
   return s;
+}
+
+std::vector<std::string> implausible(const FeedDriveParams& p) {
+  std::vector<std::string> faults;
+  const auto demand = [&](bool holds, const char* rule) {
+    if (!holds) faults.emplace_back(rule);
+  };
+  demand(p.r > 0.0, "r must be > 0");
+  demand(p.J > 0.0, "J must be > 0");
+  demand(p.M > 0.0, "M must be > 0");
+  demand(p.is_rigid() || p.k > 0.0, "k must be > 0");
+  demand(p.c >= 0.0, "c must be >= 0");
+  demand(p.gap >= 0.0, "gap must be >= 0");
+  demand(p.gap == 0.0 || !p.is_rigid(), "gap needs a two-mass drive");
+  demand(p.b_motor >= 0.0, "b_motor must be >= 0");
+  demand(p.b_load >= 0.0, "b_load must be >= 0");
+  demand(p.cogging.T == 0.0 || p.kind == DriveKind::direct, "cogging needs a direct drive");
+  const FrictionParams& f = p.friction;
+  if (f.kind == FrictionKind::none) return faults;
+  demand(f.Fc_positive >= 0.0 && f.Fc_negative >= 0.0, "Fc must be >= 0");
+  demand(f.Fs_positive >= f.Fc_positive && f.Fs_negative >= f.Fc_negative, "Fs must be >= Fc");
+  demand(f.vs > 0.0, "vs must be > 0");
+  demand(f.kind != FrictionKind::regularised || f.v0 > 0.0, "v0 must be > 0");
+  demand(f.kind != FrictionKind::lugre || f.sigma0 > 0.0, "sigma0 must be > 0");
+  demand(f.kind != FrictionKind::lugre || f.sigma1 >= 0.0, "sigma1 must be >= 0");
+  return faults;
 }
 
 }  // namespace servomill::plant

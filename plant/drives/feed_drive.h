@@ -1,24 +1,39 @@
-/// Feed drive: current loop, motor with screw, elastic transmission, slide. Linear; friction other
-/// than viscous acts as an external force.
+/// One feed drive: current, motor with screw, transmission, slide. Its equations, for the exact
+/// propagator (drive_bank.h) and for SUNDIALS (cvode_drive.h) alike.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
-#include <span>
+#include <cstdint>
+#include <string>
 #include <vector>
 
+#include "plant/drives/friction.h"
 #include "plant/vocabulary/axes.h"
-#include "plant/vocabulary/ticks.h"
 
 namespace servomill::plant {
 
-enum class DriveKind : std::uint8_t { two_mass, rigid };
+enum class DriveKind : std::uint8_t {
+  two_mass,  // motor and slide with a spring and damper between them
+  rigid,     // one inertia
+  direct,    // one inertia, torque or linear motor: r = 1, may cog
+};
+
+/// Torque ripple of a motor: T sin(n phi + phase), against +phi.
+struct Cogging {
+  double T = 0.0;      // N m
+  double n = 0.0;      // periods per radian of the motor angle
+  double phase = 0.0;  // rad
+};
 
 /// Constant description of one feed drive. For a rotary axis read rad for m, N m for N, kg m^2 for
 /// kg; a direct drive has r = 1.
 ///
 ///            i_cmd          tau = Kt i           r phi - x
-///     o---[1/(T_i s + 1)]---(J, b_motor)---r---[k, c]---(M, b_load)--- x
-///                              phi                          ^ F_load
+///     o---[1/(T_i s + 1)]---(J, b_motor)---r---[k, c, gap]---(M, b_load)--- x
+///                              phi                                 ^ F_load, friction
+///
+/// With a winding (L > 0) the input is the voltage u instead: L di/dt = u - R i - Ke w.
 struct FeedDriveParams {
   DriveKind kind = DriveKind::two_mass;
   double r = 1.0;        // m/rad, slide travel per motor angle: lead / (2 pi)
@@ -26,74 +41,103 @@ struct FeedDriveParams {
   double M = 0.0;        // kg, slide with everything it carries
   double k = 0.0;        // N/m, between screw and slide (two_mass)
   double c = 0.0;        // N s/m, the same (two_mass)
+  double gap = 0.0;      // m, backlash between screw and slide (two_mass)
   double b_motor = 0.0;  // N m s/rad, viscous friction of the motor
   double b_load = 0.0;   // N s/m, viscous friction of the slide
   double Kt = 1.0;       // N m/A, torque constant
   double i_max = 0.0;    // A, limit of the current command
   double T_i = 0.0;      // s, closed current loop as first-order lag; 0: none
-  double F_load = 0.0;   // N, constant force on the slide, counted against +x
+  double L = 0.0;        // H, winding; 0: there is none, T_i counts
+  double R = 0.0;        // ohm
+  double Ke = 0.0;       // V s/rad
+  double F_load = 0.0;   // N, constant force on the slide, counted against +x: weight less
+                         // counterbalance
+  FrictionParams friction;
+  Cogging cogging;  // of a direct drive
 
+  bool has_winding() const { return L > 0.0; }
+  bool is_rigid() const { return kind != DriveKind::two_mass; }
   /// Inertia that the motor sees (kg m^2): J + M r^2.
   double J_total() const { return J + M * r * r; }
+  /// Mass that a force on the slide accelerates at once (kg).
+  double slide_mass() const { return is_rigid() ? M + J / (r * r) : M; }
+  /// Whether the equations are linear: no friction but viscous, no gap, no cogging.
+  bool is_linear() const {
+    return friction.kind == FrictionKind::none && gap == 0.0 && cogging.T == 0.0;
+  }
+};
+
+/// How a slide with set-valued friction moves.
+enum class SlideMode : std::uint8_t { sticking, positive, negative };
+/// Which flank of the screw carries; without backlash always `positive`.
+enum class ContactMode : std::uint8_t { positive, gap, negative };
+
+/// State of one drive.
+struct LaneState {
+  double i = 0.0;      // A, torque-forming current
+  double w = 0.0;      // rad/s, motor speed
+  double delta = 0.0;  // m, r phi - x: wind-up, with backlash within [-gap/2, gap/2] free
+  double v = 0.0;      // m/s, slide
+  double x = 0.0;      // m, slide
+  double z = 0.0;      // m, bristle deflection (LuGre)
+  SlideMode slide = SlideMode::sticking;        // counts with set-valued friction only
+  ContactMode contact = ContactMode::positive;  // counts with backlash only
 };
 
 /// State of the drives of one machine: structure of arrays, one lane per joint.
 struct DriveState {
   using Lanes = std::array<double, kJoints>;
-  Lanes i{};      // A, torque-forming current
-  Lanes w{};      // rad/s, motor speed
-  Lanes delta{};  // m, wind-up r phi - x (carried instead of phi: no cancellation)
-  Lanes v{};      // m/s, slide
-  Lanes x{};      // m, slide
+  Lanes i{}, w{};  // A, rad/s
+  Lanes delta{};   // m (carried instead of phi: no cancellation)
+  Lanes v{}, x{};  // m/s, m
+  Lanes z{};       // m
+  std::array<SlideMode, kJoints> slide{};
+  std::array<ContactMode, kJoints> contact{};
+
+  LaneState lane(std::size_t j) const {
+    return {i[j], w[j], delta[j], v[j], x[j], z[j], slide[j], contact[j]};
+  }
+  void set_lane(std::size_t j, const LaneState& s);
 };
 
 /// Inputs, constant over a step (zero-order hold).
 struct DriveInput {
-  DriveState::Lanes i_cmd{};  // A
-  DriveState::Lanes F{};      // N, force against the slide beside the constant F_load
+  DriveState::Lanes command{};  // A; V for a drive with a winding
+  DriveState::Lanes F{};        // N, force against the slide beside the constant F_load
 };
 
-/// Exact propagator of all drives of a machine between instants of the base clock:
-///   x(t + h) = exp(A h) x(t) + int_0^h exp(A s) ds B u.
-/// Matrices are prepared once for every step length that the schedule contains.
-class DriveBank {
- public:
-  /// @param params       one entry per joint; joints that the machine lacks stay at zero
-  /// @param present      which joints there are
-  /// @param base_period  s
-  /// @param steps        step lengths that `advance` will be asked for, in ticks
-  DriveBank(const std::array<FeedDriveParams, kJoints>& params,
-            const std::array<bool, kJoints>& present, double base_period,
-            std::span<const Tick> steps);
+/// dx/dt = A x + B (command, F) of one drive, states (i, w, delta, v, x); columns 5 and 6 hold B.
+/// The linear part: F holds all forces against the slide (load, friction, cogging).
+/// @param sticking  the slide is held: dv/dt = 0
+/// @param gap       screw and slide do not touch: no force between them. In contact, delta counts
+///                  from where they touch: contact_offset() less than that of the state.
+Eigen::Matrix<double, 5, 7> drive_equations(const FeedDriveParams& params, bool sticking = false,
+                                            bool gap = false);
 
-  /// Moves the state by `step` ticks. @pre step is one of those given at construction
-  void advance(DriveState& state, const DriveInput& input, Tick step) const;
+/// delta at which the flanks touch (m): gap/2, -gap/2, and 0 within the gap.
+double contact_offset(const FeedDriveParams& params, ContactMode contact);
 
-  /// Motor angle (rad) of a joint: (delta + x) / r.
-  double motor_angle(const DriveState& state, std::size_t joint) const {
-    return (state.delta[joint] + state.x[joint]) * inverse_r_[joint];
-  }
+/// Force of the screw on the slide (N): k (delta - offset) + c d(delta)/dt in contact, else 0. The
+/// flanks push and never pull: contact ends where this changes sign.
+double screw_force(const FeedDriveParams& params, const LaneState& state);
 
-  /// At rest at x = Q, holding the constant load: current and wind-up in equilibrium.
-  DriveState at_rest(const Joints& Q) const;
+/// Sum of the forces on the slide but for set-valued, regularised or LuGre friction (N): what a
+/// sticking slide must bear. Viscous friction included; of a rigid drive the motor's force, too.
+/// @param F  N, external force against the slide beside F_load
+double driving_force(const FeedDriveParams& params, const LaneState& state, double F);
 
- private:
-  static constexpr std::size_t kStates = 5;
-  static constexpr std::size_t kColumns = kStates + 2;  // states, i_cmd, F
-  struct StepMatrix {
-    std::array<DriveState::Lanes, kStates * kColumns> coefficient{};
-  };
+/// Cogging as a force against the slide at x (N): T/r sin(n x / r + phase).
+double cogging_force(const FeedDriveParams& params, double x);
 
-  std::array<FeedDriveParams, kJoints> params_;
-  std::array<bool, kJoints> present_;
-  DriveState::Lanes inverse_r_{};
-  DriveState::Lanes F_load_{};
-  std::vector<int> matrix_of_step_;  // -1: not prepared
-  std::vector<StepMatrix> matrices_;
-};
+/// Way in which a slide at v = 0 goes on under this driving force: sticking within the breakaway
+/// forces, else in the direction of the force.
+SlideMode slide_from_rest(const FrictionParams& friction, double driving_force);
 
-/// dx/dt = A x + B (i_cmd, F) of one drive, states (i, w, delta, v, x). Columns 5 and 6 hold B.
-/// The same right-hand side for the exact propagator and for reference integrators.
-Eigen::Matrix<double, 5, 7> drive_equations(const FeedDriveParams& params);
+/// At rest at x, holding the constant load: current and wind-up in equilibrium, friction unloaded.
+LaneState at_rest(const FeedDriveParams& params, double x);
+
+/// What is wrong with the values as physics, each as "KEY RULE" in SI ("Fs must be >= Fc").
+/// Empty for a drive that can be.
+std::vector<std::string> implausible(const FeedDriveParams& params);
 
 }  // namespace servomill::plant

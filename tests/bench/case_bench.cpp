@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "plant/drives/drive_bank.h"
 #include "plant/geometry/volumetric.h"
 #include "sim/run.h"
 
@@ -50,7 +51,7 @@ void BM_DriveBank(benchmark::State& state) {
   const plant::DriveBank bank(machine.drives, machine.present(), 10e-6, steps);
   plant::DriveState drives = bank.at_rest(Joints::Constant(0.1));
   plant::DriveInput input;
-  input.i_cmd = drives.i;
+  input.command = drives.i;
   for (auto _ : state) {
     bank.advance(drives, input, 4);
     benchmark::DoNotOptimize(drives);

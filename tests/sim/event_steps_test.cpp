@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "controllers/gcode/interpreter.h"
-#include "plant/drives/feed_drive.h"
+#include "plant/drives/drive_bank.h"
 #include "plant/vocabulary/units.h"
 #include "sim/set_point.h"
 #include "tests/sim/small_scenario.h"
@@ -80,7 +80,7 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
   Q_read.head<3>() += d_now;
   for (std::size_t j = 0; j < kJoints; ++j) {
     loops[j].phi = drives.motor_angle(x, j);
-    loops[j].i_next = loops[j].i_cmd = u.i_cmd[j] = x.i[j];
+    loops[j].i_next = loops[j].i_cmd = u.command[j] = x.i[j];
     loops[j].integral = x.i[j] * c.machine.nc.cascade[j].Kt;
   }
   std::vector<Joints> recorded;
@@ -105,7 +105,7 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
     for (std::size_t j = 0; j < kJoints; ++j) {
       if (n % p.current == 0) {
         controllers::current_loop(loops[j]);
-        u.i_cmd[j] = loops[j].i_cmd;
+        u.command[j] = loops[j].i_cmd;
       }
       if (n % p.velocity == 0) {
         controllers::velocity_loop(c.machine.nc.cascade[j], loops[j], drives.motor_angle(x, j));

@@ -1,4 +1,4 @@
-#include "plant/drives/feed_drive.h"
+#include "plant/drives/drive_bank.h"
 
 #include <cvode/cvode.h>
 #include <gtest/gtest.h>
@@ -95,41 +95,41 @@ class CvodeDrive {
   SUNLinearSolver solver_ = nullptr;
 };
 
-TEST(FeedDrive, AgreesWithCvodeUnderHeldInputs) {
+TEST(DriveBank, AgreesWithCvodeUnderHeldInputs) {
   constexpr double kPositionTol = 1e-12;  // m, CVODE at rtol 1e-12 after 50 changes of input
   const DriveBank bank = bank_of(x_axis(), {20});
   DriveState s;
   DriveInput input;
   CvodeDrive reference(x_axis());
   for (int n = 0; n < 50; ++n) {
-    input.i_cmd[0] = 20.0 * std::sin(0.7 * n);
+    input.command[0] = 20.0 * std::sin(0.7 * n);
     input.F[0] = n % 2 ? 300.0 : -100.0;
     bank.advance(s, input, 20);
-    reference.hold(input.i_cmd[0], input.F[0], (n + 1) * 20 * kTick);
+    reference.hold(input.command[0], input.F[0], (n + 1) * 20 * kTick);
     ASSERT_NEAR(s.x[0], reference.state(4), kPositionTol) << n;
     ASSERT_NEAR(s.v[0], reference.state(3), 1e-9) << n;
     ASSERT_NEAR(s.w[0], reference.state(1), 1e-7) << n;
   }
 }
 
-TEST(FeedDrive, OneLongStepEqualsManyShortOnes) {
+TEST(DriveBank, OneLongStepEqualsManyShortOnes) {
   constexpr double kRoundingTol = 1e-15;  // m, sixty products of rounding
   const DriveBank bank = bank_of(x_axis(), {1, 60});
   DriveState fine, coarse;
   DriveInput input;
-  input.i_cmd[0] = 12.0;
+  input.command[0] = 12.0;
   for (int n = 0; n < 60; ++n) bank.advance(fine, input, 1);
   bank.advance(coarse, input, 60);
   EXPECT_NEAR(fine.x[0], coarse.x[0], kRoundingTol);
 }
 
-TEST(FeedDrive, ConstantCurrentAcceleratesTheTotalInertia) {
+TEST(DriveBank, ConstantCurrentAcceleratesTheTotalInertia) {
   FeedDriveParams p = x_axis();
   p.b_motor = p.b_load = 0.0;
   const DriveBank bank = bank_of(p, {1000});
   DriveState s;
   DriveInput input;
-  input.i_cmd[0] = 10.0;
+  input.command[0] = 10.0;
   for (int n = 0; n < 20; ++n) bank.advance(s, input, 1000);  // until the screw is wound up
   const double v0 = s.v[0];
   for (int n = 0; n < 20; ++n) bank.advance(s, input, 1000);
@@ -137,7 +137,7 @@ TEST(FeedDrive, ConstantCurrentAcceleratesTheTotalInertia) {
   EXPECT_NEAR(acceleration, p.Kt * 10.0 * p.r / p.J_total(), 1e-6 * acceleration);
 }
 
-TEST(FeedDrive, ResonatesWhereTheTwoMassFormulaSays) {
+TEST(DriveBank, ResonatesWhereTheTwoMassFormulaSays) {
   FeedDriveParams p = x_axis();
   p.b_motor = p.b_load = 0.0;
   p.c = 0.0;
@@ -160,7 +160,7 @@ TEST(FeedDrive, ResonatesWhereTheTwoMassFormulaSays) {
   EXPECT_NEAR(expected, 115.0, 0.5);  // what the set is known for, Hz
 }
 
-TEST(FeedDrive, RigidIsTheStiffLimit) {
+TEST(DriveBank, RigidIsTheStiffLimit) {
   const auto deviation = [](double stiffness_factor) {
     FeedDriveParams stiff = x_axis();
     stiff.k *= stiffness_factor;
@@ -170,7 +170,7 @@ TEST(FeedDrive, RigidIsTheStiffLimit) {
     DriveState a, b;
     const DriveBank bank_a = bank_of(stiff, {100}), bank_b = bank_of(rigid, {100});
     DriveInput input;
-    input.i_cmd[0] = 10.0;
+    input.command[0] = 10.0;
     for (int n = 0; n < 200; ++n) {
       bank_a.advance(a, input, 100);
       bank_b.advance(b, input, 100);
@@ -181,7 +181,7 @@ TEST(FeedDrive, RigidIsTheStiffLimit) {
   EXPECT_NEAR(coarse / fine, 100.0, 5.0);  // first order in 1/k
 }
 
-TEST(FeedDrive, StaysAtRestUnderItsConstantLoad) {
+TEST(DriveBank, StaysAtRestUnderItsConstantLoad) {
   FeedDriveParams p = x_axis();
   p.F_load = 200.0;
   const DriveBank bank = bank_of(p, {20});
@@ -189,7 +189,7 @@ TEST(FeedDrive, StaysAtRestUnderItsConstantLoad) {
   Q[0] = 0.25;
   DriveState s = bank.at_rest(Q);
   DriveInput input;
-  input.i_cmd[0] = s.i[0];
+  input.command[0] = s.i[0];
   for (int n = 0; n < 5000; ++n) bank.advance(s, input, 20);
   EXPECT_NEAR(s.x[0], 0.25, 1e-12);
   EXPECT_EQ(s.x[1], 0.0);  // joints that the machine lacks do not move

@@ -1,0 +1,53 @@
+/// Friction of a guideway: Coulomb with Stribeck effect, in three forms. Viscous friction belongs
+/// to the linear part of a drive (b_load, sigma_2 of the LuGre model).
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace servomill::plant {
+
+enum class FrictionKind : std::uint8_t {
+  none,
+  set_valued,   // F = g(v) sgn(v); at v = 0 any force within [-Fs_negative, Fs_positive]
+  regularised,  // F = g(v) tanh(v / v0): never holds still, creeps under load
+  lugre,        // bristles of deflection z: presliding, then as above
+};
+
+/// Constant description of the friction of one axis. For a rotary axis read N m for N and so on.
+/// The two directions may differ; *_positive resists motion in +x.
+struct FrictionParams {
+  FrictionKind kind = FrictionKind::none;
+  double Fc_positive = 0.0, Fc_negative = 0.0;  // N, Coulomb force, >= 0
+  double Fs_positive = 0.0, Fs_negative = 0.0;  // N, breakaway force, >= Fc
+  double vs = 1.0;                              // m/s, Stribeck velocity
+  double v0 = 1.0;                              // m/s, of the regularisation
+  double sigma0 = 0.0;                          // N/m, stiffness of the bristles
+  double sigma1 = 0.0;                          // N s/m, their damping
+};
+
+/// Magnitude of the friction force when sliding in one direction (N), a smooth and even function of
+/// v: g(v) = Fc + (Fs - Fc) exp(-(v / vs)^2).
+inline double sliding_force(const FrictionParams& p, bool positive, double v) {
+  const double Fc = positive ? p.Fc_positive : p.Fc_negative;
+  const double Fs = positive ? p.Fs_positive : p.Fs_negative;
+  const double q = v / p.vs;
+  return Fc + (Fs - Fc) * std::exp(-q * q);
+}
+
+/// Regularised friction (N), against +v.
+inline double regularised_force(const FrictionParams& p, double v) {
+  return sliding_force(p, v >= 0.0, v) * std::tanh(v / p.v0);
+}
+
+/// LuGre: dz/dt = v - sigma0 |v| z / g(v) (m/s). Canudas de Wit et al. 1995, equations (2) to (4).
+inline double bristle_rate(const FrictionParams& p, double v, double z) {
+  return v - p.sigma0 * std::abs(v) * z / sliding_force(p, v >= 0.0, v);
+}
+
+/// LuGre: F = sigma0 z + sigma1 dz/dt (N), against +v; sigma2 v is in b_load.
+inline double bristle_force(const FrictionParams& p, double v, double z) {
+  return p.sigma0 * z + p.sigma1 * bristle_rate(p, v, z);
+}
+
+}  // namespace servomill::plant
