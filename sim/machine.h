@@ -62,6 +62,14 @@ struct MachineSettings {
     for (int j = 0; j < kJoints; ++j) out[static_cast<std::size_t>(j)] = chain.layout.has(j);
     return out;
   }
+  /// Joints that the machine has.
+  std::vector<int> joints() const {
+    std::vector<int> out;
+    for (int j = 0; j < kJoints; ++j) {
+      if (chain.layout.has(j)) out.push_back(j);
+    }
+    return out;
+  }
 };
 
 }  // namespace servomill::sim

@@ -50,7 +50,7 @@ Eigen::Vector3d& SetPoint::Offsets::of(EntryPoint entry) {
   return feed_forward;
 }
 
-const SetPoint::Output& SetPoint::settle() {
+const AxisSetPoint& SetPoint::settle() {
   const Joints& Q = reference_.start();
   out_ = {Q, Q, Joints::Zero(), Joints::Zero()};
   fed_forward_.setZero();
@@ -64,7 +64,7 @@ const SetPoint::Output& SetPoint::settle() {
   return out_;
 }
 
-const SetPoint::Output& SetPoint::advance(double t) {
+const AxisSetPoint& SetPoint::advance(double t) {
   const auto sample = reference_.at(t, cursor_);
   out_ = {sample.Q_ref, sample.Q_ref, sample.dQ_ref, sample.ddQ_ref};
   if (filters_) {

@@ -10,29 +10,23 @@
 #include "controllers/path/trajectory.h"
 #include "controllers/servo/set_point_correction.h"
 #include "sim/machine.h"
+#include "sim/servo_axes.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim {
 
 class SetPoint {
  public:
-  struct Output {
-    Joints Q_ref = Joints::Zero();  // interpolated, filtered
-    Joints Q_cmd = Joints::Zero();  // with corrections: what the position loop follows
-    Joints dQ_ff = Joints::Zero();  // velocity that is fed forward
-    Joints ddQ_ff = Joints::Zero();
-  };
-
   SetPoint(const NcSettings& nc, const controllers::Trajectory& reference,
            std::vector<std::unique_ptr<strategies::SetPointPart>> parts);
 
   /// Standing at the start of the trajectory for long; corrections settled.
-  const Output& settle();
+  const AxisSetPoint& settle();
   /// Time by which the filter delays the reference (s).
   double delay() const { return delay_; }
 
   /// Set point of time t (s), one position period after the call before.
-  const Output& advance(double t);
+  const AxisSetPoint& advance(double t);
 
  private:
   struct Correction {
@@ -57,7 +51,7 @@ class SetPoint {
   double Tp_;
   double delay_ = 0.0;
   std::optional<Filters> filters_;
-  Output out_;
+  AxisSetPoint out_;
   Eigen::Vector3d fed_forward_ = Eigen::Vector3d::Zero();  // corrections, one period ago
   Eigen::Vector3d fed_forward_rate_ = Eigen::Vector3d::Zero();
 };

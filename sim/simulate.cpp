@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
-#include "plant/drives/drive_bank.h"
 #include "plant/vocabulary/units.h"
 #include "sim/recorder.h"
 #include "sim/schedule.h"
+#include "sim/servo_axes.h"
 #include "sim/set_point.h"
 
 namespace servomill::sim {
@@ -17,30 +17,13 @@ namespace {
 
 constexpr std::size_t kLastTicks = 2000;  // position periods kept of a case that stops
 
-Joints joints_of(const plant::DriveState::Lanes& lanes) {
-  return Eigen::Map<const Joints>(lanes.data());
-}
-
-std::size_t lane(int joint) { return static_cast<std::size_t>(joint); }
-
 std::vector<Rate> rates_of(const CaseInputs& in) {
-  const LoopPeriods& p = in.machine.nc.periods;
   const Tick delay =
       in.machine.scale_delay + (in.hardware.connected ? in.hardware.signal_delay : 0);
-  const Tick sample_phase = (p.position - delay % p.position) % p.position;
-  std::vector<Rate> rates = {{kSample, p.position, sample_phase},
-                             {kPositionLoop, p.position, 0},
-                             {kVelocityLoop, p.velocity, 0},
-                             {kCurrentLoop, p.current, 0},
-                             {kRecord, in.record_period, 0}};
+  std::vector<Rate> rates = loop_rates(in.machine.nc.periods, delay);
+  rates.push_back({kRecord, in.record_period, 0});
   if (in.feedback) rates.push_back({kErrorModel, in.hardware.model_period, 0});
   return rates;
-}
-
-std::vector<Tick> steps_of(const std::vector<Instant>& schedule) {
-  std::vector<Tick> steps;
-  for (const Instant& instant : schedule) steps.push_back(instant.step);
-  return steps;
 }
 
 Outcome interrupted(double time) {
@@ -50,10 +33,7 @@ Outcome interrupted(double time) {
 // The last position periods, kept in a ring so that a case that stops can be looked into.
 class LastTicks {
  public:
-  explicit LastTicks(const JointLayout& layout) {
-    for (int j = 0; j < kJoints; ++j) {
-      if (layout.has(j)) present_.push_back(j);
-    }
+  explicit LastTicks(std::vector<int> joints) : present_(std::move(joints)) {
     ring_.resize(kLastTicks * kPerRow);
   }
   void keep(double time, const Joints& Q_cmd, const Joints& Q_read, const Joints& Q_true,
@@ -78,7 +58,8 @@ class LastTicks {
       double* to = out.add_row();
       *to++ = *from;
       for (std::size_t block = 0; block < 4; ++block) {
-        for (const int j : present_) *to++ = from[1 + block * kJoints + lane(j)];
+        for (const int j : present_)
+          *to++ = from[1 + block * kJoints + static_cast<std::size_t>(j)];
       }
     }
     return out;
@@ -98,13 +79,10 @@ class CaseRun {
       : in_(in),
         nc_(in.machine.nc),
         schedule_(make_schedule(rates_of(in))),
-        drives_(in.machine.drives, in.machine.present(), nc_.periods.base, steps_of(schedule_)),
+        axes_(in.machine, in.machine.joints(), schedule_),
         set_point_(nc_, in.reference, std::move(in.set_points)),
         recorder_(in.machine, in.truth, in.imposed, in.path, in.tips),
-        last_ticks_(in.machine.chain.layout) {
-    for (int j = 0; j < kJoints; ++j) {
-      if (in.machine.chain.layout.has(j)) joints_.push_back(j);
-    }
+        last_ticks_(in.machine.joints()) {
     end_ =
         static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
     recorder_.reserve(static_cast<std::size_t>(end_ / in.record_period + 1));
@@ -121,12 +99,12 @@ class CaseRun {
       for (const Instant& instant : schedule_) {
         if (n > end_ || !outcome.finished) break;
         if (instant.due & kErrorModel) evaluate_error_model();
-        if (instant.due & kSample) take_reading();
+        if (instant.due & kSample) axes_.take_reading(d_now_);
         if (instant.due & kPositionLoop) run_position_loops(n, outcome);
-        if (instant.due & kCurrentLoop) run_current_loops();
-        if (instant.due & kVelocityLoop) run_velocity_loops();
+        if (instant.due & kCurrentLoop) axes_.run_current_loops();
+        if (instant.due & kVelocityLoop) axes_.run_velocity_loops();
         if (instant.due & kRecord) record(n);
-        drives_.advance(state_, input_, instant.step);
+        axes_.advance(instant.step);
         n += instant.step;
       }
     }
@@ -149,58 +127,25 @@ class CaseRun {
       }
       d_next_ = d_now_;
     }
-    state_ = drives_.at_rest(Q);
-    for (const int j : joints_) {
-      auto& loop = loops_[lane(j)];
-      loop.phi = in_.machine.motor[lane(j)].read(drives_.motor_angle(state_, lane(j)));
-      loop.i_next = loop.i_cmd = input_.command[lane(j)] = state_.i[lane(j)];
-      loop.integral = state_.i[lane(j)] * nc_.cascade[lane(j)].Kt;
-    }
-    take_reading();
-  }
-
-  Joints scale_reading() const {
-    Joints Q = Joints::Zero();
-    for (const int j : joints_) Q[j] = in_.machine.scale[lane(j)].read(state_.x[lane(j)]);
-    return Q;
+    axes_.settle(Q, d_now_);
   }
 
   // Feedback hardware: the model evaluated one period ago acts now, the next one is begun.
   void evaluate_error_model() {
     d_now_ = d_next_;
-    d_next_ = in_.feedback->evaluate(scale_reading());
-  }
-
-  void take_reading() {
-    Q_read_ = scale_reading();
-    Q_read_.head<3>() += d_now_;
+    d_next_ = in_.feedback->evaluate(axes_.scale_reading());
   }
 
   void run_position_loops(Tick n, Outcome& outcome) {
-    set_ = set_point_.advance(nc_.periods.seconds(n));
-    last_ticks_.keep(nc_.periods.seconds(n), set_.Q_cmd, Q_read_, joints_of(state_.x),
-                     joints_of(state_.i));
-    for (const int j : joints_) {
-      controllers::position_loop(nc_.cascade[lane(j)], loops_[lane(j)], set_.Q_cmd[j], Q_read_[j],
-                                 set_.dQ_ff[j], set_.ddQ_ff[j]);
+    const double time = nc_.periods.seconds(n);
+    set_ = set_point_.advance(time);
+    last_ticks_.keep(time, set_.Q_cmd, axes_.Q_read(), axes_.Q_true(), axes_.current());
+    axes_.run_position_loops(set_);
+    for (const int j : axes_.joints()) {
       // written so that a reading that is no number stops the machine, too
-      if (!(std::abs(set_.Q_cmd[j] - Q_read_[j]) <= nc_.following_error_limit)) {
-        halt(outcome, j, nc_.periods.seconds(n));
+      if (!(std::abs(set_.Q_cmd[j] - axes_.Q_read()[j]) <= nc_.following_error_limit)) {
+        halt(outcome, j, time);
       }
-    }
-  }
-
-  void run_current_loops() {
-    for (const int j : joints_) {
-      controllers::current_loop(loops_[lane(j)]);
-      input_.command[lane(j)] = loops_[lane(j)].i_cmd;
-    }
-  }
-
-  void run_velocity_loops() {
-    for (const int j : joints_) {
-      const double phi = in_.machine.motor[lane(j)].read(drives_.motor_angle(state_, lane(j)));
-      controllers::velocity_loop(nc_.cascade[lane(j)], loops_[lane(j)], phi);
     }
   }
 
@@ -214,12 +159,14 @@ class CaseRun {
     now.s = reference.s;
     now.Q_ref = reference.Q_ref;
     now.Q_cmd = set_.Q_cmd;
-    now.Q_read = Q_read_;
-    now.Q_meas = scale_reading();
-    now.Q_true = joints_of(state_.x);
-    now.dQ_true = joints_of(state_.v);
-    now.current = joints_of(state_.i);
-    for (const int j : joints_) now.torque[j] = in_.machine.drives[lane(j)].Kt * now.current[j];
+    now.Q_read = axes_.Q_read();
+    now.Q_meas = axes_.scale_reading();
+    now.Q_true = axes_.Q_true();
+    now.dQ_true = axes_.dQ_true();
+    now.current = axes_.current();
+    for (const int j : axes_.joints()) {
+      now.torque[j] = in_.machine.drives[static_cast<std::size_t>(j)].Kt * now.current[j];
+    }
     recorder_.record(now);
   }
 
@@ -237,19 +184,14 @@ class CaseRun {
   CaseInputs& in_;
   const NcSettings& nc_;
   std::vector<Instant> schedule_;
-  plant::DriveBank drives_;
+  ServoAxes axes_;
   SetPoint set_point_;
   Recorder recorder_;
   LastTicks last_ticks_;
-  std::vector<int> joints_;
   Tick end_ = 0;
 
-  plant::DriveState state_;
-  plant::DriveInput input_;
-  std::array<controllers::CascadeState, kJoints> loops_;
-  SetPoint::Output set_;
+  AxisSetPoint set_;
   controllers::Trajectory::Cursor record_cursor_;
-  Joints Q_read_ = Joints::Zero();
   Eigen::Vector3d d_now_ = Eigen::Vector3d::Zero(), d_next_ = Eigen::Vector3d::Zero();
 };
 
@@ -266,7 +208,7 @@ class IdealRun {
     CaseResult result;
     const double end = in_.reference.duration() + in_.settle_time;
     Tick n = 0;
-    SetPoint::Output set = set_point_.settle();
+    AxisSetPoint set = set_point_.settle();
     for (; periods_.seconds(n) <= end; n += periods_.position) {
       progress.store(static_cast<float>(periods_.seconds(n) / end), std::memory_order_relaxed);
       if (stop.load(std::memory_order_relaxed)) {
@@ -282,7 +224,7 @@ class IdealRun {
   }
 
  private:
-  void record(Tick n, const SetPoint::Output& set) {
+  void record(Tick n, const AxisSetPoint& set) {
     Snapshot now;
     now.time = periods_.seconds(n);
     now.s = in_.reference.at(now.time - set_point_.delay(), record_cursor_).s;

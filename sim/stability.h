@@ -5,6 +5,10 @@
 
 namespace servomill::sim {
 
+/// The machine without what is not linear: friction other than viscous, backlash, cogging, constant
+/// load, limits, quantisation.
+MachineSettings linearised(const MachineSettings& machine);
+
 /// Largest eigenvalue magnitude of the linear closed loop of one axis over one common multiple of
 /// its periods (position, velocity and current loop with drive, reading delay included); below 1
 /// the axis settles. Limits, quantisation and feed-forward play no part.

@@ -95,7 +95,7 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
       Q_read.head<3>() += d_now;
     }
     if (n % p.position == 0) {
-      const SetPoint::Output& set = set_point.advance(p.seconds(n));
+      const AxisSetPoint& set = set_point.advance(p.seconds(n));
       for (int j = 0; j < kJoints; ++j) {
         const auto lane = static_cast<std::size_t>(j);
         controllers::position_loop(c.machine.nc.cascade[lane], loops[lane], set.Q_cmd[j], Q_read[j],

@@ -1,0 +1,110 @@
+/// The axes of a machine with drives, encoders and servo loops, without program or clock: what a
+/// case, a frequency response and the stability check have in common.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "controllers/servo/cascade.h"
+#include "plant/drives/drive_bank.h"
+#include "sim/machine.h"
+#include "sim/schedule.h"
+
+namespace servomill::sim {
+
+/// When the loops of a machine are due.
+/// @param reading_delay  ticks from the scale to what the position loop reads; kSample is due so
+///                       much before the position loop
+std::vector<Rate> loop_rates(const LoopPeriods& periods, Tick reading_delay);
+
+/// Lengths of the steps of a schedule.
+std::vector<Tick> steps_of(const std::vector<Instant>& schedule);
+
+/// What the position loops follow, for all joints.
+struct AxisSetPoint {
+  Joints Q_ref = Joints::Zero();  // interpolated, filtered
+  Joints Q_cmd = Joints::Zero();  // with corrections: what the position loop follows
+  Joints dQ_ff = Joints::Zero();  // velocity that is fed forward
+  Joints ddQ_ff = Joints::Zero();
+};
+
+/// One function for each kind of instant of the schedule (sim/schedule.h), to be called in its
+/// order when due; then `advance` to the next instant.
+class ServoAxes {
+ public:
+  /// @param machine   must outlive this
+  /// @param joints    those that take part; the others stand at zero
+  /// @param schedule  its steps are what `advance` may be asked for
+  ServoAxes(const MachineSettings& machine, std::vector<int> joints,
+            const std::vector<Instant>& schedule);
+
+  /// Stands at Q_true for long, loops in equilibrium; the NC reads Q_true + displacement.
+  void settle(const Joints& Q_true, const Eigen::Vector3d& displacement);
+
+  /// kSample: the reading that the next position period will use.
+  /// @param displacement  of the linear joints (3; m), added by a virtual encoder
+  void take_reading(const Eigen::Vector3d& displacement);
+  /// kPositionLoop
+  void run_position_loops(const AxisSetPoint& set);
+  /// kCurrentLoop
+  void run_current_loops();
+  /// kVelocityLoop
+  void run_velocity_loops();
+  /// Moves the drives to the next instant.
+  void advance(Tick step) { drives_.advance(state_, input_, step); }
+
+  /// Readings of the position encoders at this moment.
+  Joints scale_reading() const;
+  /// What the position loops read last.
+  const Joints& Q_read() const { return Q_read_; }
+  Joints Q_true() const { return lanes(state_.x); }
+  Joints dQ_true() const { return lanes(state_.v); }
+  Joints current() const { return lanes(state_.i); }
+  const std::vector<int>& joints() const { return joints_; }
+
+  /// Force against the slide of a joint from now on (N, N m).
+  void set_force(int joint, double F) { input_.F[lane(joint)] = F; }
+
+  /// Visits what of one axis changes with time, as double&: drive, loops, reading. States that
+  /// cannot move (no integral part, no current lag, ...) are left out.
+  template <class Visit>
+  void each_state(int joint, Visit visit);
+
+ private:
+  static std::size_t lane(int joint) { return static_cast<std::size_t>(joint); }
+  static Joints lanes(const plant::DriveState::Lanes& values) {
+    return Eigen::Map<const Joints>(values.data());
+  }
+  double motor_reading(int joint) const;
+
+  const MachineSettings& machine_;
+  std::vector<int> joints_;
+  plant::DriveBank drives_;
+  plant::DriveState state_;
+  plant::DriveInput input_;
+  std::array<controllers::CascadeState, kJoints> loops_;
+  Joints Q_read_ = Joints::Zero();
+};
+
+template <class Visit>
+void ServoAxes::each_state(int joint, Visit visit) {
+  const std::size_t j = lane(joint);
+  const plant::FeedDriveParams& drive = machine_.drives[j];
+  const controllers::CascadeParams& cascade = machine_.nc.cascade[j];
+  controllers::CascadeState& loop = loops_[j];
+  if (drive.has_winding() || drive.T_i > 0.0) visit(state_.i[j]);
+  if (!drive.is_rigid()) {
+    visit(state_.w[j]);
+    visit(state_.delta[j]);
+  }
+  visit(state_.v[j]);
+  visit(state_.x[j]);
+  visit(loop.v_cmd);
+  if (cascade.Ki > 0.0) visit(loop.integral);
+  visit(loop.phi);
+  visit(loop.i_next);
+  visit(input_.command[j]);
+  visit(Q_read_[joint]);
+}
+
+}  // namespace servomill::sim
