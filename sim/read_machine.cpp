@@ -9,12 +9,12 @@
 
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
+#include "sim/read_drive.h"
 
 namespace servomill::sim {
 namespace {
 
 constexpr std::array<std::string_view, 2> kPresets = {"CC422", "CC424"};
-constexpr std::array<std::string_view, 2> kDriveKinds = {"two_mass", "rigid"};
 constexpr std::array<std::string_view, 3> kFilters = {"none", "mean", "triangle"};
 constexpr std::array<std::string_view, 2> kSenses = {"tool", "table"};
 
@@ -75,33 +75,6 @@ NominalFilter read_filter(Reader& nc, const LoopPeriods& periods) {
   return filter;
 }
 
-plant::FeedDriveParams read_drive(Reader& axis, bool linear) {
-  const AxisQuantities& q = quantities_of(linear);
-  plant::FeedDriveParams p;
-  const std::size_t before = axis.faults();
-  p.kind = static_cast<plant::DriveKind>(axis.choice_or("drive", 0, kDriveKinds));
-  // which keys are required is open then: complain about none
-  if (axis.faults() > before) p.kind = plant::DriveKind::rigid;
-  p.r = linear ? axis.real("lead_mm", kLength, {above(0.0)}) / (2.0 * std::numbers::pi)
-               : axis.real_or("ratio", 1.0, kNumber, {above(0.0)});
-  p.J = axis.real("motor_inertia", kInertia, {above(0.0)});
-  p.M = axis.real("load", q.load, {above(0.0)});
-  if (p.kind == plant::DriveKind::two_mass) {
-    p.k = axis.real("stiffness", q.stiffness, {above(0.0)});
-    p.c = axis.real("damping", q.damping, {at_least(0.0)});
-  } else {  // allowed, so that a two-mass axis can be made rigid by one word
-    p.k = axis.real_or("stiffness", 1.0, q.stiffness, {above(0.0)});
-    p.c = axis.real_or("damping", 0.0, q.damping, {at_least(0.0)});
-  }
-  p.b_motor = axis.real_or("motor_friction", 0.0, kTorsionalDamping, {at_least(0.0)});
-  p.b_load = axis.real_or("slide_friction", 0.0, q.damping, {at_least(0.0)});
-  p.F_load = axis.real_or("constant_load", 0.0, q.force);
-  p.Kt = axis.real("Kt", kTorqueConstant, {above(0.0)});
-  p.i_max = axis.real("i_max_A", kCurrent, {above(0.0)});
-  p.T_i = axis.real_or("current_time_constant_ms", 0.0, kTime, {at_least(0.0)});
-  return p;
-}
-
 // What all axes have in common unless they say otherwise.
 controllers::CascadeParams read_common_cascade(Reader& nc) {
   controllers::CascadeParams c;
@@ -150,11 +123,11 @@ void read_limits(Reader& axis, bool linear, int j, NcSettings& nc) {
   nc.upper[j] = travel[1];
 }
 
-void read_axis(Reader& axis, const controllers::CascadeParams& common, const Place& Kv_place, int j,
-               MachineSettings& machine) {
+void read_axis(Reader& axis, const controllers::CascadeParams& common, const Place& Kv_place,
+               plant::FrictionKind friction_model, int j, MachineSettings& machine) {
   const auto lane = static_cast<std::size_t>(j);
   const bool linear = j < kLinearJoints;
-  machine.drives[lane] = read_drive(axis, linear);
+  machine.drives[lane] = read_drive(axis, linear, friction_model);
   machine.nc.cascade[lane] = read_cascade(axis, common, machine.drives[lane], machine.nc.periods);
   machine.scale[lane] = plant::Encoder::with_step(
       axis.real_or("scale_step", 0.0, quantities_of(linear).position, {at_least(0.0)}));
@@ -238,6 +211,8 @@ MachineSettings read_machine(Reader& table) {
 
   const controllers::CascadeParams common = read_common_cascade(nc);
   const Place Kv_place = nc.place("Kv");
+  const auto friction_model =
+      static_cast<plant::FrictionKind>(table.choice_or("friction_model", 0, friction_models()));
 
   if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
     table.raw("axis");
@@ -247,7 +222,7 @@ MachineSettings read_machine(Reader& table) {
   for (int j = 0; j < kJoints; ++j) {
     if (!machine.chain.layout.has(j)) continue;
     Reader axis = axes.table(std::string(1, machine.chain.layout.letter_of(j)));
-    read_axis(axis, common, Kv_place, j, machine);
+    read_axis(axis, common, Kv_place, friction_model, j, machine);
   }
   return machine;
 }

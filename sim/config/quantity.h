@@ -42,6 +42,9 @@ inline constexpr Quantity kDamping{.kg = 1, .s = -1};                           
 inline constexpr Quantity kTorsionalStiffness{.m = 2, .kg = 1, .s = -2, .rad = -1};  // Nm/rad
 inline constexpr Quantity kTorsionalDamping{.m = 2, .kg = 1, .s = -1, .rad = -1};    // Nms/rad
 inline constexpr Quantity kTorqueConstant{.m = 2, .kg = 1, .s = -2, .A = -1};        // Nm/A
+inline constexpr Quantity kBackEmf{.m = 2, .kg = 1, .s = -2, .A = -1, .rad = -1};    // V s/rad
+inline constexpr Quantity kInductance{.m = 2, .kg = 1, .s = -2, .A = -2};            // H
+inline constexpr Quantity kResistance{.m = 2, .kg = 1, .s = -3, .A = -2};            // ohm
 inline constexpr Quantity kForceConstant{.m = 1, .kg = 1, .s = -2, .A = -1};         // N/A
 inline constexpr Quantity kTransmission{.m = 1, .rad = -1};                          // m/rad
 inline constexpr Quantity kAnglePerLength{.m = -1, .rad = 1};                        // rad/m
