@@ -69,7 +69,7 @@ void ServoAxes::run_position_loops(const AxisSetPoint& set) {
 
 void ServoAxes::run_current_loops() {
   for (const int j : joints_) {
-    controllers::current_loop(loops_[lane(j)]);
+    controllers::latch_current_command(loops_[lane(j)]);
     input_.command[lane(j)] = loops_[lane(j)].i_cmd;
   }
 }

@@ -104,7 +104,7 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
     }
     for (std::size_t j = 0; j < kJoints; ++j) {
       if (n % p.current == 0) {
-        controllers::current_loop(loops[j]);
+        controllers::latch_current_command(loops[j]);
         u.command[j] = loops[j].i_cmd;
       }
       if (n % p.velocity == 0) {

@@ -68,14 +68,14 @@ TEST(VelocityLoop, HoldsTheIntegralOnlyWhileTheCurrentIsLimited) {
   EXPECT_EQ(outside.integral, 0.0);
 }
 
-TEST(CurrentLoop, ActsOnePeriodAfterTheVelocityLoop) {
+TEST(CurrentCommand, ActsOnePeriodAfterTheVelocityLoop) {
   const CascadeParams p = unit_axis();
   CascadeState s;
   s.v_cmd = 0.002;
-  current_loop(s);
+  latch_current_command(s);
   velocity_loop(p, s, 0.0);
   EXPECT_EQ(s.i_cmd, 0.0);
-  current_loop(s);
+  latch_current_command(s);
   EXPECT_DOUBLE_EQ(s.i_cmd, 2.0);
 }
 
