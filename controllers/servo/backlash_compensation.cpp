@@ -17,7 +17,7 @@ BacklashRamp backlash_compensation(const BacklashCompensationParams& p,
   const double rest = target - before;
   // the last step also takes what rounding has left
   s.offset = std::abs(rest) < 1.5 * step ? target : before + std::copysign(step, rest);
-  return {s.offset, (s.offset - before) / p.Tp};
+  return {s.offset, s.offset == before ? 0.0 : (s.offset - before) / p.Tp};
 }
 
 }  // namespace servomill::controllers

@@ -25,7 +25,9 @@ struct BacklashRamp {
 };
 
 /// State of an axis that stands at q_cmd (m or rad) with its positive flank carrying.
-inline BacklashCompensationState standing_at(double q_cmd) { return {q_cmd, 1, 0.0}; }
+inline BacklashCompensationState standing_at(const BacklashCompensationParams&, double q_cmd) {
+  return {q_cmd, 1, 0.0};
+}
 
 /// Advances the ramp by one position period; call it before position_loop.
 ///

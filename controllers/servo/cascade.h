@@ -31,7 +31,7 @@ struct CascadeParams {
   double v_max = kNoLimit;    // m/s, of the velocity command
   double tau_max = kNoLimit;  // N m, of the motor; acts as a current of tau_max / Kt
   double di_max = kNoLimit;   // A/s, slew of the current command; limits the jerk of the axis
-  FilterChain filters;        // of the current command, run once per velocity period
+  FilterChain filters = {};   // of the current command, run once per velocity period
 };
 
 struct CascadeState {
@@ -41,7 +41,7 @@ struct CascadeState {
   double phi = 0.0;       // rad, motor angle read last
   double i_next = 0.0;    // A, computed; acts from the next current period on
   double i_cmd = 0.0;     // A, acts now
-  FilterState filters;
+  FilterState filters = {};
 };
 
 /// The same loops without their limits, for linear analysis.

@@ -61,7 +61,7 @@ inline constexpr std::size_t kMaxSections = 4;
 
 /// Sections in a row; an empty chain passes everything on, bit for bit.
 struct FilterChain {
-  std::array<Biquad, kMaxSections> sections;
+  std::array<Biquad, kMaxSections> sections = {};
   std::size_t count = 0;
 
   void append(const Biquad& section) {  ///< @pre count < kMaxSections

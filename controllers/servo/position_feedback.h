@@ -33,7 +33,8 @@ PositionFeedbackParams motor_feedback();
 PositionFeedbackParams crossover_feedback(double f, double Tp);
 
 /// State of an axis that has been standing: y = y_scale for each kind.
-inline PositionFeedbackState standing_at(double y_motor, double y_scale) {
+inline PositionFeedbackState standing_at(const PositionFeedbackParams&, double y_motor,
+                                         double y_scale) {
   return {y_scale - y_motor};
 }
 

@@ -21,7 +21,7 @@ BacklashCompensationParams heidenhain() {
 
 TEST(BacklashCompensation, GivesTheSpeedOfTheHandbookForItsTime) {
   const BacklashCompensationParams p = heidenhain();
-  BacklashCompensationState s = standing_at(0.0);
+  BacklashCompensationState s = standing_at(p, 0.0);
   backlash_compensation(p, s, 1.0 * mm);
   int periods = 0;
   for (int k = 0; k < 200; ++k) {
@@ -38,7 +38,7 @@ TEST(BacklashCompensation, CrossesTheGapExactlyInWholePeriods) {
   BacklashCompensationParams p = heidenhain();
   for (const double time : {0.0, 0.05 * ms, 0.31 * ms, 7 * ms, 15.09 * ms}) {
     p.time = time;
-    BacklashCompensationState s = standing_at(0.0);
+    BacklashCompensationState s = standing_at(p, 0.0);
     double way = 0.0;
     for (int k = 0; k < 200; ++k) way += kTp * backlash_compensation(p, s, -1.0 * mm).rate;
     EXPECT_NEAR(way, -p.width, 1e-18);  // m, rounding
@@ -50,7 +50,7 @@ TEST(BacklashCompensation, CrossesTheGapExactlyInWholePeriods) {
 
 TEST(BacklashCompensation, TurnsRoundWhenTheMotionDoes) {
   const BacklashCompensationParams p = heidenhain();
-  BacklashCompensationState s = standing_at(0.0);
+  BacklashCompensationState s = standing_at(p, 0.0);
   for (int k = 0; k < 30; ++k) backlash_compensation(p, s, -1.0 * mm);
   EXPECT_NEAR(s.offset, -p.width * 30 / 75, 1e-18);
   for (int k = 0; k < 29; ++k) EXPECT_GT(backlash_compensation(p, s, 0.0).rate, 0.0);
@@ -63,7 +63,7 @@ TEST(BacklashCompensation, TurnsRoundWhenTheMotionDoes) {
 TEST(BacklashCompensation, IgnoresNoiseWithinTheHysteresis) {
   const BacklashCompensationParams p = heidenhain();
   std::mt19937 dice(8);
-  BacklashCompensationState s = standing_at(0.1);
+  BacklashCompensationState s = standing_at(p, 0.1);
   for (int k = 0; k < 10000; ++k) {
     const double q = 0.1 + 9.9 * nm * (static_cast<double>(dice()) / 2147483648.0 - 1.0);
     ASSERT_EQ(backlash_compensation(p, s, q).rate, 0.0);
@@ -73,7 +73,7 @@ TEST(BacklashCompensation, IgnoresNoiseWithinTheHysteresis) {
 TEST(BacklashCompensation, ReversesBeyondTheHysteresisOnly) {
   const BacklashCompensationParams p = heidenhain();
   for (const double back : {19.9 * nm, 20.1 * nm}) {
-    BacklashCompensationState s = standing_at(0.0);
+    BacklashCompensationState s = standing_at(p, 0.0);
     backlash_compensation(p, s, 1.0 * um);
     EXPECT_EQ(backlash_compensation(p, s, 1.0 * um - back).rate<0.0, back> p.hysteresis);
   }
@@ -81,7 +81,7 @@ TEST(BacklashCompensation, ReversesBeyondTheHysteresisOnly) {
 
 TEST(BacklashCompensation, FindsASlowReversalToo) {
   const BacklashCompensationParams p = heidenhain();
-  BacklashCompensationState s = standing_at(0.0);
+  BacklashCompensationState s = standing_at(p, 0.0);
   int direction = 1;
   for (int k = 0; k < 100; ++k) {  // 1 nm per period
     backlash_compensation(p, s, -1.0 * nm * k);
@@ -94,9 +94,8 @@ TEST(BacklashCompensation, FindsASlowReversalToo) {
 }
 
 TEST(BacklashCompensation, OfNoWidthDoesNothing) {
-  BacklashCompensationParams p = heidenhain();
-  p.width = 0.0;
-  BacklashCompensationState s = standing_at(0.0);
+  const BacklashCompensationParams p;
+  BacklashCompensationState s = standing_at(p, 0.0);
   for (int k = 0; k < 100; ++k) {
     const BacklashRamp ramp = backlash_compensation(p, s, std::sin(0.1 * k));
     EXPECT_EQ(ramp.rate, 0.0);
@@ -117,7 +116,7 @@ SlideError to_and_fro(Loop loop, BacklashCompensationParams p) {
   c.kvf = 1.0;
   CascadeState s;
   double motor = -A, slide = -A;  // the positive flank carries
-  BacklashCompensationState state = standing_at(-A);
+  BacklashCompensationState state = standing_at(p, -A);
   SlideError e{0.0, 0.0};
   int count = 0;
   for (int k = 0; k * kTp < 5.0; ++k) {

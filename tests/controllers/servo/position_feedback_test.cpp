@@ -89,7 +89,7 @@ TEST(CrossoverFilter, DoesNotTouchATableValue) {
 
 TEST(CrossoverFilter, StandsStillAtTheStartAndGoesOverToTheScale) {
   const PositionFeedbackParams p = crossover_feedback(40.0, kTp);
-  PositionFeedbackState s = standing_at(0.1, 0.4);
+  PositionFeedbackState s = standing_at(p, 0.1, 0.4);
   for (int k = 0; k < 100; ++k) EXPECT_DOUBLE_EQ(position_feedback(p, s, 0.1, 0.4), 0.4);
   for (int k = 1; k <= 100; ++k) {  // a step of the scale alone arrives with 1 - exp(-2 pi f t)
     EXPECT_NEAR(position_feedback(p, s, 0.1, 0.5),
@@ -99,17 +99,17 @@ TEST(CrossoverFilter, StandsStillAtTheStartAndGoesOverToTheScale) {
 
 TEST(CrossoverFilter, FollowsTheMotorAtOnce) {
   const PositionFeedbackParams p = crossover_feedback(40.0, kTp);
-  PositionFeedbackState s = standing_at(0.0, 0.0);
+  PositionFeedbackState s = standing_at(p, 0.0, 0.0);
   EXPECT_NEAR(position_feedback(p, s, 1.0, 0.0), std::exp(-2.0 * kPi * 40.0 * kTp), 1e-15);
 }
 
 TEST(MotorFeedback, NeverLooksAtTheScaleAgain) {
-  PositionFeedbackState s = standing_at(0.1, 0.4);
+  PositionFeedbackState s = standing_at(motor_feedback(), 0.1, 0.4);
   EXPECT_EQ(position_feedback(motor_feedback(), s, 0.2, 17.0), 0.2 + (0.4 - 0.1));
 }
 
 TEST(ScaleFeedback, IsTheScaleBitForBit) {
-  PositionFeedbackState s = standing_at(0.1, 0.3);
+  PositionFeedbackState s = standing_at(scale_feedback(), 0.1, 0.3);
   EXPECT_EQ(position_feedback(scale_feedback(), s, 0.2, 1.0 / 3.0), 1.0 / 3.0);
 }
 
