@@ -5,7 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "controllers/servo/backlash_compensation.h"
 #include "controllers/servo/cascade.h"
+#include "controllers/servo/current_loop.h"
+#include "controllers/servo/friction_compensation.h"
+#include "controllers/servo/position_feedback.h"
+#include "controllers/servo/supervision.h"
 #include "plant/drives/feed_drive.h"
 #include "plant/kinematics/chain.h"
 #include "plant/sensing/encoder.h"
@@ -34,15 +39,24 @@ struct NominalFilter {
   Tick length = 0;
 };
 
+/// What the NC does for one axis beside its cascade.
+struct AxisFunctions {
+  controllers::CurrentLoopParams current_loop;  // of a drive with a winding
+  controllers::PositionFeedbackParams position_feedback;
+  controllers::FrictionCompensationParams friction;
+  controllers::BacklashCompensationParams backlash;
+  controllers::SupervisionParams supervision;
+};
+
 struct NcSettings {
   LoopPeriods periods;
   std::array<controllers::CascadeParams, kJoints> cascade;
+  std::array<AxisFunctions, kJoints> functions;
   Joints v_max = Joints::Zero(), a_max = Joints::Zero(), j_max = Joints::Zero();  // SI per joint
   Joints rapid = Joints::Zero();                                                  // m/s, rad/s
   Joints lower = Joints::Zero(), upper = Joints::Zero();                          // m, rad; travel
-  double path_tolerance = 10e-6;         // m, for G64 without P
-  double rotary_tolerance = 1e-4;        // rad
-  double following_error_limit = 10e-3;  // m or rad; beyond it the machine stops
+  double path_tolerance = 10e-6;   // m, for G64 without P
+  double rotary_tolerance = 1e-4;  // rad
   NominalFilter filter;
   std::array<Place, kJoints> gain_place;  // where Kv or the axis' own was written, for messages
   bool check_stability = true;            // refuse gains with which the linear loop diverges

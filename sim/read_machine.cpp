@@ -10,6 +10,7 @@
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
 #include "sim/read_drive.h"
+#include "sim/read_servo.h"
 
 namespace servomill::sim {
 namespace {
@@ -75,31 +76,6 @@ NominalFilter read_filter(Reader& nc, const LoopPeriods& periods) {
   return filter;
 }
 
-// What all axes have in common unless they say otherwise.
-controllers::CascadeParams read_common_cascade(Reader& nc) {
-  controllers::CascadeParams c;
-  c.Kv = nc.real("Kv", kRate, {above(0.0)});
-  c.kvf = nc.real_or("velocity_feed_forward", 1.0, kNumber, {at_least(0.0)});
-  c.kaf = nc.real_or("acceleration_feed_forward", 1.0, kNumber, {at_least(0.0)});
-  return c;
-}
-
-controllers::CascadeParams read_cascade(Reader& axis, const controllers::CascadeParams& common,
-                                        const plant::FeedDriveParams& p,
-                                        const LoopPeriods& periods) {
-  controllers::CascadeParams c = common;
-  c.Kv = axis.real_or("Kv", common.Kv, kRate, {above(0.0)});
-  c.J = p.J_total();
-  c.Kp = axis.real("velocity_bandwidth", kAngularVelocity, {above(0.0)}) * c.J;
-  const double Tn = axis.real_or("velocity_reset_time_ms", 0.0, kTime, {at_least(0.0)});
-  c.Ki = Tn > 0.0 ? c.Kp / Tn : 0.0;
-  c.r = p.r;
-  c.Kt = p.Kt;
-  c.i_max = p.i_max;
-  c.Tv = periods.seconds(periods.velocity);
-  return c;
-}
-
 // SI; far from any machine, and near enough that a path can be planned with them.
 constexpr double kLeastLimit = 1e-6, kMostLimit = 1e7;
 
@@ -123,12 +99,12 @@ void read_limits(Reader& axis, bool linear, int j, NcSettings& nc) {
   nc.upper[j] = travel[1];
 }
 
-void read_axis(Reader& axis, const controllers::CascadeParams& common, const Place& Kv_place,
+void read_axis(Reader& axis, const CommonServo& common, const Place& Kv_place,
                plant::FrictionKind friction_model, int j, MachineSettings& machine) {
   const auto lane = static_cast<std::size_t>(j);
   const bool linear = j < kLinearJoints;
   machine.drives[lane] = read_drive(axis, linear, friction_model);
-  machine.nc.cascade[lane] = read_cascade(axis, common, machine.drives[lane], machine.nc.periods);
+  read_servo(axis, common, j, machine);
   machine.scale[lane] = plant::Encoder::with_step(
       axis.real_or("scale_step", 0.0, quantities_of(linear).position, {at_least(0.0)}));
   machine.motor[lane] =
@@ -196,8 +172,6 @@ MachineSettings read_machine(Reader& table) {
   machine.nc.path_tolerance = nc.real_or("path_tolerance_um", 10 * um, kLength, {above(0.0)});
   machine.nc.rotary_tolerance =
       nc.real_or("rotary_tolerance_urad", 100 * urad, kAngle, {above(0.0)});
-  machine.nc.following_error_limit =
-      nc.real_or("following_error_limit_mm", 10 * mm, kLength, {above(0.0)});
   machine.nc.check_stability = nc.boolean_or("check_stability", true);
   const double delay =
       nc.real_or("scale_delay_us", 0.0, kTime, {at_least(0.0), at_most(kLongestPeriod)});
@@ -209,7 +183,7 @@ MachineSettings read_machine(Reader& table) {
   }
   machine.scale_delay = delay_ticks.value_or(0);
 
-  const controllers::CascadeParams common = read_common_cascade(nc);
+  const CommonServo common = read_common_servo(nc);
   const Place Kv_place = nc.place("Kv");
   const auto friction_model =
       static_cast<plant::FrictionKind>(table.choice_or("friction_model", 0, friction_models()));

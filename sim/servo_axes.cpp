@@ -36,13 +36,22 @@ ServoAxes::ServoAxes(const MachineSettings& machine, std::vector<int> joints,
 void ServoAxes::settle(const Joints& Q_true, const Eigen::Vector3d& displacement) {
   state_ = drives_.at_rest(Q_true);
   for (const int j : joints_) {
-    controllers::CascadeState& loop = loops_[lane(j)];
+    const plant::FeedDriveParams& drive = machine_.drives[lane(j)];
+    const AxisFunctions& functions = machine_.nc.functions[lane(j)];
+    const double i = state_.i[lane(j)], phi = motor_reading(j), u = drive.R * i;
+    const double d = j < kLinearJoints ? displacement[j] : 0.0;
+    Loop& loop = loops_[lane(j)];
     loop = {};
-    loop.phi = motor_reading(j);
-    loop.i_next = loop.i_cmd = input_.command[lane(j)] = state_.i[lane(j)];
-    loop.integral = state_.i[lane(j)] * machine_.nc.cascade[lane(j)].Kt;
+    loop.cascade = controllers::standing_at(machine_.nc.cascade[lane(j)], phi, i);
+    loop.current = {u, u};
+    input_.command[lane(j)] = drive.has_winding() ? u : i;
+    loop.feedback = controllers::standing_at(functions.position_feedback, drive.r * phi,
+                                             machine_.scale[lane(j)].read(state_.x[lane(j)]) + d);
+    take_reading(j, d);
+    loop.backlash = controllers::standing_at(functions.backlash, Q_read_[j]);
+    loop.supervision = controllers::standing_at(
+        functions.supervision, {Q_read_[j], 0.0, Q_read_[j], loop.y_motor, loop.y_scale});
   }
-  take_reading(displacement);
 }
 
 double ServoAxes::motor_reading(int joint) const {
@@ -55,29 +64,70 @@ Joints ServoAxes::scale_reading() const {
   return Q;
 }
 
+void ServoAxes::take_reading(int joint, double displacement) {
+  Loop& loop = loops_[lane(joint)];
+  loop.y_scale = machine_.scale[lane(joint)].read(state_.x[lane(joint)]) + displacement;
+  loop.y_motor = machine_.drives[lane(joint)].r * motor_reading(joint);
+  Q_read_[joint] =
+      controllers::position_feedback(machine_.nc.functions[lane(joint)].position_feedback,
+                                     loop.feedback, loop.y_motor, loop.y_scale);
+}
+
 void ServoAxes::take_reading(const Eigen::Vector3d& displacement) {
-  Q_read_ = scale_reading();
-  Q_read_.head<3>() += displacement;
+  for (const int j : joints_) take_reading(j, j < kLinearJoints ? displacement[j] : 0.0);
 }
 
 void ServoAxes::run_position_loops(const AxisSetPoint& set) {
   for (const int j : joints_) {
-    controllers::position_loop(machine_.nc.cascade[lane(j)], loops_[lane(j)], set.Q_cmd[j],
-                               Q_read_[j], set.dQ_ff[j], set.ddQ_ff[j]);
+    const AxisFunctions& functions = machine_.nc.functions[lane(j)];
+    Loop& loop = loops_[lane(j)];
+    double q_cmd = set.Q_cmd[j], v_add = 0.0;
+    if (functions.backlash.width != 0.0) {
+      const auto ramp =
+          controllers::backlash_compensation(functions.backlash, loop.backlash, set.Q_cmd[j]);
+      // only the motor cannot see the gap; the other loops gain the time
+      const bool unseen = functions.position_feedback.kind == controllers::PositionFeedback::motor;
+      (unseen ? q_cmd : v_add) += unseen ? ramp.offset : ramp.rate;
+    }
+    loop.dq_ff = set.dQ_ff[j];
+    controllers::position_loop(machine_.nc.cascade[lane(j)], loop.cascade, q_cmd, Q_read_[j],
+                               set.dQ_ff[j], set.ddQ_ff[j], v_add);
   }
 }
 
 void ServoAxes::run_current_loops() {
   for (const int j : joints_) {
-    controllers::latch_current_command(loops_[lane(j)]);
-    input_.command[lane(j)] = loops_[lane(j)].i_cmd;
+    Loop& loop = loops_[lane(j)];
+    controllers::latch_current_command(loop.cascade);
+    if (machine_.drives[lane(j)].has_winding()) {
+      controllers::current_loop(machine_.nc.functions[lane(j)].current_loop, loop.current,
+                                loop.cascade.i_cmd, state_.i[lane(j)]);
+      input_.command[lane(j)] = loop.current.u;
+    } else {
+      input_.command[lane(j)] = loop.cascade.i_cmd;
+    }
   }
 }
 
 void ServoAxes::run_velocity_loops() {
   for (const int j : joints_) {
-    controllers::velocity_loop(machine_.nc.cascade[lane(j)], loops_[lane(j)], motor_reading(j));
+    const controllers::CascadeParams& cascade = machine_.nc.cascade[lane(j)];
+    const auto& friction = machine_.nc.functions[lane(j)].friction;
+    Loop& loop = loops_[lane(j)];
+    double tau = 0.0;
+    if (friction.compensates()) {  // in lag mode the axis reverses with its speed command
+      tau = controllers::friction_compensation(friction, loop.friction,
+                                               cascade.kvf > 0.0 ? loop.dq_ff : loop.cascade.v_cmd);
+    }
+    controllers::velocity_loop(cascade, loop.cascade, motor_reading(j), tau);
   }
+}
+
+std::optional<controllers::AxisFault> ServoAxes::supervise(int joint, const AxisSetPoint& set) {
+  Loop& loop = loops_[lane(joint)];
+  return controllers::supervise(
+      machine_.nc.functions[lane(joint)].supervision, loop.supervision,
+      {set.Q_cmd[joint], set.dQ_ff[joint], Q_read_[joint], loop.y_motor, loop.y_scale});
 }
 
 }  // namespace servomill::sim

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
-#include "controllers/servo/cascade.h"
 #include "plant/drives/drive_bank.h"
 #include "sim/machine.h"
 #include "sim/schedule.h"
@@ -62,6 +62,9 @@ class ServoAxes {
   Joints current() const { return lanes(state_.i); }
   const std::vector<int>& joints() const { return joints_; }
 
+  /// What the NC's supervision says of a joint in this position period.
+  std::optional<controllers::AxisFault> supervise(int joint, const AxisSetPoint& set);
+
   /// Force against the slide of a joint from now on (N, N m).
   void set_force(int joint, double F) { input_.F[lane(joint)] = F; }
 
@@ -75,14 +78,27 @@ class ServoAxes {
   static Joints lanes(const plant::DriveState::Lanes& values) {
     return Eigen::Map<const Joints>(values.data());
   }
+  // State of the NC's functions of one axis.
+  struct Loop {
+    controllers::CascadeState cascade;
+    controllers::CurrentLoopState current;
+    controllers::PositionFeedbackState feedback;
+    controllers::FrictionCompensationState friction;
+    controllers::BacklashCompensationState backlash;
+    controllers::SupervisionState supervision;
+    double y_motor = 0.0, y_scale = 0.0;  // m or rad, read last for the position loop
+    double dq_ff = 0.0;                   // m/s or rad/s, fed forward in this position period
+  };
+
   double motor_reading(int joint) const;
+  void take_reading(int joint, double displacement);
 
   const MachineSettings& machine_;
   std::vector<int> joints_;
   plant::DriveBank drives_;
   plant::DriveState state_;
   plant::DriveInput input_;
-  std::array<controllers::CascadeState, kJoints> loops_;
+  std::array<Loop, kJoints> loops_;
   Joints Q_read_ = Joints::Zero();
 };
 
@@ -91,7 +107,9 @@ void ServoAxes::each_state(int joint, Visit visit) {
   const std::size_t j = lane(joint);
   const plant::FeedDriveParams& drive = machine_.drives[j];
   const controllers::CascadeParams& cascade = machine_.nc.cascade[j];
-  controllers::CascadeState& loop = loops_[j];
+  const AxisFunctions& functions = machine_.nc.functions[j];
+  Loop& loop = loops_[j];
+  // the drive
   if (drive.has_winding() || drive.T_i > 0.0) visit(state_.i[j]);
   if (!drive.is_rigid()) {
     visit(state_.w[j]);
@@ -99,11 +117,17 @@ void ServoAxes::each_state(int joint, Visit visit) {
   }
   visit(state_.v[j]);
   visit(state_.x[j]);
-  visit(loop.v_cmd);
-  if (cascade.Ki > 0.0) visit(loop.integral);
-  visit(loop.phi);
-  visit(loop.i_next);
   visit(input_.command[j]);
+  // the loops
+  visit(loop.cascade.v_cmd);
+  if (cascade.Ki > 0.0) visit(loop.cascade.integral);
+  visit(loop.cascade.phi);
+  visit(loop.cascade.i_next);
+  for (std::size_t n = 0; n < 2 * cascade.filters.count; ++n) visit(loop.cascade.filters.z[n]);
+  if (drive.has_winding() && functions.current_loop.Ki > 0.0) visit(loop.current.integral);
+  if (functions.position_feedback.kind == controllers::PositionFeedback::crossover) {
+    visit(loop.feedback.difference);
+  }
   visit(Q_read_[joint]);
 }
 

@@ -1,7 +1,6 @@
 #include "sim/stability.h"
 
 #include <Eigen/Eigenvalues>
-#include <limits>
 #include <vector>
 
 #include "sim/servo_axes.h"
@@ -17,7 +16,12 @@ MachineSettings linearised(const MachineSettings& machine) {
     drive.friction = {};
     drive.cogging = {};
     linear.scale[j] = linear.motor[j] = {};
-    linear.nc.cascade[j].i_max = std::numeric_limits<double>::infinity();
+    linear.nc.cascade[j] = controllers::without_limits(linear.nc.cascade[j]);
+    AxisFunctions& functions = linear.nc.functions[j];
+    functions.current_loop.u_max = controllers::kNoLimit;
+    functions.friction = {};
+    functions.backlash = {};
+    functions.supervision = {};
   }
   return linear;
 }

@@ -15,6 +15,8 @@ struct FrictionCompensationParams {
   double spike_time = kNoLimit;  // s, the spike falls to 1/e within it
   double spike_distance = kNoLimit;  // m, the same over the way; with tau_spike one of both is set
   double Tv = 0.0;                   // s, velocity period
+
+  bool compensates() const { return tau_plus > 0.0 || tau_minus > 0.0 || tau_spike > 0.0; }
 };
 
 struct FrictionCompensationState {

@@ -19,13 +19,13 @@ std::optional<AxisFault> supervise(const SupervisionParams& p, SupervisionState&
       s.standing > 0 && static_cast<double>(s.standing - 1) * p.Tp >= p.standstill_delay;
 
   if (beyond(error, p.following_error)) {
-    return AxisFault{Fault::following_error, error, p.following_error};
+    return AxisFault{AxisFaultKind::following_error, error, p.following_error};
   }
   if (settled && beyond(error, p.standstill)) {
-    return AxisFault{Fault::standstill, error, p.standstill};
+    return AxisFault{AxisFaultKind::standstill, error, p.standstill};
   }
   if (beyond(difference, p.encoder_difference)) {
-    return AxisFault{Fault::encoder_difference, difference, p.encoder_difference};
+    return AxisFault{AxisFaultKind::encoder_difference, difference, p.encoder_difference};
   }
   return std::nullopt;
 }

@@ -33,10 +33,10 @@ struct AxisReading {
   double y_scale = 0.0;
 };
 
-enum class Fault : std::uint8_t { following_error, standstill, encoder_difference };
+enum class AxisFaultKind : std::uint8_t { following_error, standstill, encoder_difference };
 
 struct AxisFault {
-  Fault fault;
+  AxisFaultKind fault;
   double value;  // m or rad, with its sign; NaN if the reading is no number
   double limit;  // m or rad
   bool operator==(const AxisFault&) const = default;

@@ -34,7 +34,7 @@ TEST(Supervision, KeepsAFollowingErrorThatIsJustReached) {
     EXPECT_EQ(supervise(p, s, reading(sign * 0.5, 1.0, 0.0)), std::nullopt);
     const double beyond = sign * std::nextafter(0.5, 1.0);
     EXPECT_EQ(supervise(p, s, reading(beyond, 1.0, 0.0)),
-              (AxisFault{Fault::following_error, beyond, 0.5}));
+              (AxisFault{AxisFaultKind::following_error, beyond, 0.5}));
   }
 }
 
@@ -42,7 +42,7 @@ TEST(Supervision, StopsOnAReadingThatIsNoNumber) {
   SupervisionState s;
   const auto fault = supervise(following(1.0), s, reading(0.0, 1.0, kNaN));
   ASSERT_TRUE(fault.has_value());
-  EXPECT_EQ(fault->fault, Fault::following_error);
+  EXPECT_EQ(fault->fault, AxisFaultKind::following_error);
   EXPECT_TRUE(std::isnan(fault->value));
 }
 
@@ -56,7 +56,8 @@ TEST(Supervision, WatchesStandstillAfterItsDelayOnly) {
   for (int k = 0; k < 5; ++k) {
     EXPECT_EQ(supervise(p, s, reading(0.0, 0.0, y)), std::nullopt) << "period " << k;
   }
-  EXPECT_EQ(supervise(p, s, reading(0.0, 0.0, y)), (AxisFault{Fault::standstill, 6 * um, 5 * um}));
+  EXPECT_EQ(supervise(p, s, reading(0.0, 0.0, y)),
+            (AxisFault{AxisFaultKind::standstill, 6 * um, 5 * um}));
   EXPECT_EQ(supervise(p, s, reading(0.0, 0.0, -4 * um)), std::nullopt);
 }
 
@@ -79,7 +80,7 @@ TEST(Supervision, CountsTheEncoderDifferenceFromTheStart) {
   now.y_scale = 0.3 + 101 * um;
   const auto fault = supervise(p, s, now);
   ASSERT_TRUE(fault.has_value());
-  EXPECT_EQ(fault->fault, Fault::encoder_difference);
+  EXPECT_EQ(fault->fault, AxisFaultKind::encoder_difference);
   EXPECT_NEAR(fault->value, 101 * um, 1e-16);  // m, rounding at 0.3 m
   EXPECT_EQ(fault->limit, 100 * um);
 }
@@ -89,11 +90,11 @@ TEST(Supervision, NamesTheFollowingErrorFirst) {
   p.standstill = 1 * um;
   p.encoder_difference = 1 * um;
   SupervisionState s;
-  EXPECT_EQ(supervise(p, s, {0.0, 0.0, 1.0, 1.0, 2.0})->fault, Fault::following_error);
+  EXPECT_EQ(supervise(p, s, {0.0, 0.0, 1.0, 1.0, 2.0})->fault, AxisFaultKind::following_error);
   p.following_error = kNoLimit;
-  EXPECT_EQ(supervise(p, s, {0.0, 0.0, 1.0, 1.0, 2.0})->fault, Fault::standstill);
+  EXPECT_EQ(supervise(p, s, {0.0, 0.0, 1.0, 1.0, 2.0})->fault, AxisFaultKind::standstill);
   p.standstill = kNoLimit;
-  EXPECT_EQ(supervise(p, s, {0.0, 0.0, 1.0, 1.0, 2.0})->fault, Fault::encoder_difference);
+  EXPECT_EQ(supervise(p, s, {0.0, 0.0, 1.0, 1.0, 2.0})->fault, AxisFaultKind::encoder_difference);
 }
 
 }  // namespace
