@@ -38,7 +38,8 @@ struct PeriodHarmonic {
 ///
 /// The +-1 % of a period that makers state (0.2 um at 20 um) are of the position, not of a signal:
 /// an offset of 6.3 %, or `harmonic` directly. The constant part of the error is left out, as it
-/// belongs to the datum that homing finds.
+/// belongs to the datum that homing finds. Errors longer than a period (graduation, eccentricity of
+/// a rotary encoder) belong to the geometry of the axis: EXX, ECC.
 struct EncoderParams {
   double period = 0.0;         // m or rad, of the signal; 0: unknown, no errors within it
   double step = 0.0;           // m or rad, measuring step: period / subdivision; 0: no quantising
@@ -65,8 +66,7 @@ std::vector<std::string> implausible(const EncoderParams& params);
 /// 1. read(x) = q round((x + period_error(x)) / q); q = step, without the rounding if q = 0.
 /// 2. period_error(x + period) = period_error(x), and its mean over a period is 0.
 /// 3. |reading before rounding - x| < period / 2 without noise: the counter never loses a period.
-/// (A real one
-///    does when the signals come too fast: see too_fast.)
+///    (A real one does when the signals come too fast: see too_fast.)
 /// 4. read(x, n) with noise is a function of x, n and the key: it does not matter who reads when.
 class Encoder {
  public:

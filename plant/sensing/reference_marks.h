@@ -16,7 +16,7 @@ namespace servomill::plant {
 ///       |-- N/2 + i + 1 --|-- N/2 - (i + 1) --|          in signal periods
 ///
 /// so that every distance between neighbours occurs once. N = 1000, 20 um: LS 486C, marks every
-/// 10 mm more or less, and two of them are met within 20 mm of travel.
+/// 10 mm more or less, and two of them are met within 20.02 mm of travel.
 struct MarkParams {
   double period = 0.0;  // m or rad, of the signal
   int N = 1000;         // signal periods between fixed marks, even

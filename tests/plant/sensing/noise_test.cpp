@@ -13,7 +13,7 @@ namespace {
 
 using Words = std::array<std::uint32_t, 4>;
 
-constexpr int kCount = 500000;   // ticks
+constexpr int kCount = 200000;   // ticks
 constexpr double kSigmas = 5.0;  // of the estimate: one correct seed in 1.7 million fails
 constexpr NoiseKey kKey = {2024, 3};
 

@@ -47,7 +47,7 @@ TEST(ReferenceMarks, HaveEveryDistanceOnce) {
   EXPECT_EQ(distances.size(), 100u);
 }
 
-// H1 p. 607: the position is known after at most 20 mm.
+// The maker's "position known after at most 20 mm", to a period.
 TEST(ReferenceMarks, AreTwoWithinTheNominalIncrement) {
   const ReferenceMarks marks = metre();
   for (int m = 0; m + 2 <= 100; ++m) {
