@@ -47,6 +47,7 @@ void DriveState::set_lane(std::size_t j, const LaneState& s) {
   z[j] = s.z;
   slide[j] = s.slide;
   contact[j] = s.contact;
+  control[j] = s.control;
 }
 
 Eigen::Matrix<double, 5, 7> drive_equations(const FeedDriveParams& p, bool sticking, bool gap) {
@@ -83,9 +84,30 @@ double contact_offset(const FeedDriveParams& p, ContactMode contact) {
   return 0.0;
 }
 
+double flank_force(const FeedDriveParams& p, const LaneState& s, ContactMode flank) {
+  return p.k * (s.delta - contact_offset(p, flank)) + p.c * (p.r * s.w - s.v);
+}
+
 double screw_force(const FeedDriveParams& p, const LaneState& s) {
   if (p.is_rigid() || s.contact == ContactMode::gap) return 0.0;
-  return p.k * (s.delta - contact_offset(p, s.contact)) + p.c * (p.r * s.w - s.v);
+  return flank_force(p, s, s.contact);
+}
+
+ContactMode contact_after(const FeedDriveParams& p, const LaneState& s) {
+  const auto pushes = [&](ContactMode flank, double away) {
+    return away * flank_force(p, s, flank) > 0.0;
+  };
+  switch (s.contact) {
+    case ContactMode::positive:
+      return pushes(s.contact, 1.0) ? s.contact : ContactMode::gap;
+    case ContactMode::negative:
+      return pushes(s.contact, -1.0) ? s.contact : ContactMode::gap;
+    case ContactMode::gap:
+      break;
+  }
+  if (s.delta >= 0.5 * p.gap && pushes(ContactMode::positive, 1.0)) return ContactMode::positive;
+  if (s.delta <= -0.5 * p.gap && pushes(ContactMode::negative, -1.0)) return ContactMode::negative;
+  return ContactMode::gap;
 }
 
 double driving_force(const FeedDriveParams& p, const LaneState& s, double F) {
@@ -139,6 +161,8 @@ std::vector<std::string> implausible(const FeedDriveParams& p) {
   demand(f.kind != FrictionKind::regularised || f.v0 > 0.0, "v0 must be > 0");
   demand(f.kind != FrictionKind::lugre || f.sigma0 > 0.0, "sigma0 must be > 0");
   demand(f.kind != FrictionKind::lugre || f.sigma1 >= 0.0, "sigma1 must be >= 0");
+  demand(f.kind != FrictionKind::lugre || (f.Fc_positive > 0.0 && f.Fc_negative > 0.0),
+         "Fc must be > 0 (LuGre)");
   return faults;
 }
 

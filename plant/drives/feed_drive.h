@@ -72,6 +72,12 @@ enum class SlideMode : std::uint8_t { sticking, positive, negative };
 /// Which flank of the screw carries; without backlash always `positive`.
 enum class ContactMode : std::uint8_t { positive, gap, negative };
 
+/// What the exact step (exact_step.h) keeps between two calls: nothing of the drive itself.
+struct StepControl {
+  int halvings = 0;              // how far below the longest the last sub-step was, a first guess
+  std::uint32_t unresolved = 0;  // sub-steps that missed their tolerance at the finest length
+};
+
 /// State of one drive.
 struct LaneState {
   double i = 0.0;      // A, torque-forming current
@@ -82,6 +88,7 @@ struct LaneState {
   double z = 0.0;      // m, bristle deflection (LuGre)
   SlideMode slide = SlideMode::sticking;        // counts with set-valued friction only
   ContactMode contact = ContactMode::positive;  // counts with backlash only
+  StepControl control;
 };
 
 /// State of the drives of one machine: structure of arrays, one lane per joint.
@@ -93,9 +100,10 @@ struct DriveState {
   Lanes z{};       // m
   std::array<SlideMode, kJoints> slide{};
   std::array<ContactMode, kJoints> contact{};
+  std::array<StepControl, kJoints> control{};
 
   LaneState lane(std::size_t j) const {
-    return {i[j], w[j], delta[j], v[j], x[j], z[j], slide[j], contact[j]};
+    return {i[j], w[j], delta[j], v[j], x[j], z[j], slide[j], contact[j], control[j]};
   }
   void set_lane(std::size_t j, const LaneState& s);
 };
@@ -120,6 +128,16 @@ double contact_offset(const FeedDriveParams& params, ContactMode contact);
 /// Force of the screw on the slide (N): k (delta - offset) + c d(delta)/dt in contact, else 0. The
 /// flanks push and never pull: contact ends where this changes sign.
 double screw_force(const FeedDriveParams& params, const LaneState& state);
+
+/// Force with which one flank would push the slide if screw and slide touched there (N), positive
+/// towards +x: contact holds while it points away from the flank.
+double flank_force(const FeedDriveParams& params, const LaneState& state, ContactMode flank);
+
+/// Contact in which this state goes on: a flank that would have to pull lets go; from the gap a
+/// flank takes hold once its spring is compressed (beyond gap/2) and it would push. A spring that
+/// was still compressed when its damper made the flank let go relaxes by itself, so that delta may
+/// lie outside the gap for a while.
+ContactMode contact_after(const FeedDriveParams& params, const LaneState& state);
 
 /// Sum of the forces on the slide but for set-valued, regularised or LuGre friction (N): what a
 /// sticking slide must bear. Viscous friction included; of a rigid drive the motor's force, too.

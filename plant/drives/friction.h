@@ -26,18 +26,39 @@ struct FrictionParams {
   double sigma1 = 0.0;                          // N s/m, their damping
 };
 
-/// Magnitude of the friction force when sliding in one direction (N), a smooth and even function of
-/// v: g(v) = Fc + (Fs - Fc) exp(-(v / vs)^2).
-inline double sliding_force(const FrictionParams& p, bool positive, double v) {
+/// Beyond this many vs the Stribeck term is below the last bit of Fc, beyond this many v0 tanh
+/// is 1.
+inline constexpr double kStribeckEnd = 6.5, kTanhEnd = 20.0;
+
+/// A force (N) and its derivative by speed (N s/m).
+struct ForceSlope {
+  double value, slope;
+};
+
+/// Magnitude of the friction force when sliding in one direction, a smooth and even function of v:
+/// g(v) = Fc + (Fs - Fc) exp(-(v / vs)^2).
+inline ForceSlope sliding(const FrictionParams& p, bool positive, double v) {
   const double Fc = positive ? p.Fc_positive : p.Fc_negative;
   const double Fs = positive ? p.Fs_positive : p.Fs_negative;
   const double q = v / p.vs;
-  return Fc + (Fs - Fc) * std::exp(-q * q);
+  if (std::abs(q) > kStribeckEnd) return {Fc, 0.0};
+  const double bump = (Fs - Fc) * std::exp(-q * q);
+  return {Fc + bump, -2.0 * q / p.vs * bump};
+}
+inline double sliding_force(const FrictionParams& p, bool positive, double v) {
+  return sliding(p, positive, v).value;
 }
 
-/// Regularised friction (N), against +v.
+/// Regularised friction g(v) tanh(v / v0), against +v.
+inline ForceSlope regularised(const FrictionParams& p, double v) {
+  const ForceSlope g = sliding(p, v >= 0.0, v);
+  const double q = v / p.v0;
+  if (std::abs(q) > kTanhEnd) return {std::copysign(g.value, v), std::copysign(g.slope, v)};
+  const double T = std::tanh(q);
+  return {g.value * T, g.slope * T + g.value * (1.0 - T * T) / p.v0};
+}
 inline double regularised_force(const FrictionParams& p, double v) {
-  return sliding_force(p, v >= 0.0, v) * std::tanh(v / p.v0);
+  return regularised(p, v).value;
 }
 
 /// LuGre: dz/dt = v - sigma0 |v| z / g(v) (m/s). Canudas de Wit et al. 1995, equations (2) to (4).

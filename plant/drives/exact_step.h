@@ -1,0 +1,103 @@
+/// One feed drive with friction, backlash or cogging, moved exactly but for a scalar force.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "plant/drives/feed_drive.h"
+#include "plant/vocabulary/ticks.h"
+
+namespace servomill::plant {
+
+/// How finely the force against a slide is resolved.
+struct Resolution {
+  /// m: what one sub-step may add to the error of the position. Infinite: no error control.
+  double tolerance = 2e-13;
+  /// s: no sub-step is longer
+  double longest = std::numeric_limits<double>::infinity();
+};
+
+/// Propagator of one drive that is not linear.
+///
+/// Between two events a drive is linear but for the force f against its slide (load, friction,
+/// cogging). Over a sub-step of length h the force is a parabola through its values at 0, h/2, h,
+///   y(t) = e^{At} y(0) + int_0^t e^{A(t-s)} (b u + b_F f(s)) ds,
+/// exact for that f, and f = F(v, x, z) is demanded at the three nodes (collocation, Lobatto IIIA,
+/// order 4, A-stable: no stiffness of friction makes it unstable). The matrices are prepared for a
+/// ladder of lengths base_period 2^n. A sub-step is halved until
+///   1. the defect of the parabola at h/4 and 3h/4 moves the slide by less than the tolerance,
+///   2. nothing happens in it: the slide does not stop or break away (set-valued friction), no
+///      flank takes hold or lets go (backlash).
+/// In the finest sub-step the event is located by a secant and the drive goes on in its new mode.
+/// Every event consumes at least that length, so that bouncing without end ends.
+class ExactStep {
+ public:
+  /// @param base_period   s
+  /// @param longest_step  ticks, the longest that `advance` will be asked for
+  /// @pre unrepresentable(params, base_period) is empty
+  ExactStep(const FeedDriveParams& params, double base_period, Tick longest_step,
+            const Resolution& resolution = {});
+
+  /// Moves the state by `step` ticks under a constant command (A, V) and force F against the slide
+  /// (N, beside F_load). A sub-step that misses its tolerance at the finest length is counted in
+  /// state.control.unresolved.
+  void advance(LaneState& state, double command, double F, Tick step) const;
+
+  /// Speed (m/s) beyond which friction is constant to the last bit; infinite with cogging.
+  double gliding_speed() const { return gliding_speed_; }
+  /// Whether the force against the slide is constant as long as the speed stays beyond
+  /// gliding_speed(): bristles settled, and no backlash whose flanks could let go.
+  bool glides(const LaneState& state) const;
+  /// Friction against the slide (N).
+  double friction_force(const LaneState& state) const;
+
+ private:
+  static constexpr std::size_t kStates = 5, kNodes = 4, kColumns = 8;
+  using Rows = std::array<double, kStates * kNodes>;
+  // Columns i, w, delta, v, command, f(0), f(h/2), f(h); rows: the states at h/4, h/2, 3h/4, h,
+  // the position as an increment.
+  using Propagator = std::array<Rows, kColumns>;
+  using Equations = Eigen::Matrix<double, kStates, kStates + 2>;
+  // A linear mode with its propagators for the lengths finest_ 2^n.
+  struct Linear {
+    Equations A;
+    std::vector<Propagator> ladder;
+  };
+  struct Trial {
+    std::array<LaneState, kNodes> at;  // h/4, h/2, 3h/4, h
+    double error = 0.0;                // m; infinite if the collocation was not solved
+    bool event = false;
+  };
+  struct Forces;
+
+  void prepare(bool sticking, bool gap, int coarsest);
+  bool sticks(const LaneState& s) const;
+  const Linear& linear_of(const LaneState& s) const;
+  double force(const LaneState& s, double F) const;
+  Forces forces_at(const LaneState& s, double F, double h, const std::array<double, 2>& v,
+                   const std::array<double, 2>& x) const;
+  bool happens(const LaneState& s, double F) const;
+  void from_rest(LaneState& s, double F) const;
+  Trial attempt(const LaneState& s, double command, double F, std::size_t level) const;
+  bool collocate(const LaneState& s, double F, double h, const Propagator& P, Rows& y,
+                 Trial& trial) const;
+  double error_of(const LaneState& s, double F, double h, const Trial& trial) const;
+  LaneState coast(const LaneState& s, double command, double F, double dt) const;
+  void cross(LaneState& s, double command, double F) const;
+
+  FeedDriveParams params_;
+  Resolution resolution_;
+  double finest_ = 0.0;  // s
+  int sub_ticks_ = 0;    // the finest sub-step is 2^-sub_ticks_ base periods
+  double gliding_speed_ = 0.0;
+  std::array<int, 4> linear_index_{};  // by 2 gap + sticking
+  std::vector<Linear> linear_;
+};
+
+/// Why the exact step cannot represent these parameters, each as a rule with the figures; empty for
+/// a set that it can. Values that no drive can have are the business of implausible().
+std::vector<std::string> unrepresentable(const FeedDriveParams& params, double base_period);
+
+}  // namespace servomill::plant
