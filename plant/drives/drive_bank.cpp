@@ -8,6 +8,8 @@
 namespace servomill::plant {
 namespace {
 
+constexpr int kVelocity = 3;  // row of v
+
 using Matrix7l = Eigen::Matrix<long double, 7, 7>;
 
 // [A B; 0 0] h -> exp: the first rows hold exp(A h) and the integral that multiplies the input.
@@ -37,8 +39,10 @@ DriveBank::DriveBank(const std::array<FeedDriveParams, kJoints>& params,
     inverse_r_[j] = 1.0 / params_[j].r;
     F_load_[j] = params_[j].F_load;
   }
+  Tick longest = 1;
   for (const Tick step : steps) {
     assert(step > 0);
+    longest = std::max(longest, step);
     const auto index = static_cast<std::size_t>(step);
     if (index >= matrix_of_step_.size()) matrix_of_step_.resize(index + 1, -1);
     if (matrix_of_step_[index] >= 0) continue;
@@ -46,36 +50,75 @@ DriveBank::DriveBank(const std::array<FeedDriveParams, kJoints>& params,
     StepMatrix& matrix = matrices_.emplace_back();
     for (std::size_t j = 0; j < kJoints; ++j) {
       if (!present_[j]) continue;
-      const auto E = hold_matrix(params_[j], static_cast<double>(step) * base_period);
+      const double h = static_cast<double>(step) * base_period;
+      const auto E = hold_matrix(params_[j], h);
       for (std::size_t row = 0; row < kStates; ++row) {
         for (std::size_t col = 0; col < kColumns; ++col) {
           matrix.coefficient[row * kColumns + col][j] =
               E(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(col));
         }
       }
+      if (params_[j].is_linear()) continue;
+      const auto middle = hold_matrix(params_[j], 0.5 * h);
+      for (std::size_t col = 0; col < kColumns; ++col) {
+        matrix.middle[col][j] = middle(kVelocity, static_cast<Eigen::Index>(col));
+      }
     }
   }
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    if (!present_[j] || params_[j].is_linear()) continue;
+    nonlinear_.push_back({j, ExactStep(params_[j], base_period, longest)});
+  }
+}
+
+DriveState::Lanes DriveBank::product(const DriveState::Lanes* row, const Columns& in) {
+  DriveState::Lanes sum{};
+  for (std::size_t col = 0; col < kColumns; ++col) {
+    const DriveState::Lanes& a = row[col];
+    const DriveState::Lanes& u = *in[col];
+    for (std::size_t j = 0; j < kJoints; ++j) sum[j] += a[j] * u[j];
+  }
+  return sum;
 }
 
 void DriveBank::advance(DriveState& s, const DriveInput& input, Tick step) const {
   assert(static_cast<std::size_t>(step) < matrix_of_step_.size());
   const int index = matrix_of_step_[static_cast<std::size_t>(step)];
   assert(index >= 0);
-  const auto& c = matrices_[static_cast<std::size_t>(index)].coefficient;
+  const StepMatrix& matrix = matrices_[static_cast<std::size_t>(index)];
   DriveState::Lanes force;
   for (std::size_t j = 0; j < kJoints; ++j) force[j] = input.F[j] + F_load_[j];
+  std::array<bool, kJoints> glides{};
+  for (const auto& [j, exact] : nonlinear_) {
+    const LaneState lane = s.lane(j);
+    glides[j] = exact.glides(lane);
+    if (glides[j]) force[j] += exact.friction_force(lane);
+  }
 
-  const std::array<const DriveState::Lanes*, kColumns> in = {&s.i, &s.w,           &s.delta, &s.v,
-                                                             &s.x, &input.command, &force};
+  const Columns in = {&s.i, &s.w, &s.delta, &s.v, &s.x, &input.command, &force};
   std::array<DriveState::Lanes, kStates> out;
   for (std::size_t row = 0; row < kStates; ++row) {
-    DriveState::Lanes sum{};
-    for (std::size_t col = 0; col < kColumns; ++col) {
-      const DriveState::Lanes& a = c[row * kColumns + col];
-      const DriveState::Lanes& u = *in[col];
-      for (std::size_t j = 0; j < kJoints; ++j) sum[j] += a[j] * u[j];
+    out[row] = product(&matrix.coefficient[row * kColumns], in);
+  }
+  if (!nonlinear_.empty()) {
+    // A joint that left its zone of constant friction, or never was in it, is moved by itself.
+    const DriveState::Lanes middle = product(matrix.middle.data(), in);
+    for (const auto& [j, exact] : nonlinear_) {
+      const double direction = s.v[j] > 0.0 ? 1.0 : -1.0;
+      const double slowest = std::min(direction * middle[j], direction * out[kVelocity][j]);
+      if (glides[j] && slowest > exact.gliding_speed()) {
+        s.slide[j] = s.v[j] > 0.0 ? SlideMode::positive : SlideMode::negative;
+        continue;
+      }
+      LaneState lane = s.lane(j);
+      exact.advance(lane, input.command[j], input.F[j], step);
+      out[0][j] = lane.i;
+      out[1][j] = lane.w;
+      out[2][j] = lane.delta;
+      out[3][j] = lane.v;
+      out[4][j] = lane.x;
+      s.set_lane(j, lane);
     }
-    out[row] = sum;
   }
   s.i = out[0];
   s.w = out[1];

@@ -1,12 +1,14 @@
 #include "plant/drives/exact_step.h"
 
+#include <fmt/format.h>
+
+#include <Eigen/LU>
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
 
-#include <fmt/format.h>
 
 namespace servomill::plant {
 namespace {

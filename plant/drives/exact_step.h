@@ -14,7 +14,7 @@ namespace servomill::plant {
 /// How finely the force against a slide is resolved.
 struct Resolution {
   /// m: what one sub-step may add to the error of the position. Infinite: no error control.
-  double tolerance = 2e-13;
+  double tolerance = 2e-12;
   /// s: no sub-step is longer
   double longest = std::numeric_limits<double>::infinity();
 };
