@@ -88,7 +88,7 @@ struct LaneState {
   double z = 0.0;      // m, bristle deflection (LuGre)
   SlideMode slide = SlideMode::sticking;        // counts with set-valued friction only
   ContactMode contact = ContactMode::positive;  // counts with backlash only
-  StepControl control;
+  StepControl control{};
 };
 
 /// State of the drives of one machine: structure of arrays, one lane per joint.

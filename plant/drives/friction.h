@@ -53,7 +53,7 @@ inline double sliding_force(const FrictionParams& p, bool positive, double v) {
 inline ForceSlope regularised(const FrictionParams& p, double v) {
   const ForceSlope g = sliding(p, v >= 0.0, v);
   const double q = v / p.v0;
-  if (std::abs(q) > kTanhEnd) return {std::copysign(g.value, v), std::copysign(g.slope, v)};
+  if (std::abs(q) > kTanhEnd) return q > 0.0 ? g : ForceSlope{-g.value, -g.slope};
   const double T = std::tanh(q);
   return {g.value * T, g.slope * T + g.value * (1.0 - T * T) / p.v0};
 }
