@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdint>
 
-
 namespace servomill::plant {
 namespace {
 
@@ -20,11 +19,12 @@ using Vector5l = Eigen::Matrix<long double, 5, 1>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEventLength = 10e-9;  // s: events are located in a sub-step no longer than this
 constexpr double kCoastRate = 1e-3;     // rate x finest sub-step: coast() is exact to its cube
-constexpr double kSeriesRate = 1.0;     // rate x coarsest sub-step: the series converges in kTerms
-constexpr int kTerms = 24;              // 1 / 24! is below the last bit of long double
+constexpr double kSeriesRate = 2.0;     // rate x coarsest sub-step: the series converges in kTerms
+constexpr int kTerms = 30;              // 2^30 / 30! is below the last bit of long double
 constexpr int kMostHalvings = 26;
-constexpr double kMemory = 5e-3;    // s, for which the servo loop leaves an error of speed standing
-constexpr double kSettled = 1e-10;  // of Fc: bristles count as settled
+constexpr double kMemory = 5e-3;  // s, for which the servo loop leaves an error of speed standing
+constexpr double kNoTravel = 1e-14;  // m: a reversal that moves less in a sub-step is none
+constexpr double kSettled = 1e-10;   // of Fc: bristles count as settled
 
 // Similar to A with rows and columns of equal size (Osborne's iteration): the size of its entries
 // is that of its eigenvalues.
@@ -154,10 +154,13 @@ ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick lon
       prepare(sticking, gap, coarsest);
     }
   }
+  const FrictionParams& f = params.friction;
+  has_kink_ = f.kind == FrictionKind::lugre ||
+              (f.kind == FrictionKind::regularised &&
+               (f.Fs_positive != f.Fs_negative || f.Fc_positive != f.Fc_negative));
   if (params.cogging.T != 0.0) {
     gliding_speed_ = kInfinity;
-  } else if (params.friction.kind != FrictionKind::none) {
-    const FrictionParams& f = params.friction;
+  } else if (f.kind != FrictionKind::none) {
     const bool stribeck = f.Fs_positive != f.Fc_positive || f.Fs_negative != f.Fc_negative;
     if (stribeck) gliding_speed_ = kStribeckEnd * f.vs;
     if (f.kind == FrictionKind::regularised) {
@@ -394,9 +397,13 @@ ExactStep::Trial ExactStep::attempt(const LaneState& s, double command, double F
     at.delta = offset + row[2];
     at.v = row[3];
     at.x = s.x + row[4];
-    trial.event = trial.event || happens(at, F);
+    if (trial.event == kNone && happens(at, F)) trial.event = node;
+    const double before = node == 0 ? s.v : trial.at[node - 1].v;
+    if (has_kink_ && trial.kink == kNone && before * at.v < 0.0 && std::abs(at.v) * h > kNoTravel) {
+      trial.kink = node;
+    }
   }
-  if (slides && !trial.event && resolution_.tolerance < kInfinity) {
+  if (slides && std::min(trial.event, trial.kink) == kNone && resolution_.tolerance < kInfinity) {
     trial.error = error_of(s, F, h, trial);
   }
   return trial;
@@ -501,13 +508,15 @@ void ExactStep::advance(LaneState& s, double command, double F, Tick step) const
     const int level = std::min(wanted, fits);
     const Trial trial = attempt(s, command, F, static_cast<std::size_t>(level));
     const bool resolved = trial.error <= resolution_.tolerance && trial.error < kInfinity;
-    if (level > 0 && (trial.event || !resolved)) {
-      wanted = level - 1;
+    const std::size_t stop = std::min(trial.event, trial.kink);
+    if (level > 0 && (stop != kNone || !resolved)) {
+      constexpr int kHalvings[] = {3, 2, 1, 1, 1};  // to before the stop
+      wanted = std::max(level - kHalvings[stop], 0);
       continue;
     }
     rest -= std::int64_t{1} << level;
     const StepControl control = s.control;
-    if (trial.event) {
+    if (trial.event != kNone) {
       cross(s, command, F);
     } else {
       s = trial.error < kInfinity ? trial.at.back() : coast(s, command, F, finest_);

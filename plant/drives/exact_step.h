@@ -28,8 +28,9 @@ struct Resolution {
 /// order 4, A-stable: no stiffness of friction makes it unstable). The matrices are prepared for a
 /// ladder of lengths base_period 2^n. A sub-step is halved until
 ///   1. the defect of the parabola at h/4 and 3h/4 moves the slide by less than the tolerance,
-///   2. nothing happens in it: the slide does not stop or break away (set-valued friction), no
-///      flank takes hold or lets go (backlash).
+///   2. nothing happens in it: the slide does not stop or break away (set-valued friction), does
+///   not
+///      reverse (LuGre: |v|), no flank takes hold or lets go (backlash).
 /// In the finest sub-step the event is located by a secant and the drive goes on in its new mode.
 /// Every event consumes at least that length, so that bouncing without end ends.
 class ExactStep {
@@ -54,7 +55,7 @@ class ExactStep {
   double friction_force(const LaneState& state) const;
 
  private:
-  static constexpr std::size_t kStates = 5, kNodes = 4, kColumns = 8;
+  static constexpr std::size_t kStates = 5, kNodes = 4, kColumns = 8, kNone = kNodes;
   using Rows = std::array<double, kStates * kNodes>;
   // Columns i, w, delta, v, command, f(0), f(h/2), f(h); rows: the states at h/4, h/2, 3h/4, h,
   // the position as an increment.
@@ -68,7 +69,8 @@ class ExactStep {
   struct Trial {
     std::array<LaneState, kNodes> at;  // h/4, h/2, 3h/4, h
     double error = 0.0;                // m; infinite if the collocation was not solved
-    bool event = false;
+    std::size_t event = kNone;         // first node that belongs to another mode
+    std::size_t kink = kNone;          // first node beyond a zero of v where friction has a kink
   };
   struct Forces;
 
@@ -92,6 +94,7 @@ class ExactStep {
   double finest_ = 0.0;  // s
   int sub_ticks_ = 0;    // the finest sub-step is 2^-sub_ticks_ base periods
   double gliding_speed_ = 0.0;
+  bool has_kink_ = false;              // friction is continuous at v = 0, its slope is not
   std::array<int, 4> linear_index_{};  // by 2 gap + sticking
   std::vector<Linear> linear_;
 };

@@ -213,9 +213,10 @@ TEST(LuGre, HoldsWithinItsPresliding) {
   const FeedDriveParams p = bare_mass(FrictionKind::lugre);
   const double F = 0.8 * 560;
   const ExactStep drive(p, kTick, 100);
-  LaneState s = run(drive, {}, 20000, 100, [&](double t) {
-    return std::array{0.0, -F * std::min(t / 10, 1.0)};
-  });
+  const auto slow_ramp = [&](double t) {
+    return std::array{0.0, -F * 0.5 * (1 - std::cos(0.1 * std::numbers::pi * std::min(t, 10.0)))};
+  };
+  LaneState s = run(drive, {}, 20000, 100, slow_ramp);
   EXPECT_NEAR(p.friction.sigma0 * s.z, F, kForceTol);
   EXPECT_NEAR(s.x, 560 / p.friction.sigma0 * std::log(5.0), kPreslidingTol);
   const double settled = s.x;
@@ -309,15 +310,15 @@ TEST(Backlash, AReversalLosesTheGap) {
   FeedDriveParams p = x_axis_with(FrictionKind::set_valued);
   p.gap = 20e-6;
   p.friction.Fs_positive = p.friction.Fs_negative = 450;
-  p.J = 1e9;  // turns as told
+  p.J = 1e12;  // turns as told
   const ExactStep drive(p, kTick, 100);
   LaneState s = at_rest(p, 0.0);
   s.w = 1e-3 / p.r;
-  s = run(drive, s, 200, 100, constant(0.0));
+  s = run(drive, s, 2000, 100, constant(0.0));
   const double phi_there = (s.delta + s.x) / p.r;
   const double x_there = s.x;
   s.w = -s.w;
-  s = run(drive, s, 200, 100, constant(0.0));
+  s = run(drive, s, 2000, 100, constant(0.0));
   const double turned = phi_there - (s.delta + s.x) / p.r;
   const double wind_up = 2 * (450 + p.b_load * 1e-3) / p.k;
   EXPECT_NEAR(p.r * turned - (x_there - s.x), p.gap + wind_up, kLostTol);
@@ -425,67 +426,71 @@ double worst_against_runge_kutta(const FeedDriveParams& p, double fine, int step
   return worst;
 }
 
+// m after 0.1 s: what the sub-steps miss adds up, for no servo loop takes it back
+constexpr double kOpenLoopTol = 0.01 * kNanometre;
+
 TEST(Regularised, AgreesWithRungeKutta) {
   FeedDriveParams p = x_axis_with(FrictionKind::regularised);
-  EXPECT_LT(worst_against_runge_kutta(p, 2e-6, 500), 0.001 * kNanometre);
+  EXPECT_LT(worst_against_runge_kutta(p, 2e-6, 500), kOpenLoopTol);
 }
 
 TEST(Regularised, AgreesWithRungeKuttaWhenSharp) {
   FeedDriveParams p = x_axis_with(FrictionKind::regularised);
   p.friction.v0 = 1e-5;
-  EXPECT_LT(worst_against_runge_kutta(p, 1e-6, 500), 0.001 * kNanometre);
+  EXPECT_LT(worst_against_runge_kutta(p, 1e-6, 500), kOpenLoopTol);
 }
 
 TEST(LuGre, AgreesWithRungeKutta) {
   FeedDriveParams p = x_axis_with(FrictionKind::lugre);
-  EXPECT_LT(worst_against_runge_kutta(p, 2e-6, 500), 0.001 * kNanometre);
+  EXPECT_LT(worst_against_runge_kutta(p, 2e-6, 500), kOpenLoopTol);
 }
 
 // --- order of convergence ----------------------------------------------------------------------
 
-// Errors of x after 0.1 s with sub-steps of fixed length 2^n ticks.
-std::array<double, 3> errors_of_fixed_steps(const FeedDriveParams& p, const LaneState& start,
-                                            const Inputs& inputs) {
-  const auto end = [&](const Resolution& resolution) {
-    const ExactStep drive(p, kTick, 64, resolution);
-    LaneState s = start;
-    for (int n = 0; n < 160; ++n) {
-      const auto [command, F] = inputs(n * 64 * kTick);
-      drive.advance(s, command, F, 64);
-    }
-    return s.x;
-  };
-  const double exact = end({.tolerance = 1e-15});
-  std::array<double, 3> errors{};
-  for (std::size_t n = 0; n < errors.size(); ++n) {
-    const double h = std::ldexp(kTick, 5 - static_cast<int>(n));
-    errors[n] =
-        std::abs(end({.tolerance = std::numeric_limits<double>::infinity(), .longest = h}) - exact);
+// Root mean square over some starts of the error of x after 0.1 s, with sub-steps of fixed length.
+double error_of_fixed_steps(const FeedDriveParams& p, const LaneState& start, const Inputs& inputs,
+                            double length) {
+  constexpr int kStarts = 5;
+  double sum = 0.0;
+  for (int phase = 0; phase < kStarts; ++phase) {
+    const auto end = [&](const Resolution& resolution) {
+      const ExactStep drive(p, kTick, 64, resolution);
+      LaneState s = start;
+      for (int n = 0; n < 160; ++n) {
+        const auto [command, F] = inputs(n * 64 * kTick + 0.01 * phase);
+        drive.advance(s, command, F, 64);
+      }
+      return s.x;
+    };
+    const double fixed =
+        end({.tolerance = std::numeric_limits<double>::infinity(), .longest = length});
+    sum += std::pow(fixed - end({.tolerance = 1e-16}), 2);
   }
-  return errors;
+  return std::sqrt(sum / kStarts);
 }
 
-double order(const std::array<double, 3>& e) { return 0.5 * std::log2(e[0] / e[2]); }
+double order(const FeedDriveParams& p, const LaneState& start, const Inputs& inputs) {
+  const double coarse = error_of_fixed_steps(p, start, inputs, 320e-6);
+  const double fine = error_of_fixed_steps(p, start, inputs, 160e-6);
+  ::testing::Test::RecordProperty("coarse_pm", std::to_string(coarse * 1e12));
+  ::testing::Test::RecordProperty("fine_pm", std::to_string(fine * 1e12));
+  return std::log2(coarse / fine);
+}
 
 TEST(Order, IsFourWhereTheForceIsSmooth) {
   FeedDriveParams p = x_axis_with(FrictionKind::set_valued);
   LaneState s;
-  s.v = 3e-3;
+  s.v = 2e-3;
   s.w = s.v / p.r;
-  s.slide = SlideMode::positive;
-  const auto e = errors_of_fixed_steps(p, s, [](double t) {
-    return std::array{1.0, 40 * std::sin(300 * t)};
-  });
-  EXPECT_GT(order(e), 3.7) << e[0] << ' ' << e[1] << ' ' << e[2];
+  s.delta = 500 / p.k;
+  const auto push = [](double t) { return std::array{1.2, -40 * std::sin(300 * t)}; };
+  EXPECT_GT(order(p, s, push), 3.7);
 }
 
-TEST(Order, IsAtLeastTwoThroughReversalsAndStick) {
-  for (const FrictionKind kind : {FrictionKind::set_valued, FrictionKind::lugre}) {
-    const auto e = errors_of_fixed_steps(x_axis_with(kind), {}, [](double t) {
-      return std::array{wiggle(t), 30.0};
-    });
-    EXPECT_GT(order(e), 2.0) << e[0] << ' ' << e[1] << ' ' << e[2];
-  }
+TEST(Order, IsFourThroughReversalsAndStick) {
+  const auto inputs = [](double t) { return std::array{wiggle(t), 30.0}; };
+  EXPECT_GT(order(x_axis_with(FrictionKind::set_valued), {}, inputs), 3.5);
+  EXPECT_GT(order(x_axis_with(FrictionKind::lugre), {}, inputs), 3.5);
 }
 
 // --- every drive
@@ -552,7 +557,7 @@ TEST(EveryDrive, NeverGainsEnergyByItself) {
 }
 
 TEST(EveryDrive, ALongStepIsManyShortOnes) {
-  constexpr double kLengthTol = 0.01 * kNanometre;
+  constexpr double kLengthTol = 0.1 * kNanometre;  // after 0.06 s without a servo loop
   for (std::uint32_t seed = 0; seed < 40; ++seed) {
     std::mt19937 random(seed);
     const FeedDriveParams p = random_drive(random);
