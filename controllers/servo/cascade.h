@@ -82,9 +82,11 @@ inline void position_loop(const CascadeParams& p, CascadeState& s, double q_cmd,
 /// (a filter may overshoot). The filters stand between the limits, so that they never hold more
 /// than the drive can do, need no anti-windup of their own and are not seen by the gate: what they
 /// change is no saturation. Speed is the difference of the motor angle over one period.
-/// @param tau_ff  torque to add, N m: friction compensation
-inline void velocity_loop(const CascadeParams& p, CascadeState& s, double phi,
-                          double tau_ff = 0.0) {
+/// @param tau_ff   torque to add, N m: friction compensation
+/// @param limited  whether something behind holds the drive back, too: the voltage
+///                 (CurrentLoopState::limited); it holds the integral
+inline void velocity_loop(const CascadeParams& p, CascadeState& s, double phi, double tau_ff = 0.0,
+                          bool limited = false) {
   const double e = s.v_cmd / p.r - (phi - s.phi) / p.Tv;
   s.phi = phi;
   const double i_limit = std::min(p.i_max, p.tau_max / p.Kt);
@@ -95,7 +97,8 @@ inline void velocity_loop(const CascadeParams& p, CascadeState& s, double phi,
   const double i_filtered = advance(p.filters, s.filters, i_limited);
   const double i_slewed = std::clamp(i_filtered, s.i_next - slew, s.i_next + slew);
   s.i_next = std::clamp(i_slewed, -i_limit, i_limit);
-  if (i_limited == i && s.i_next == i_filtered) s.integral += p.Ki * p.Tv * e;
+  limited = limited || i_limited != i || s.i_next != i_filtered;
+  if (!limited) s.integral += p.Ki * p.Tv * e;
 }
 
 /// The drive follows what the velocity loop computed before this instant, so that a command is one

@@ -16,6 +16,7 @@ struct CurrentLoopParams {
 struct CurrentLoopState {
   double integral = 0.0;  // V
   double u = 0.0;         // V, holds until the next current period
+  bool limited = false;   // whether u_max cut it
 };
 
 /// PI with a limited voltage: e = i_cmd - i, u = Kp e + I limited to +-u_max; then I gains Ki Ti e
@@ -26,7 +27,8 @@ inline void current_loop(const CurrentLoopParams& p, CurrentLoopState& s, double
   const double e = i_cmd - i;
   const double u = p.Kp * e + s.integral;
   s.u = std::clamp(u, -p.u_max, p.u_max);
-  if (s.u == u) s.integral += p.Ki * p.Ti * e;
+  s.limited = s.u != u;
+  if (!s.limited) s.integral += p.Ki * p.Ti * e;
 }
 
 }  // namespace servomill::controllers

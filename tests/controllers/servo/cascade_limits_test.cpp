@@ -9,6 +9,7 @@
 #include <random>
 
 #include "controllers/servo/cascade.h"
+#include "controllers/servo/current_loop.h"
 
 namespace servomill::controllers {
 namespace {
@@ -165,6 +166,39 @@ TEST(AntiWindup, IsNotTroubledByFiltersBetweenTheLimits) {
   p.filters.append(low_pass(1000.0, 0.7, p.Tv));
   EXPECT_LT(overshoot(p, true), 0.02);
   EXPECT_GT(overshoot(p, false), 0.25);
+}
+
+// A step of the speed to 90 % of what the voltage can drive, with a current limit that never holds:
+// less overshoot than without any limit, where the PI alone makes 14 %.
+TEST(AntiWindup, RecoversFromTheVoltageLimitBehindIt) {
+  CascadeParams p = axis();
+  p.i_max = 500.0;
+  const double L = 4e-3, R = 0.6, Ke = 0.9, w_cmd = 100.0;  // H, ohm, V s/rad, rad/s
+  const auto over = [&](double u_max, bool tell) {
+    const CurrentLoopParams current{.Kp = 14.0, .Ki = 7000.0, .u_max = u_max, .Ti = p.Tv};
+    CascadeState s;
+    s.v_cmd = w_cmd * p.r;
+    CurrentLoopState u;
+    double i = 0.0, w = 0.0, phi = 0.0, highest = 0.0;
+    const double h = p.Tv / 20;
+    for (int k = 0; k < 5000; ++k) {
+      latch_current_command(s);
+      velocity_loop(p, s, phi, 0.0, tell && u.limited);
+      current_loop(current, u, s.i_cmd, i);
+      for (int n = 0; n < 20; ++n) {
+        i += h * (u.u - R * i - Ke * w) / L;
+        w += h * p.Kt * i / p.J;
+        phi += h * w;
+      }
+      highest = std::max(highest, w);
+    }
+    EXPECT_NEAR(w, w_cmd, 1e-3);
+    return highest / w_cmd - 1.0;
+  };
+  const double with_gate = over(100.0, true), without = over(100.0, false);
+  const double unlimited = over(kNoLimit, false);
+  EXPECT_LT(with_gate, unlimited);
+  EXPECT_GT(without, 1.5 * unlimited);
 }
 
 // The velocity loop stays in command at v_max: its integral has to carry the load there.
