@@ -66,7 +66,8 @@ Joints ServoAxes::scale_reading() const {
 
 void ServoAxes::take_reading(int joint, double displacement) {
   Loop& loop = loops_[lane(joint)];
-  loop.y_scale = machine_.scale[lane(joint)].read(state_.x[lane(joint)]) + displacement;
+  loop.y_scale = machine_.scale[lane(joint)].read(state_.x[lane(joint)]) + displacement +
+                 injected_[lane(joint)].reading;
   loop.y_motor = machine_.drives[lane(joint)].r * motor_reading(joint);
   Q_read_[joint] =
       controllers::position_feedback(machine_.nc.functions[lane(joint)].position_feedback,
@@ -99,12 +100,13 @@ void ServoAxes::run_current_loops() {
   for (const int j : joints_) {
     Loop& loop = loops_[lane(j)];
     controllers::latch_current_command(loop.cascade);
+    const double i_cmd = loop.cascade.i_cmd + injected_[lane(j)].current;
     if (machine_.drives[lane(j)].has_winding()) {
-      controllers::current_loop(machine_.nc.functions[lane(j)].current_loop, loop.current,
-                                loop.cascade.i_cmd, state_.i[lane(j)]);
+      controllers::current_loop(machine_.nc.functions[lane(j)].current_loop, loop.current, i_cmd,
+                                state_.i[lane(j)]);
       input_.command[lane(j)] = loop.current.u;
     } else {
-      input_.command[lane(j)] = loop.cascade.i_cmd;
+      input_.command[lane(j)] = i_cmd;
     }
   }
 }
@@ -119,8 +121,28 @@ void ServoAxes::run_velocity_loops() {
       tau = controllers::friction_compensation(friction, loop.friction,
                                                cascade.kvf > 0.0 ? loop.dq_ff : loop.cascade.v_cmd);
     }
-    controllers::velocity_loop(cascade, loop.cascade, motor_reading(j), tau);
+    const double phi = motor_reading(j), v_cmd = loop.cascade.v_cmd;
+    loop.cascade.v_cmd += injected_[lane(j)].velocity;
+    speed_read_[j] = (phi - loop.cascade.phi) / cascade.Tv;
+    speed_error_[j] = loop.cascade.v_cmd / cascade.r - speed_read_[j];
+    const bool voltage_limited = machine_.drives[lane(j)].has_winding() && loop.current.limited;
+    controllers::velocity_loop(cascade, loop.cascade, phi, tau, voltage_limited);
+    loop.cascade.v_cmd = v_cmd;
   }
+}
+
+Joints ServoAxes::motor_speed() const {
+  Joints w = Joints::Zero();
+  for (const int j : joints_) {
+    const plant::FeedDriveParams& drive = machine_.drives[lane(j)];
+    w[j] = drive.is_rigid() ? state_.v[lane(j)] / drive.r : state_.w[lane(j)];
+  }
+  return w;
+}
+
+void ServoAxes::inject(int joint, const Injection& injection) {
+  injected_[lane(joint)] = injection;
+  input_.F[lane(joint)] = -injection.force;
 }
 
 std::optional<controllers::AxisFault> ServoAxes::supervise(int joint, const AxisSetPoint& set) {

@@ -28,6 +28,14 @@ struct AxisSetPoint {
   Joints ddQ_ff = Joints::Zero();
 };
 
+/// Added from outside to the signals of one axis, to measure how it responds; zero in a case.
+struct Injection {
+  double force = 0.0;     // N, N m: on the slide, along +x
+  double velocity = 0.0;  // m/s, rad/s: to the velocity command, as the velocity loop reads it
+  double current = 0.0;   // A: to the current command, as the current loop reads it
+  double reading = 0.0;   // m, rad: to the reading of the position encoder, as it is taken
+};
+
 /// One function for each kind of instant of the schedule (sim/schedule.h), to be called in its
 /// order when due; then `advance` to the next instant.
 class ServoAxes {
@@ -65,8 +73,13 @@ class ServoAxes {
   /// What the NC's supervision says of a joint in this position period.
   std::optional<controllers::AxisFault> supervise(int joint, const AxisSetPoint& set);
 
-  /// Force against the slide of a joint from now on (N, N m).
-  void set_force(int joint, double F) { input_.F[lane(joint)] = F; }
+  Joints motor_speed() const;
+  /// Motor speed as the velocity loop formed it last, and what it lacked (rad/s).
+  const Joints& measured_speed() const { return speed_read_; }
+  const Joints& speed_error() const { return speed_error_; }
+
+  /// What is added to a joint from now on.
+  void inject(int joint, const Injection& injection);
 
   /// Visits what of one axis changes with time, as double&: drive, loops, reading. States that
   /// cannot move (no integral part, no current lag, ...) are left out.
@@ -99,7 +112,9 @@ class ServoAxes {
   plant::DriveState state_;
   plant::DriveInput input_;
   std::array<Loop, kJoints> loops_;
+  std::array<Injection, kJoints> injected_{};
   Joints Q_read_ = Joints::Zero();
+  Joints speed_read_ = Joints::Zero(), speed_error_ = Joints::Zero();
 };
 
 template <class Visit>
