@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,10 @@
 #include "controllers/servo/position_feedback.h"
 #include "controllers/servo/supervision.h"
 #include "plant/drives/feed_drive.h"
+#include "plant/drives/screw_error.h"
 #include "plant/kinematics/chain.h"
 #include "plant/sensing/encoder.h"
+#include "plant/sensing/reference_marks.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/ticks.h"
@@ -62,12 +65,20 @@ struct NcSettings {
   bool check_stability = true;            // refuse gains with which the linear loop diverges
 };
 
+/// Reference marks of a scale that the NC watches.
+struct MarkSettings {
+  plant::MarkParams params;
+  int allowed = 0;  // signal periods by which a count may be wrong
+};
+
 struct MachineSettings {
   std::string name;
   plant::MachineChain chain;
   std::array<plant::FeedDriveParams, kJoints> drives;
   std::array<plant::Encoder, kJoints> scale;  // position encoder of the slide or table
   std::array<plant::Encoder, kJoints> motor;  // rad
+  std::array<std::optional<MarkSettings>, kJoints> marks;
+  std::array<plant::ScrewError, kJoints> screw;
   Tick scale_delay = 0;
   NcSettings nc;
 

@@ -97,6 +97,10 @@ double read_location(Reader& model, std::string_view key, const ErrorName& name)
 
 }  // namespace
 
+plant::ErrorFunction read_length_function(Reader& table) {
+  return read_function(table, {true, true});
+}
+
 plant::ErrorModel read_errors(Reader& model, const JointLayout& layout) {
   plant::ErrorModel errors;
   std::map<std::string, std::string> aliases;

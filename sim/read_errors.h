@@ -10,4 +10,7 @@ namespace servomill::sim {
 /// error of this model whose function it shares.
 plant::ErrorModel read_errors(Reader& model, const JointLayout& layout);
 
+/// A length (um) as a function of a linear coordinate (mm), written like a component error.
+plant::ErrorFunction read_length_function(Reader& table);
+
 }  // namespace servomill::sim

@@ -10,6 +10,7 @@
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
 #include "sim/read_drive.h"
+#include "sim/read_encoder.h"
 #include "sim/read_servo.h"
 
 namespace servomill::sim {
@@ -99,18 +100,22 @@ void read_limits(Reader& axis, bool linear, int j, NcSettings& nc) {
   nc.upper[j] = travel[1];
 }
 
-void read_axis(Reader& axis, const CommonServo& common, const Place& Kv_place,
-               plant::FrictionKind friction_model, int j, MachineSettings& machine) {
+// What the machine says for all of its axes.
+struct Common {
+  CommonServo servo;
+  Place Kv_place;
+  plant::FrictionKind friction_model = plant::FrictionKind::none;
+  std::uint64_t noise_seed = 0;
+};
+
+void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machine) {
   const auto lane = static_cast<std::size_t>(j);
   const bool linear = j < kLinearJoints;
-  machine.drives[lane] = read_drive(axis, linear, friction_model);
-  read_servo(axis, common, j, machine);
-  machine.scale[lane] = plant::Encoder::with_step(
-      axis.real_or("scale_step", 0.0, quantities_of(linear).position, {at_least(0.0)}));
-  machine.motor[lane] =
-      plant::Encoder::with_step(axis.real_or("motor_step", 0.0, kAngle, {at_least(0.0)}));
-  machine.nc.gain_place[lane] = axis.has("Kv") ? axis.place("Kv") : Kv_place;
+  machine.drives[lane] = read_drive(axis, linear, common.friction_model);
+  read_servo(axis, common.servo, j, machine);
+  machine.nc.gain_place[lane] = axis.has("Kv") ? axis.place("Kv") : common.Kv_place;
   read_limits(axis, linear, j, machine.nc);
+  read_encoders(axis, j, common.noise_seed, machine);
   auto& chain_axis = machine.chain.at(*machine.chain.layout.axis[lane]);
   if (!linear) {
     chain_axis.sense = static_cast<plant::Sense>(axis.choice_or("sense", 0, kSenses));
@@ -183,10 +188,13 @@ MachineSettings read_machine(Reader& table) {
   }
   machine.scale_delay = delay_ticks.value_or(0);
 
-  const CommonServo common = read_common_servo(nc);
-  const Place Kv_place = nc.place("Kv");
-  const auto friction_model =
+  Common common;
+  common.servo = read_common_servo(nc);
+  common.Kv_place = nc.place("Kv");
+  common.friction_model =
       static_cast<plant::FrictionKind>(table.choice_or("friction_model", 0, friction_models()));
+  common.noise_seed =
+      static_cast<std::uint64_t>(table.integer_or("noise_seed", 0, {at_least(0.0)}));
 
   if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
     table.raw("axis");
@@ -196,7 +204,7 @@ MachineSettings read_machine(Reader& table) {
   for (int j = 0; j < kJoints; ++j) {
     if (!machine.chain.layout.has(j)) continue;
     Reader axis = axes.table(std::string(1, machine.chain.layout.letter_of(j)));
-    read_axis(axis, common, Kv_place, friction_model, j, machine);
+    read_axis(axis, common, j, machine);
   }
   return machine;
 }

@@ -1,6 +1,10 @@
 #include "sim/servo_axes.h"
 
+#include <fmt/format.h>
+
 #include <utility>
+
+#include "plant/vocabulary/units.h"
 
 namespace servomill::sim {
 namespace {
@@ -9,6 +13,25 @@ std::array<bool, kJoints> present(const std::vector<int>& joints) {
   std::array<bool, kJoints> out{};
   for (const int j : joints) out[static_cast<std::size_t>(j)] = true;
   return out;
+}
+
+std::string_view name_of(controllers::AxisFaultKind fault) {
+  switch (fault) {
+    case controllers::AxisFaultKind::following_error:
+      return "following error";
+    case controllers::AxisFaultKind::standstill:
+      return "position at standstill";
+    case controllers::AxisFaultKind::encoder_difference:
+      break;
+  }
+  return "difference of scale and motor encoder";
+}
+
+std::string overspeed(std::string_view name, const plant::Encoder& encoder, double velocity) {
+  constexpr double kHzPerkHz = 1e3;
+  return fmt::format("signals of the {} at {:.4g} kHz, beyond the {:.4g} kHz of the input", name,
+                     encoder.signal_frequency(velocity) / kHzPerkHz,
+                     encoder.frequency_limit() / kHzPerkHz);
 }
 
 }  // namespace
@@ -47,6 +70,10 @@ void ServoAxes::settle(const Joints& Q_true, const Eigen::Vector3d& displacement
     input_.command[lane(j)] = drive.has_winding() ? u : i;
     loop.feedback = controllers::standing_at(functions.position_feedback, drive.r * phi,
                                              machine_.scale[lane(j)].read(state_.x[lane(j)]) + d);
+    if (const auto& marks = machine_.marks[lane(j)]) {
+      loop.marks.emplace(plant::ReferenceMarks(marks->params), marks->allowed);
+      loop.marks->start(state_.x[lane(j)], state_.x[lane(j)] + d);
+    }
     take_reading(j, d);
     loop.backlash = controllers::standing_at(functions.backlash, Q_read_[j]);
     loop.supervision = controllers::standing_at(
@@ -55,20 +82,33 @@ void ServoAxes::settle(const Joints& Q_true, const Eigen::Vector3d& displacement
 }
 
 double ServoAxes::motor_reading(int joint) const {
-  return machine_.motor[lane(joint)].read(drives_.motor_angle(state_, lane(joint)));
+  const plant::ScrewError& screw = machine_.screw[lane(joint)];
+  const double phi = screw.is_zero()
+                         ? drives_.motor_angle(state_, lane(joint))
+                         : plant::motor_angle(screw, machine_.drives[lane(joint)].r,
+                                              state_.delta[lane(joint)] + state_.x[lane(joint)],
+                                              machine_.nc.periods.seconds(now_));
+  return machine_.motor[lane(joint)].read(phi, now_);
+}
+
+double ServoAxes::scale_reading(int joint) const {
+  return machine_.scale[lane(joint)].read(state_.x[lane(joint)], now_);
 }
 
 Joints ServoAxes::scale_reading() const {
   Joints Q = Joints::Zero();
-  for (const int j : joints_) Q[j] = machine_.scale[lane(j)].read(state_.x[lane(j)]);
+  for (const int j : joints_) Q[j] = scale_reading(j);
   return Q;
 }
 
 void ServoAxes::take_reading(int joint, double displacement) {
   Loop& loop = loops_[lane(joint)];
-  loop.y_scale = machine_.scale[lane(joint)].read(state_.x[lane(joint)]) + displacement +
-                 injected_[lane(joint)].reading;
+  loop.y_scale = scale_reading(joint) + displacement + injected_[lane(joint)].reading;
   loop.y_motor = machine_.drives[lane(joint)].r * motor_reading(joint);
+  if (loop.marks && !loop.mark_fault) {
+    const double x = state_.x[lane(joint)];
+    loop.mark_fault = loop.marks->advance(x, x + displacement);
+  }
   Q_read_[joint] =
       controllers::position_feedback(machine_.nc.functions[lane(joint)].position_feedback,
                                      loop.feedback, loop.y_motor, loop.y_scale);
@@ -145,11 +185,31 @@ void ServoAxes::inject(int joint, const Injection& injection) {
   input_.F[lane(joint)] = -injection.force;
 }
 
-std::optional<controllers::AxisFault> ServoAxes::supervise(int joint, const AxisSetPoint& set) {
+std::optional<std::string> ServoAxes::supervise(int joint, const AxisSetPoint& set) {
+  const bool linear = joint < kLinearJoints;
+  const double unit = linear ? mm : deg;
+  const std::string_view unit_name = linear ? "mm" : "deg";
   Loop& loop = loops_[lane(joint)];
-  return controllers::supervise(
+  const auto fault = controllers::supervise(
       machine_.nc.functions[lane(joint)].supervision, loop.supervision,
       {set.Q_cmd[joint], set.dQ_ff[joint], Q_read_[joint], loop.y_motor, loop.y_scale});
+  if (fault) {
+    return fmt::format("{} beyond {:g} {}", name_of(fault->fault), fault->limit / unit, unit_name);
+  }
+  if (loop.mark_fault) {
+    const plant::MarkFault& mark = *loop.mark_fault;
+    return fmt::format(
+        "counted {} signal periods instead of {} between the reference marks at {:.3f} and {:.3f} "
+        "{}",
+        mark.counted, mark.expected, mark.from / unit, mark.to / unit, unit_name);
+  }
+  const plant::Encoder& scale = machine_.scale[lane(joint)];
+  const plant::Encoder& motor = machine_.motor[lane(joint)];
+  const double w = state_.v[lane(joint)] / machine_.drives[lane(joint)].r;
+  if (scale.too_fast(state_.v[lane(joint)]))
+    return overspeed("scale", scale, state_.v[lane(joint)]);
+  if (motor.too_fast(w)) return overspeed("motor encoder", motor, w);
+  return std::nullopt;
 }
 
 }  // namespace servomill::sim

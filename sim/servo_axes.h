@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "plant/drives/drive_bank.h"
@@ -59,7 +60,10 @@ class ServoAxes {
   /// kVelocityLoop
   void run_velocity_loops();
   /// Moves the drives to the next instant.
-  void advance(Tick step) { drives_.advance(state_, input_, step); }
+  void advance(Tick step) {
+    drives_.advance(state_, input_, step);
+    now_ += step;
+  }
 
   /// Readings of the position encoders at this moment.
   Joints scale_reading() const;
@@ -70,8 +74,9 @@ class ServoAxes {
   Joints current() const { return lanes(state_.i); }
   const std::vector<int>& joints() const { return joints_; }
 
-  /// What the NC's supervision says of a joint in this position period.
-  std::optional<controllers::AxisFault> supervise(int joint, const AxisSetPoint& set);
+  /// Why the NC stops the machine for this joint in this position period, as it would say it
+  /// ("following error beyond 10 mm"); nullopt as long as all is well.
+  std::optional<std::string> supervise(int joint, const AxisSetPoint& set);
 
   Joints motor_speed() const;
   /// Motor speed as the velocity loop formed it last, and what it lacked (rad/s).
@@ -99,11 +104,14 @@ class ServoAxes {
     controllers::FrictionCompensationState friction;
     controllers::BacklashCompensationState backlash;
     controllers::SupervisionState supervision;
+    std::optional<plant::MarkMonitor> marks;
+    std::optional<plant::MarkFault> mark_fault;
     double y_motor = 0.0, y_scale = 0.0;  // m or rad, read last for the position loop
     double dq_ff = 0.0;                   // m/s or rad/s, fed forward in this position period
   };
 
   double motor_reading(int joint) const;
+  double scale_reading(int joint) const;
   void take_reading(int joint, double displacement);
 
   const MachineSettings& machine_;
@@ -112,6 +120,7 @@ class ServoAxes {
   plant::DriveState state_;
   plant::DriveInput input_;
   std::array<Loop, kJoints> loops_;
+  Tick now_ = 0;
   std::array<Injection, kJoints> injected_{};
   Joints Q_read_ = Joints::Zero();
   Joints speed_read_ = Joints::Zero(), speed_error_ = Joints::Zero();

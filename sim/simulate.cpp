@@ -26,18 +26,6 @@ std::vector<Rate> rates_of(const CaseInputs& in) {
   return rates;
 }
 
-std::string_view name_of(controllers::AxisFaultKind fault) {
-  switch (fault) {
-    case controllers::AxisFaultKind::following_error:
-      return "following error";
-    case controllers::AxisFaultKind::standstill:
-      return "position at standstill";
-    case controllers::AxisFaultKind::encoder_difference:
-      break;
-  }
-  return "difference of scale and motor encoder";
-}
-
 Outcome interrupted(double time) {
   return {false, true, fmt::format("interrupted at {:.4f} s", time), '-', time};
 }
@@ -154,7 +142,7 @@ class CaseRun {
     last_ticks_.keep(time, set_.Q_cmd, axes_.Q_read(), axes_.Q_true(), axes_.current());
     axes_.run_position_loops(set_);
     for (const int j : axes_.joints()) {
-      if (const auto fault = axes_.supervise(j, set_)) halt(outcome, j, *fault, time);
+      if (const auto reason = axes_.supervise(j, set_)) halt(outcome, j, *reason, time);
     }
   }
 
@@ -179,15 +167,12 @@ class CaseRun {
     recorder_.record(now);
   }
 
-  void halt(Outcome& outcome, int joint, const controllers::AxisFault& fault, double time) const {
+  void halt(Outcome& outcome, int joint, const std::string& reason, double time) const {
     if (!outcome.finished) return;
     outcome.finished = false;
     outcome.axis = in_.machine.chain.layout.letter_of(joint);
     outcome.time = time;
-    const bool linear = joint < kLinearJoints;
-    outcome.reason =
-        fmt::format("axis {}: {} beyond {:g} {} at {:.4f} s", outcome.axis, name_of(fault.fault),
-                    fault.limit / (linear ? mm : deg), linear ? "mm" : "deg", time);
+    outcome.reason = fmt::format("axis {}: {} at {:.4f} s", outcome.axis, reason, time);
   }
 
   CaseInputs& in_;

@@ -16,6 +16,8 @@ MachineSettings linearised(const MachineSettings& machine) {
     drive.friction = {};
     drive.cogging = {};
     linear.scale[j] = linear.motor[j] = {};
+    linear.marks[j].reset();
+    linear.screw[j] = {};
     linear.nc.cascade[j] = controllers::without_limits(linear.nc.cascade[j]);
     AxisFunctions& functions = linear.nc.functions[j];
     functions.current_loop.u_max = controllers::kNoLimit;
