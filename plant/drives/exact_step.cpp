@@ -23,8 +23,9 @@ constexpr double kSeriesRate = 2.0;     // rate x coarsest sub-step: the series 
 constexpr int kTerms = 30;              // 2^30 / 30! is below the last bit of long double
 constexpr int kMostHalvings = 26;
 constexpr double kMemory = 5e-3;  // s, for which the servo loop leaves an error of speed standing
-constexpr double kNoTravel = 1e-14;  // m: a reversal that moves less in a sub-step is none
-constexpr double kSettled = 1e-10;   // of Fc: bristles count as settled
+constexpr double kNewtonShare = 0.02;  // of the tolerance
+constexpr double kNoTravel = 1e-14;    // m: a reversal that moves less in a sub-step is none
+constexpr double kSettled = 1e-10;     // of Fc: bristles count as settled
 
 // Similar to A with rows and columns of equal size (Osborne's iteration): the size of its entries
 // is that of its eigenvalues.
@@ -118,8 +119,8 @@ constexpr double kIntegral[4][3] = {{1.0 / 6.0, 5.0 / 48.0, -1.0 / 48.0},
                                     {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0}};
 constexpr double kQuarter[2][3] = {{0.375, 0.75, -0.125}, {-0.125, 0.75, 0.375}};
 
-double parabola(const double (&weight)[3], double a, double b, double c) {
-  return weight[0] * a + weight[1] * b + weight[2] * c;
+double parabola(const double (&weight)[3], const std::array<double, 3>& value) {
+  return weight[0] * value[0] + weight[1] * value[1] + weight[2] * value[2];
 }
 
 double direction(SlideMode slide) { return slide == SlideMode::negative ? -1.0 : 1.0; }
@@ -155,6 +156,13 @@ ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick lon
     }
   }
   const FrictionParams& f = params.friction;
+  // Newton's iteration squares a correction, relative to the speed over which friction bends.
+  double bend = f.kind == FrictionKind::regularised ? std::min(f.v0, f.vs) : f.vs;
+  if (f.kind == FrictionKind::lugre) {
+    bend = std::min(bend, std::min(f.Fc_positive, f.Fc_negative) / (f.sigma0 * longest));
+  }
+  const double speed_error = kNewtonShare * std::min(resolution.tolerance, 2e-12) / kMemory;
+  speed_tolerance_ = std::sqrt(bend * speed_error);
   has_kink_ = f.kind == FrictionKind::lugre ||
               (f.kind == FrictionKind::regularised &&
                (f.Fs_positive != f.Fs_negative || f.Fc_positive != f.Fc_negative));
@@ -237,8 +245,8 @@ double ExactStep::force(const LaneState& s, double F) const {
 
 // The force against the slide at the nodes h/2 and h, and its derivative by the speeds there.
 struct ExactStep::Forces {
-  std::array<double, 2> f{}, z{};
-  Eigen::Matrix2d df = Eigen::Matrix2d::Zero();
+  std::array<double, 2> f{}, rate{};  // N; dz/dt, m/s
+  Eigen::Matrix2d df = Eigen::Matrix2d::Zero(), drate = Eigen::Matrix2d::Zero();
 };
 
 ExactStep::Forces ExactStep::forces_at(const LaneState& s, double F, double h,
@@ -265,12 +273,14 @@ ExactStep::Forces ExactStep::forces_at(const LaneState& s, double F, double h,
                                   C * V;
     const Eigen::Matrix2d inverse = (Eigen::Matrix2d::Identity() + C * a.asDiagonal()).inverse();
     const Eigen::Vector2d z = inverse * known;
-    const Eigen::Vector2d drate = Eigen::Vector2d::Ones() - slope.cwiseProduct(z);
-    const Eigen::Matrix2d dz = inverse * C * drate.asDiagonal();
-    const Eigen::Vector2d f = p.sigma0 * z + p.sigma1 * (V - a.cwiseProduct(z));
+    const Eigen::Matrix2d direct = (Eigen::Vector2d::Ones() - slope.cwiseProduct(z)).asDiagonal();
+    const Eigen::Matrix2d dz = inverse * C * direct;
+    const Eigen::Vector2d rate = V - a.cwiseProduct(z);
+    const Eigen::Vector2d f = p.sigma0 * z + p.sigma1 * rate;
     out.f = {f[0], f[1]};
-    out.z = {z[0], z[1]};
-    out.df = p.sigma0 * dz + p.sigma1 * (Eigen::Matrix2d(drate.asDiagonal()) - a.asDiagonal() * dz);
+    out.rate = {rate[0], rate[1]};
+    out.drate = direct - a.asDiagonal() * dz;
+    out.df = p.sigma0 * dz + p.sigma1 * out.drate;
   } else {
     for (std::size_t j = 0; j < 2; ++j) {
       ForceSlope g = {0.0, 0.0};
@@ -295,7 +305,6 @@ bool ExactStep::collocate(const LaneState& s, double F, double h, const Propagat
   constexpr std::size_t kVelocity[2] = {kStates + 3, 3 * kStates + 3};
   constexpr std::size_t kPosition[2] = {kStates + 4, 3 * kStates + 4};
   constexpr int kMostIterations = 12;
-  constexpr double kSpeedTol = 1e-10;  // m/s; the iteration converges quadratically
   const double f0 = force(s, F);
   add(y, P[5], f0);
   std::array<double, 2> f = {f0, f0}, v{}, x{};
@@ -321,15 +330,16 @@ bool ExactStep::collocate(const LaneState& s, double F, double h, const Propagat
       f[j] += df[static_cast<Eigen::Index>(j)];
     }
     const double change = dv.cwiseAbs().maxCoeff();
-    if (change <= kSpeedTol + 1e-13 * std::abs(v[1])) {
+    if (change <= speed_tolerance_ + 1e-13 * std::abs(v[1])) {
       add(y, P[6], f[0]);
       add(y, P[7], f[1]);
+      trial.f = {f0, f[0], f[1]};
       if (params_.friction.kind == FrictionKind::lugre) {
-        const double r0 = bristle_rate(params_.friction, s.v, s.z);
-        const double r1 = bristle_rate(params_.friction, v[0], at.z[0]);
-        const double r2 = bristle_rate(params_.friction, v[1], at.z[1]);
+        const Eigen::Vector2d drate = at.drate * dv;
+        trial.dz = {bristle_rate(params_.friction, s.v, s.z), at.rate[0] + drate[0],
+                    at.rate[1] + drate[1]};
         for (std::size_t node = 0; node < kNodes; ++node) {
-          trial.at[node].z = s.z + h * parabola(kIntegral[node], r0, r1, r2);
+          trial.at[node].z = s.z + h * parabola(kIntegral[node], trial.dz);
         }
       }
       return true;
@@ -342,22 +352,21 @@ bool ExactStep::collocate(const LaneState& s, double F, double h, const Propagat
 // What the parabola misses at h/4 and 3h/4, as the displacement (m) that it leaves. A cubic miss
 // moves the slide only within the sub-step, a quartic one changes its speed. Factors: integrals of
 // s (s - 1/2) (s - 1), times (1 - s), and of s (s - 1/2)^2 (s - 1), over their values at 1/4.
-double ExactStep::error_of(const LaneState& s, double F, double h, const Trial& trial) const {
+double ExactStep::error_of(double F, double h, const Trial& trial) const {
   constexpr double kCubic = 8.0 / 45.0, kQuartic = 32.0 / 45.0;
-  const auto miss = [&](auto&& quantity, std::size_t quarter) {
-    return quantity(trial.at[2 * quarter]) -
-           parabola(kQuarter[quarter], quantity(s), quantity(trial.at[1]), quantity(trial.at[3]));
-  };
-  const auto effect = [&](auto&& quantity, double cubic, double quartic) {
-    const double a = miss(quantity, 0), b = miss(quantity, 1);
+  const LaneState& first = trial.at[0];
+  const LaneState& third = trial.at[2];
+  const auto effect = [](double a, double b, const std::array<double, 3>& nodes, double cubic,
+                         double quartic) {
+    a -= parabola(kQuarter[0], nodes);
+    b -= parabola(kQuarter[1], nodes);
     return 0.5 * (kCubic * cubic * std::abs(a - b) + kQuartic * quartic * std::abs(a + b));
   };
   const double impulse = h / params_.slide_mass();
-  double error =
-      effect([&](const LaneState& u) { return force(u, F); }, impulse * h, impulse * kMemory);
+  double error = effect(force(first, F), force(third, F), trial.f, impulse * h, impulse * kMemory);
   if (params_.friction.kind == FrictionKind::lugre) {
-    error +=
-        effect([&](const LaneState& u) { return bristle_rate(params_.friction, u.v, u.z); }, h, h);
+    error += effect(bristle_rate(params_.friction, first.v, first.z),
+                    bristle_rate(params_.friction, third.v, third.z), trial.dz, h, h);
   }
   return error;
 }
@@ -404,7 +413,7 @@ ExactStep::Trial ExactStep::attempt(const LaneState& s, double command, double F
     }
   }
   if (slides && std::min(trial.event, trial.kink) == kNone && resolution_.tolerance < kInfinity) {
-    trial.error = error_of(s, F, h, trial);
+    trial.error = error_of(F, h, trial);
   }
   return trial;
 }

@@ -69,6 +69,7 @@ class ExactStep {
   struct Trial {
     std::array<LaneState, kNodes> at;  // h/4, h/2, 3h/4, h
     double error = 0.0;                // m; infinite if the collocation was not solved
+    std::array<double, 3> f{}, dz{};   // force and dz/dt at 0, h/2, h
     std::size_t event = kNone;         // first node that belongs to another mode
     std::size_t kink = kNone;          // first node beyond a zero of v where friction has a kink
   };
@@ -85,7 +86,7 @@ class ExactStep {
   Trial attempt(const LaneState& s, double command, double F, std::size_t level) const;
   bool collocate(const LaneState& s, double F, double h, const Propagator& P, Rows& y,
                  Trial& trial) const;
-  double error_of(const LaneState& s, double F, double h, const Trial& trial) const;
+  double error_of(double F, double h, const Trial& trial) const;
   LaneState coast(const LaneState& s, double command, double F, double dt) const;
   void cross(LaneState& s, double command, double F) const;
 
@@ -94,6 +95,7 @@ class ExactStep {
   double finest_ = 0.0;  // s
   int sub_ticks_ = 0;    // the finest sub-step is 2^-sub_ticks_ base periods
   double gliding_speed_ = 0.0;
+  double speed_tolerance_ = 0.0;       // m/s, of the last correction of Newton's iteration
   bool has_kink_ = false;              // friction is continuous at v = 0, its slope is not
   std::array<int, 4> linear_index_{};  // by 2 gap + sticking
   std::vector<Linear> linear_;

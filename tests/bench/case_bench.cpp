@@ -59,6 +59,50 @@ void BM_DriveBank(benchmark::State& state) {
 }
 BENCHMARK(BM_DriveBank);
 
+// The same joints with friction, in motion: one step of 100 us. `speed` is in mm/s (100 mrad/s).
+void BM_DriveBankWithFriction(benchmark::State& state, plant::FrictionKind kind, double speed) {
+  const MachineSettings& machine = experiment1().machine;
+  auto params = machine.drives;
+  for (plant::FeedDriveParams& p : params) {
+    p.friction = {.kind = kind,
+                  .Fc_positive = 0.6 * p.slide_mass(),
+                  .Fc_negative = 0.6 * p.slide_mass(),
+                  .Fs_positive = 0.75 * p.slide_mass(),
+                  .Fs_negative = 0.75 * p.slide_mass(),
+                  .vs = 2e-3,
+                  .v0 = 1e-4,
+                  .sigma0 = 6e4 * p.slide_mass(),
+                  .sigma1 = 40.0 * p.slide_mass()};
+  }
+  constexpr Tick kTicks = 10, kPeriod = 400;
+  const std::vector<Tick> steps = {kTicks};
+  const plant::DriveBank bank(params, machine.present(), 10e-6, steps);
+  plant::DriveState start = bank.at_rest(Joints::Constant(0.1));
+  start.v.fill(speed);
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    start.w[j] = speed / params[j].r;
+    start.z[j] = speed > 0.02 ? params[j].friction.Fc_positive / params[j].friction.sigma0 : 0.0;
+    start.i[j] += params[j].r * 0.6 * params[j].slide_mass() / params[j].Kt;
+  }
+  plant::DriveInput input;
+  input.command = start.i;
+  plant::DriveState drives = start;
+  int n = 0;
+  for (auto _ : state) {
+    if (n++ % kPeriod == 0) drives = start;
+    bank.advance(drives, input, kTicks);
+    benchmark::DoNotOptimize(drives);
+  }
+}
+#define BENCH_FRICTION(kind)                                                                   \
+  BENCHMARK_CAPTURE(BM_DriveBankWithFriction, kind##_gliding, plant::FrictionKind::kind, 0.1); \
+  BENCHMARK_CAPTURE(BM_DriveBankWithFriction, kind##_in_zone, plant::FrictionKind::kind, 0.002)
+BENCH_FRICTION(none);
+BENCH_FRICTION(set_valued);
+BENCH_FRICTION(regularised);
+BENCH_FRICTION(lugre);
+#undef BENCH_FRICTION
+
 // What the feedback hardware evaluates every 60 us.
 void BM_ErrorModel(benchmark::State& state) {
   const plant::VolumetricModel model(experiment1().machine.chain,
