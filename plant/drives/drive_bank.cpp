@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <unsupported/Eigen/MatrixFunctions>
+#include <utility>
 
 namespace servomill::plant {
 namespace {
@@ -67,7 +68,8 @@ DriveBank::DriveBank(const std::array<FeedDriveParams, kJoints>& params,
   }
   for (std::size_t j = 0; j < kJoints; ++j) {
     if (!present_[j] || params_[j].is_linear()) continue;
-    nonlinear_.push_back({j, ExactStep(params_[j], base_period, longest)});
+    ExactStep exact(params_[j], base_period, longest);
+    nonlinear_.push_back({j, exact.gliding(), std::move(exact)});
   }
 }
 
@@ -89,10 +91,9 @@ void DriveBank::advance(DriveState& s, const DriveInput& input, Tick step) const
   DriveState::Lanes force;
   for (std::size_t j = 0; j < kJoints; ++j) force[j] = input.F[j] + F_load_[j];
   std::array<bool, kJoints> glides{};
-  for (const auto& [j, exact] : nonlinear_) {
-    const LaneState lane = s.lane(j);
-    glides[j] = exact.glides(lane);
-    if (glides[j]) force[j] += exact.friction_force(lane);
+  for (const auto& [j, gliding, exact] : nonlinear_) {
+    glides[j] = gliding.holds(s.v[j], s.z[j]);
+    if (glides[j]) force[j] += gliding.force(s.v[j]);
   }
 
   const Columns in = {&s.i, &s.w, &s.delta, &s.v, &s.x, &input.command, &force};
@@ -103,10 +104,10 @@ void DriveBank::advance(DriveState& s, const DriveInput& input, Tick step) const
   if (!nonlinear_.empty()) {
     // A joint that left its zone of constant friction, or never was in it, is moved by itself.
     const DriveState::Lanes middle = product(matrix.middle.data(), in);
-    for (const auto& [j, exact] : nonlinear_) {
+    for (const auto& [j, gliding, exact] : nonlinear_) {
       const double direction = s.v[j] > 0.0 ? 1.0 : -1.0;
       const double slowest = std::min(direction * middle[j], direction * out[kVelocity][j]);
-      if (glides[j] && slowest > exact.gliding_speed()) {
+      if (glides[j] && slowest > gliding.speed) {
         s.slide[j] = s.v[j] > 0.0 ? SlideMode::positive : SlideMode::negative;
         continue;
       }

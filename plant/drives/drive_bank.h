@@ -14,7 +14,7 @@ namespace servomill::plant {
 /// Exact propagator of all drives of a machine between instants of the base clock:
 ///   x(t + h) = exp(A h) x(t) + int_0^h exp(A s) ds B u.
 /// Matrices are prepared once for every step length that the schedule contains. A joint that is not
-/// linear takes part with its friction as a constant force while it glides (ExactStep::glides);
+/// linear takes part with its friction as a constant force while it glides (struct Gliding);
 /// else it is moved by its ExactStep.
 class DriveBank {
  public:
@@ -52,6 +52,7 @@ class DriveBank {
   };
   struct Nonlinear {
     std::size_t joint;
+    Gliding gliding;
     ExactStep exact;
   };
   using Columns = std::array<const DriveState::Lanes*, kColumns>;

@@ -25,7 +25,6 @@ constexpr int kMostHalvings = 26;
 constexpr double kMemory = 5e-3;  // s, for which the servo loop leaves an error of speed standing
 constexpr double kNewtonShare = 0.02;  // of the tolerance
 constexpr double kNoTravel = 1e-14;    // m: a reversal that moves less in a sub-step is none
-constexpr double kSettled = 1e-10;     // of Fc: bristles count as settled
 
 // Similar to A with rows and columns of equal size (Osborne's iteration): the size of its entries
 // is that of its eigenvalues.
@@ -135,6 +134,22 @@ void add(std::array<double, n>& sum, const std::array<double, n>& column, double
   for (std::size_t row = 0; row < n; ++row) sum[row] += column[row] * factor;
 }
 
+// A drive with cogging nowhere is linear, one with backlash may be but has events there, too.
+Gliding gliding_of(const FeedDriveParams& p) {
+  const FrictionParams& f = p.friction;
+  if (p.cogging.T != 0.0 || p.gap > 0.0) return {};
+  Gliding g{.speed = 0.0};
+  if (f.kind == FrictionKind::none) return g;
+  if (f.Fs_positive != f.Fc_positive || f.Fs_negative != f.Fc_negative) {
+    g.speed = kStribeckEnd * f.vs;
+  }
+  if (f.kind == FrictionKind::regularised) g.speed = std::max(g.speed, kTanhEnd * f.v0);
+  g.Fc_positive = f.Fc_positive;
+  g.Fc_negative = f.Fc_negative;
+  if (f.kind == FrictionKind::lugre) g.sigma0 = f.sigma0;
+  return g;
+}
+
 }  // namespace
 
 ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick longest_step,
@@ -166,15 +181,7 @@ ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick lon
   has_kink_ = f.kind == FrictionKind::lugre ||
               (f.kind == FrictionKind::regularised &&
                (f.Fs_positive != f.Fs_negative || f.Fc_positive != f.Fc_negative));
-  if (params.cogging.T != 0.0) {
-    gliding_speed_ = kInfinity;
-  } else if (f.kind != FrictionKind::none) {
-    const bool stribeck = f.Fs_positive != f.Fc_positive || f.Fs_negative != f.Fc_negative;
-    if (stribeck) gliding_speed_ = kStribeckEnd * f.vs;
-    if (f.kind == FrictionKind::regularised) {
-      gliding_speed_ = std::max(gliding_speed_, kTanhEnd * f.v0);
-    }
-  }
+  gliding_ = gliding_of(params);
 }
 
 void ExactStep::prepare(bool sticking, bool gap, int coarsest) {
@@ -203,13 +210,6 @@ void ExactStep::prepare(bool sticking, bool gap, int coarsest) {
       }
     }
   }
-}
-
-bool ExactStep::glides(const LaneState& s) const {
-  if (!(std::abs(s.v) > gliding_speed_) || params_.gap > 0.0) return false;
-  if (params_.friction.kind != FrictionKind::lugre) return true;
-  const double Fc = s.v > 0.0 ? params_.friction.Fc_positive : params_.friction.Fc_negative;
-  return std::abs(params_.friction.sigma0 * s.z - std::copysign(Fc, s.v)) <= kSettled * Fc;
 }
 
 bool ExactStep::sticks(const LaneState& s) const {

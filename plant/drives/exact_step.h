@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -17,6 +18,22 @@ struct Resolution {
   double tolerance = 2e-12;
   /// s: no sub-step is longer
   double longest = std::numeric_limits<double>::infinity();
+};
+
+/// Where the force against a slide is constant to the last bit, so that its drive is linear.
+struct Gliding {
+  double speed = std::numeric_limits<double>::infinity();  // m/s: beyond it; infinite: nowhere
+  double Fc_positive = 0.0, Fc_negative = 0.0;             // N
+  double sigma0 = 0.0;                                     // N/m; 0: no bristles
+
+  bool holds(double v) const { return std::abs(v) > speed; }
+  /// The same of a state: its bristles must have settled, too.
+  bool holds(double v, double z) const {
+    constexpr double kSettled = 1e-10;  // of Fc
+    return holds(v) &&
+           (sigma0 == 0.0 || std::abs(sigma0 * z - force(v)) <= kSettled * std::abs(force(v)));
+  }
+  double force(double v) const { return v > 0.0 ? Fc_positive : -Fc_negative; }
 };
 
 /// Propagator of one drive that is not linear.
@@ -46,13 +63,7 @@ class ExactStep {
   /// state.control.unresolved.
   void advance(LaneState& state, double command, double F, Tick step) const;
 
-  /// Speed (m/s) beyond which friction is constant to the last bit; infinite with cogging.
-  double gliding_speed() const { return gliding_speed_; }
-  /// Whether the force against the slide is constant as long as the speed stays beyond
-  /// gliding_speed(): bristles settled, and no backlash whose flanks could let go.
-  bool glides(const LaneState& state) const;
-  /// Friction against the slide (N).
-  double friction_force(const LaneState& state) const;
+  const Gliding& gliding() const { return gliding_; }
 
  private:
   static constexpr std::size_t kStates = 5, kNodes = 4, kColumns = 8, kNone = kNodes;
@@ -78,6 +89,7 @@ class ExactStep {
   void prepare(bool sticking, bool gap, int coarsest);
   bool sticks(const LaneState& s) const;
   const Linear& linear_of(const LaneState& s) const;
+  double friction_force(const LaneState& s) const;
   double force(const LaneState& s, double F) const;
   Forces forces_at(const LaneState& s, double F, double h, const std::array<double, 2>& v,
                    const std::array<double, 2>& x) const;
@@ -90,11 +102,11 @@ class ExactStep {
   LaneState coast(const LaneState& s, double command, double F, double dt) const;
   void cross(LaneState& s, double command, double F) const;
 
+  Gliding gliding_;
   FeedDriveParams params_;
   Resolution resolution_;
-  double finest_ = 0.0;  // s
-  int sub_ticks_ = 0;    // the finest sub-step is 2^-sub_ticks_ base periods
-  double gliding_speed_ = 0.0;
+  double finest_ = 0.0;                // s
+  int sub_ticks_ = 0;                  // the finest sub-step is 2^-sub_ticks_ base periods
   double speed_tolerance_ = 0.0;       // m/s, of the last correction of Newton's iteration
   bool has_kink_ = false;              // friction is continuous at v = 0, its slope is not
   std::array<int, 4> linear_index_{};  // by 2 gap + sticking

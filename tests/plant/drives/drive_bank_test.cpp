@@ -195,5 +195,65 @@ TEST(DriveBank, StaysAtRestUnderItsConstantLoad) {
   EXPECT_EQ(s.x[1], 0.0);  // joints that the machine lacks do not move
 }
 
+FeedDriveParams with_friction(FrictionKind kind) {
+  FeedDriveParams p = x_axis();
+  p.friction = {.kind = kind,
+                .Fc_positive = 450,
+                .Fc_negative = 400,
+                .Fs_positive = 560,
+                .Fs_negative = 500,
+                .vs = 2e-3,
+                .v0 = 1e-4,
+                .sigma0 = 5e7,
+                .sigma1 = 3e4};
+  return p;
+}
+
+TEST(DriveBank, LinearJointsDoNotNoticeTheFrictionOfOthers) {
+  constexpr std::array<bool, kJoints> kXAndY = {true, true, false, false, false};
+  const std::vector<Tick> steps = {20};
+  const DriveBank linear({x_axis(), x_axis(), {}, {}, {}}, kXAndY, kTick, steps);
+  const DriveBank mixed({x_axis(), with_friction(FrictionKind::lugre), {}, {}, {}}, kXAndY, kTick,
+                        steps);
+  DriveState a, b;
+  DriveInput input;
+  for (int n = 0; n < 500; ++n) {
+    input.command.fill(20.0 * std::sin(0.03 * n));
+    linear.advance(a, input, 20);
+    mixed.advance(b, input, 20);
+    ASSERT_EQ(a.x[0], b.x[0]);
+    ASSERT_EQ(a.delta[0], b.delta[0]);
+  }
+  EXPECT_NE(a.x[1], b.x[1]);
+}
+
+TEST(DriveBank, JointsWithFrictionMoveAsTheirExactStepSays) {
+  // to and fro through both zones of friction and the standstill between them
+  constexpr double kPositionTol = 1e-14;  // m, rounding: constant force against collocation
+  for (const FrictionKind kind :
+       {FrictionKind::set_valued, FrictionKind::regularised, FrictionKind::lugre}) {
+    const FeedDriveParams p = with_friction(kind);
+    const DriveBank bank = bank_of(p, {20});
+    const ExactStep exact(p, kTick, 20);
+    DriveState s;
+    LaneState lane;
+    DriveInput input;
+    double fastest = 0.0;
+    int standing = 0;
+    for (int n = 0; n < 2000; ++n) {
+      input.command[0] = n % 1000 < 600 ? 8.0 * std::sin(0.01 * n) : 0.0;
+      input.F[0] = 50.0;
+      bank.advance(s, input, 20);
+      exact.advance(lane, input.command[0], input.F[0], 20);
+      ASSERT_NEAR(s.x[0], lane.x, kPositionTol) << static_cast<int>(kind) << ' ' << n;
+      fastest = std::max(fastest, std::abs(s.v[0]));
+      if (std::abs(s.v[0]) < 1e-4) ++standing;  // m/s
+    }
+    EXPECT_GT(fastest, 0.05);  // both were seen
+    EXPECT_GT(standing, 100);
+    EXPECT_EQ(DriveBank::unresolved(s, 0), 0U);
+  }
+}
+
 }  // namespace
 }  // namespace servomill::plant
