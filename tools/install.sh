@@ -1,12 +1,12 @@
 # Sourced by tools/demo and tools/check: packages, and installing those that are missing.
 
+# libsundials-dev is large (about 310 packages and 240 MB with what it needs): it integrates the
+# equations of the drives, as a reference or where a scenario asks for it.
 BUILD_PACKAGES=(g++ cmake ninja-build libeigen3-dev libfmt-dev libhdf5-dev libboost-dev
-  libboost-program-options-dev libtomlplusplus-dev)
+  libboost-program-options-dev libtomlplusplus-dev libsundials-dev)
 FIGURE_PACKAGES=(python3 python3-numpy python3-h5py python3-matplotlib python3-pil python3-xarray
   python3-h5netcdf)
-# libsundials-dev is large (about 310 packages and 240 MB with what it needs): it integrates the
-# drives' equations as the reference in the tests.
-TEST_PACKAGES=(git libgtest-dev libbenchmark-dev libsundials-dev clang-format clang-tidy hdf5-tools)
+TEST_PACKAGES=(git libgtest-dev libbenchmark-dev clang-format clang-tidy hdf5-tools)
 
 say() { printf '\n== %s\n' "$*"; }
 

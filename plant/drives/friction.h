@@ -49,7 +49,11 @@ inline double sliding_force(const FrictionParams& p, bool positive, double v) {
   return sliding(p, positive, v).value;
 }
 
-/// Regularised friction g(v) tanh(v / v0), against +v.
+/// Regularised friction g(v) tanh(v / v0), against +v. With a direction it goes on smoothly beyond
+/// v = 0 with the g of that direction.
+inline double regularised_force(const FrictionParams& p, bool positive, double v) {
+  return sliding_force(p, positive, v) * std::tanh(v / p.v0);
+}
 inline ForceSlope regularised(const FrictionParams& p, double v) {
   const ForceSlope g = sliding(p, v >= 0.0, v);
   const double q = v / p.v0;
@@ -62,8 +66,12 @@ inline double regularised_force(const FrictionParams& p, double v) {
 }
 
 /// LuGre: dz/dt = v - sigma0 |v| z / g(v) (m/s). Canudas de Wit et al. 1995, equations (2) to (4).
+/// With a direction it goes on smoothly beyond v = 0 with the |v| and the g of that direction.
+inline double bristle_rate(const FrictionParams& p, bool positive, double v, double z) {
+  return v - p.sigma0 * (positive ? v : -v) * z / sliding_force(p, positive, v);
+}
 inline double bristle_rate(const FrictionParams& p, double v, double z) {
-  return v - p.sigma0 * std::abs(v) * z / sliding_force(p, v >= 0.0, v);
+  return bristle_rate(p, v >= 0.0, v, z);
 }
 
 /// LuGre: F = sigma0 z + sigma1 dz/dt (N), against +v; sigma2 v is in b_load.

@@ -1,14 +1,11 @@
 #include "plant/drives/drive_bank.h"
 
-#include <cvode/cvode.h>
 #include <gtest/gtest.h>
-#include <nvector/nvector_serial.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
 #include <cmath>
-#include <memory>
 #include <numbers>
+
+#include "plant/drives/cvode_drive.h"
 
 namespace servomill::plant {
 namespace {
@@ -35,80 +32,21 @@ DriveBank bank_of(const FeedDriveParams& p, std::initializer_list<Tick> steps) {
   return DriveBank({p, {}, {}, {}, {}}, kOnlyX, kTick, std::vector<Tick>(steps));
 }
 
-// Reference integration of drive_equations by CVODE (BDF, dense), restarted at each change of
-// input.
-class CvodeDrive {
- public:
-  explicit CvodeDrive(const FeedDriveParams& p) : A_(drive_equations(p)) {
-    SUNContext_Create(nullptr, &context_);
-    y_ = N_VNew_Serial(5, context_);
-    N_VConst(0.0, y_);
-    memory_ = CVodeCreate(CV_BDF, context_);
-    CVodeInit(memory_, &CvodeDrive::rhs, 0.0, y_);
-    CVodeSetUserData(memory_, this);
-    absolute_ = N_VNew_Serial(5, context_);
-    for (int i = 0; i < 5; ++i) NV_Ith_S(absolute_, i) = i < 2 ? 1e-13 : 1e-17;
-    CVodeSVtolerances(memory_, 1e-12, absolute_);
-    matrix_ = SUNDenseMatrix(5, 5, context_);
-    solver_ = SUNLinSol_Dense(y_, matrix_, context_);
-    CVodeSetLinearSolver(memory_, solver_, matrix_);
-    CVodeSetMaxNumSteps(memory_, 1000000);
-  }
-  ~CvodeDrive() {
-    CVodeFree(&memory_);
-    SUNLinSolFree(solver_);
-    SUNMatDestroy(matrix_);
-    N_VDestroy(absolute_);
-    N_VDestroy(y_);
-    SUNContext_Free(&context_);
-  }
-  CvodeDrive(const CvodeDrive&) = delete;
-  CvodeDrive& operator=(const CvodeDrive&) = delete;
-
-  void hold(double i_cmd, double F, double until) {
-    input_ << i_cmd, F;
-    CVodeReInit(memory_, t_, y_);
-    CVodeSetStopTime(memory_, until);
-    double reached = t_;
-    while (reached < until) {
-      ASSERT_GE(CVode(memory_, until, y_, &reached, CV_NORMAL), 0);
-    }
-    t_ = until;
-  }
-  double state(int i) const { return NV_Ith_S(y_, i); }
-
- private:
-  static int rhs(double, N_Vector y, N_Vector dy, void* self) {
-    const auto& drive = *static_cast<CvodeDrive*>(self);
-    Eigen::Matrix<double, 7, 1> z;
-    z << Eigen::Map<Eigen::Matrix<double, 5, 1>>(N_VGetArrayPointer(y)), drive.input_;
-    Eigen::Map<Eigen::Matrix<double, 5, 1>>(N_VGetArrayPointer(dy)) = drive.A_ * z;
-    return 0;
-  }
-  Eigen::Matrix<double, 5, 7> A_;
-  Eigen::Vector2d input_ = Eigen::Vector2d::Zero();
-  double t_ = 0.0;
-  SUNContext context_ = nullptr;
-  N_Vector y_ = nullptr, absolute_ = nullptr;
-  void* memory_ = nullptr;
-  SUNMatrix matrix_ = nullptr;
-  SUNLinearSolver solver_ = nullptr;
-};
-
 TEST(DriveBank, AgreesWithCvodeUnderHeldInputs) {
   constexpr double kPositionTol = 1e-12;  // m, CVODE at rtol 1e-12 after 50 changes of input
   const DriveBank bank = bank_of(x_axis(), {20});
   DriveState s;
   DriveInput input;
   CvodeDrive reference(x_axis());
+  LaneState r;
   for (int n = 0; n < 50; ++n) {
     input.command[0] = 20.0 * std::sin(0.7 * n);
     input.F[0] = n % 2 ? 300.0 : -100.0;
     bank.advance(s, input, 20);
-    reference.hold(input.command[0], input.F[0], (n + 1) * 20 * kTick);
-    ASSERT_NEAR(s.x[0], reference.state(4), kPositionTol) << n;
-    ASSERT_NEAR(s.v[0], reference.state(3), 1e-9) << n;
-    ASSERT_NEAR(s.w[0], reference.state(1), 1e-7) << n;
+    reference.advance(r, input.command[0], input.F[0], 20 * kTick);
+    ASSERT_NEAR(s.x[0], r.x, kPositionTol) << n;
+    ASSERT_NEAR(s.v[0], r.v, 1e-9) << n;
+    ASSERT_NEAR(s.w[0], r.w, 1e-7) << n;
   }
 }
 
