@@ -213,10 +213,22 @@ double largest_error(const Axes& axes, const std::string& reference) {
   }
 }
 
+void expect_reference(const Axes& axes, const std::string& reference, double tolerance) {
+  const double error = largest_error(axes, reference);
+  testing::Test::RecordProperty("error_nm", fmt::format("{:.3g}", error));
+  EXPECT_LE(error, tolerance) << "nm";
+}
+
 TEST(ReferenceProblem, LinearDrives) {
-  const double error = largest_error(read_axes("axes.csv", false), "x_ref_L.f64");
-  RecordProperty("error_nm", fmt::format("{:.3g}", error));
-  EXPECT_LE(error, kLinearTol);
+  expect_reference(read_axes("axes.csv", false), "x_ref_L.f64", kLinearTol);
+}
+
+TEST(ReferenceProblem, RegularisedFrictionAndLimits) {
+  expect_reference(read_axes("axes.csv", true), "x_ref_N.f64", kFrictionTol);
+}
+
+TEST(ReferenceProblem, FrictionTenTimesSharper) {
+  expect_reference(read_axes("axes_sharp.csv", true), "x_ref_N_sharp.f64", kFrictionTol);
 }
 
 }  // namespace
