@@ -503,6 +503,7 @@ void ExactStep::cross(LaneState& s, double command, double F) const {
 
 void ExactStep::advance(LaneState& s, double command, double F, Tick step) const {
   assert(step > 0);
+  if (!params_.has_winding() && params_.T_i == 0.0) s.i = command;
   if (params_.friction.kind == FrictionKind::set_valued) {
     if (s.v == 0.0) {
       from_rest(s, F);

@@ -67,6 +67,11 @@ FeedDriveParams rigid_with_load(FeedDriveParams p) {
   return p;
 }
 
+FeedDriveParams without_lag(FeedDriveParams p) {
+  p.T_i = 0.0;
+  return p;
+}
+
 // Command that would just break the slide away (A or V).
 double breakaway_command(const FeedDriveParams& p) {
   const double i = p.friction.Fs_positive * p.r / p.Kt;
@@ -141,6 +146,7 @@ void expect_agreement_of_all(FrictionKind kind) {
   expect_agreement("winding", with_winding(axis_x(kind)));
   expect_agreement("backlash", with_backlash(axis_x(kind)));
   expect_agreement("rigid", rigid_with_load(axis_x(kind)));
+  expect_agreement("rigid_without_lag", without_lag(rigid_with_load(axis_x(kind))));
 }
 
 TEST(ExactStepAndCvode, AgreeWithSetValuedFriction) {
