@@ -1,0 +1,181 @@
+#include "sim/metrology/circular_test.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kFarthestApart = 2.0 * deg;  // neighbouring points; also what a turn may be off
+constexpr double kNear = 0.1;                 // of the radius: farther away it is another circle
+
+// arcs about a reversal, in the direction of travel
+constexpr double kBeforeFrom = -15.0 * deg, kBeforeTo = -5.0 * deg;
+constexpr double kBehindFrom = 20.0 * deg, kBehindTo = 30.0 * deg;
+
+// The same angle within (-pi, pi].
+double wrapped(double angle) { return std::remainder(angle, kTurn); }
+
+double angle_of(const Vector2d& d) { return std::atan2(d.y(), d.x()); }
+
+// How far the points go around the centre, counter-clockwise positive, and the longest step.
+struct Travel {
+  double turned = 0.0, longest = 0.0;
+};
+
+Travel travel_of(Points2 points, const Vector2d& centre) {
+  Travel travel;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double step = wrapped(angle_of(points[i] - centre) - angle_of(points[i - 1] - centre));
+    travel.turned += step;
+    travel.longest = std::max(travel.longest, std::abs(step));
+  }
+  return travel;
+}
+
+// (largest, smallest) of the curve
+std::pair<double, double> range_of(const std::vector<RadialDeviation>& curve) {
+  const auto [low, high] = std::minmax_element(
+      curve.begin(), curve.end(),
+      [](const RadialDeviation& a, const RadialDeviation& b) { return a.dr < b.dr; });
+  return {high->dr, low->dr};
+}
+
+// Two parallel lines, dr = level + slope phi + (step where phi > 0), through the arcs about a
+// reversal.
+struct ParallelLines {
+  double level = 0.0, slope = 0.0, step = 0.0;
+  double before(double phi) const { return level + slope * phi; }
+  double behind(double phi) const { return before(phi) + step; }
+};
+
+ParallelLines lines_through(const std::vector<RadialDeviation>& arcs) {  // theta: phi
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Vector3d right = Vector3d::Zero();
+  for (const auto& [phi, dr] : arcs) {
+    const Vector3d row(1.0, phi, phi > 0.0 ? 1.0 : 0.0);
+    normal += row * row.transpose();
+    right += row * dr;
+  }
+  const Vector3d x = normal.ldlt().solve(right);
+  return {x[0], x[1], x[2]};
+}
+
+Reversal reversal_at(double theta, int axis, Sense sense,
+                     const std::vector<RadialDeviation>& curve) {
+  const double direction = sense == Sense::counter_clockwise ? 1.0 : -1.0;
+  std::vector<RadialDeviation> arcs, window;
+  for (const RadialDeviation& one : curve) {
+    const double phi = wrapped(direction * (one.theta - theta));
+    if ((phi >= kBeforeFrom && phi < kBeforeTo) || (phi > kBehindFrom && phi <= kBehindTo)) {
+      arcs.push_back({phi, one.dr});
+    } else if (phi >= kBeforeTo && phi <= kBehindFrom) {
+      window.push_back({phi, one.dr});
+    }
+  }
+  const ParallelLines lines = lines_through(arcs);
+  Reversal reversal{theta, axis, 0.0, theta, lines.step};
+  for (const auto& [phi, dr] : window) {
+    const auto [low, high] = std::minmax({lines.before(phi), lines.behind(phi)});
+    const double beyond = dr > high ? dr - high : dr < low ? dr - low : 0.0;
+    if (std::abs(beyond) <= std::abs(reversal.spike)) continue;
+    reversal.spike = beyond;
+    reversal.spike_theta = theta + direction * phi;
+  }
+  return reversal;
+}
+
+}  // namespace
+
+std::vector<RadialDeviation> radial_deviation(Points2 points, const Circle& circle) {
+  std::vector<RadialDeviation> curve;
+  curve.reserve(points.size());
+  for (const Vector2d& p : points) {
+    const Vector2d d = p - circle.centre;
+    const double theta = angle_of(d);
+    curve.push_back({theta < 0.0 ? theta + kTurn : theta, d.norm() - circle.radius});
+  }
+  return curve;
+}
+
+double squareness_of(const std::vector<RadialDeviation>& curve, double radius) {
+  // by least squares together with the harmonics that a shift, a scale and an ellipse leave
+  using Row = Eigen::Matrix<double, 5, 1>;
+  Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
+  Row right = Row::Zero();
+  for (const auto& [theta, dr] : curve) {
+    Row row;
+    row << 1.0, std::cos(theta), std::sin(theta), std::cos(2.0 * theta), std::sin(2.0 * theta);
+    normal += row * row.transpose();
+    right += row * dr;
+  }
+  const Row x = normal.ldlt().solve(right);
+  return 2.0 * x[4] / radius;
+}
+
+std::optional<std::string> why_no_turn(Points2 points, const Circle& nominal) {
+  for (const Vector2d& p : points) {
+    const double off = std::abs((p - nominal.centre).norm() - nominal.radius);
+    if (off <= kNear * nominal.radius) continue;
+    return fmt::format("leaves the circle of radius {:.6g} mm by {:.4g} mm", nominal.radius / mm,
+                       off / mm);
+  }
+  const Travel travel = travel_of(points, nominal.centre);
+  if (travel.longest > kFarthestApart) {
+    return fmt::format("has samples {:.3g} deg apart; must be <= {:g} deg", travel.longest / deg,
+                       kFarthestApart / deg);
+  }
+  if (std::abs(std::abs(travel.turned) - kTurn) > kFarthestApart) {
+    return fmt::format("covers {:.4g} deg of the circle; must be one turn, 360 deg",
+                       std::abs(travel.turned) / deg);
+  }
+  return std::nullopt;
+}
+
+CircularTurn evaluate_turn(Points2 points, const Circle& nominal) {
+  assert(!why_no_turn(points, nominal));
+  CircularTurn turn;
+  turn.sense =
+      travel_of(points, nominal.centre).turned > 0.0 ? Sense::counter_clockwise : Sense::clockwise;
+  turn.least_squares = least_squares_circle(points);
+  turn.minimum_zone = minimum_zone(points);
+  turn.G = turn.minimum_zone.width();
+  const auto curve = radial_deviation(points, {turn.least_squares.centre, nominal.radius});
+  std::tie(turn.F_max, turn.F_min) = range_of(curve);
+  turn.G_least_squares = turn.F_max - turn.F_min;
+  std::tie(turn.F_max_set_up, turn.F_min_set_up) = range_of(radial_deviation(points, nominal));
+  for (std::size_t quadrant = 0; quadrant < 4; ++quadrant) {
+    turn.reversals[quadrant] = reversal_at(static_cast<double>(quadrant) * kTurn / 4.0,
+                                           static_cast<int>(quadrant % 2), turn.sense, curve);
+  }
+  turn.squareness = squareness_of(curve, nominal.radius);
+  return turn;
+}
+
+BidirectionalCircle evaluate_both(Points2 one, Points2 other, const Circle& nominal) {
+  std::vector<Vector2d> both(one.begin(), one.end());
+  both.insert(both.end(), other.begin(), other.end());
+  const Circle least_squares = least_squares_circle(both);
+  BidirectionalCircle out;
+  out.G_b = minimum_zone(both).width();
+  out.G_b_least_squares = zone_about(both, least_squares.centre).width();
+  out.D = nominal.radius - least_squares.radius;
+  for (const Points2 points : {one, other}) {
+    const Circle mine{least_squares_circle(points).centre, nominal.radius};
+    out.squareness += 0.5 * squareness_of(radial_deviation(points, mine), nominal.radius);
+  }
+  return out;
+}
+
+}  // namespace servomill::sim
