@@ -9,6 +9,9 @@
 #include <limits>
 #include <optional>
 
+#include "plant/vocabulary/units.h"
+#include "sim/metrology/circular_test.h"
+#include "sim/metrology/section_circle.h"
 #include "sim/scenario.h"
 
 namespace servomill::sim {
@@ -18,7 +21,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUmPerMm = 1000.0;
 constexpr double kMsPerS = 1000.0;
 
-constexpr std::array<QuantityInfo, 9> kQuantities = {{
+constexpr std::array<QuantityInfo, 18> kQuantities = {{
     {"imposed_curve_residual", "um",
      "trajectory (scale) minus that of the base case minus the imposed displacement, at equal s",
      true, "XYZ", true, true, true},
@@ -38,6 +41,33 @@ constexpr std::array<QuantityInfo, 9> kQuantities = {{
     {"cycle_time", "s", "duration of the program that the NC runs", false, "", false, false, false},
     {"blocks", "1", "motion blocks of the program that the NC runs", false, "", false, false,
      false},
+    {"circular_deviation", "um",
+     "ISO 230-4 G: smallest radial separation of two concentric circles around the true path",
+     false, "", false, false, false, 1},
+    {"circular_deviation_least_squares", "um",
+     "G about the least-squares centre: range of the radial deviation", false, "", false, false,
+     false, 1},
+    {"bidirectional_circular_deviation", "um",
+     "ISO 230-4 G(b): the same as G around the paths of both directions", false, "", false, false,
+     false, 2},
+    {"radial_deviation_max", "um",
+     "ISO 230-4 F max: largest deviation from the nominal radius, about the least-squares centre",
+     false, "", false, false, false, 1},
+    {"radial_deviation_min", "um",
+     "ISO 230-4 F min: smallest deviation from the nominal radius, about the least-squares centre",
+     false, "", false, false, false, 1},
+    {"mean_bidirectional_radial_deviation", "um",
+     "ISO 230-4 D: nominal radius minus that of the least-squares circle of both directions", false,
+     "", false, false, false, 2},
+    {"reversal_spike", "um",
+     "larger one of the two excursions where the axis reverses on a circle; outward positive", true,
+     "XYZ", false, false, false, 1},
+    {"reversal_step", "um",
+     "larger one of the two steps of the radius where the axis reverses on a circle", true, "XYZ",
+     false, false, false, 1},
+    {"circle_squareness", "urad",
+     "(D45 - D135) / (2 R) of a circle, mean of both directions; positive: less than 90 deg", false,
+     "", false, false, false, 2},
 }};
 
 // Reads a column of another case at a given arc length; s is asked for in rising order.
@@ -141,10 +171,79 @@ double response_time(const CaseData& one, char axis, const std::vector<std::size
   return ee > 0.0 ? -re / ee * kMsPerS : kNone;
 }
 
+// The tool centre point in the workpiece at some samples, m.
+std::vector<Eigen::Vector3d> tool_positions(const CaseData& one, std::string_view name,
+                                            const std::vector<std::size_t>& rows) {
+  std::array<std::optional<std::size_t>, 3> columns;
+  for (std::size_t i = 0; i < 3; ++i) columns[i] = one.servo->column(name, "XYZ"[i]);
+  std::vector<Eigen::Vector3d> out;
+  if (!columns[0] || !columns[1] || !columns[2]) return out;
+  out.reserve(rows.size());
+  for (const std::size_t row : rows) {
+    out.emplace_back(one.servo->at(row, *columns[0]) * mm, one.servo->at(row, *columns[1]) * mm,
+                     one.servo->at(row, *columns[2]) * mm);
+  }
+  return out;
+}
+
+// A section as a circle and the true path there.
+struct Turn {
+  SectionCircle circle;
+  std::vector<Eigen::Vector2d> path;  // m
+};
+
+std::optional<Turn> turn_of(const CaseData& one, const std::string& section) {
+  const auto rows = samples_of(one, {section});
+  const auto nominal = circle_of_section(tool_positions(one, "tool_position_nominal", rows));
+  const auto* circle = std::get_if<SectionCircle>(&nominal);
+  if (circle == nullptr) return std::nullopt;
+  Turn turn{*circle, circle->in_plane(tool_positions(one, "tool_position_true", rows))};
+  if (why_no_turn(turn.path, circle->nominal)) return std::nullopt;
+  return turn;
+}
+
+// Of the two reversals of an axis the value that is larger by magnitude.
+double larger_at_reversal(const CircularTurn& turn, const SectionCircle& circle, char axis,
+                          double Reversal::*value) {
+  double larger = kNone;
+  for (const Reversal& reversal : turn.reversals) {
+    const int letter = reversal.axis == 0 ? circle.first : circle.second;
+    if ("XYZ"[letter] != axis) continue;
+    if (!(std::abs(reversal.*value) <= std::abs(larger))) larger = reversal.*value;
+  }
+  return larger;
+}
+
+double circular_value(const QuantitySpec& spec, const CaseData& one) {
+  std::vector<Turn> turns;
+  for (const std::string& section : spec.sections) {
+    auto turn = turn_of(one, section);
+    if (!turn) return kNone;
+    turns.push_back(std::move(*turn));
+  }
+  const auto& [circle, path] = turns.front();
+  if (turns.size() == 2) {
+    const BidirectionalCircle both = evaluate_both(path, turns[1].path, circle.nominal);
+    if (spec.name == "bidirectional_circular_deviation") return both.G_b / um;
+    if (spec.name == "mean_bidirectional_radial_deviation") return both.D / um;
+    assert(spec.name == "circle_squareness");
+    return both.squareness / urad;
+  }
+  const CircularTurn turn = evaluate_turn(path, circle.nominal);
+  if (spec.name == "circular_deviation") return turn.G / um;
+  if (spec.name == "circular_deviation_least_squares") return turn.G_least_squares / um;
+  if (spec.name == "radial_deviation_max") return turn.F_max / um;
+  if (spec.name == "radial_deviation_min") return turn.F_min / um;
+  assert(spec.name == "reversal_spike" || spec.name == "reversal_step");
+  const auto value = spec.name == "reversal_spike" ? &Reversal::spike : &Reversal::step;
+  return larger_at_reversal(turn, circle, spec.axis, value) / um;
+}
+
 double evaluate(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
   if (spec.name == "cycle_time") return one.duration;
   if (spec.name == "blocks") return one.blocks;
   if (!one.finished || (base != nullptr && !base->finished)) return kNone;
+  if (quantity_info(spec.name).circles > 0) return circular_value(spec, one);
   const auto rows = samples_of(one, spec.sections);
   if (spec.name == "following_error") {
     return statistic_of(spec.statistic, column_of(one, "following_error_linear", spec.axis, rows));

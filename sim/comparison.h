@@ -22,6 +22,7 @@ struct QuantityInfo {
   bool has_statistic = false;
   bool needs_base = false;     // another case to compare with
   bool needs_imposed = false;  // the scenario's imposed error model
+  int circles = 0;             // sections evaluated together, each one turn of a circle; 0: any
 };
 
 std::span<const QuantityInfo> quantities();

@@ -7,10 +7,13 @@
 #include <map>
 #include <mutex>
 #include <thread>
+#include <variant>
 
 #include "controllers/gcode/printer.h"
 #include "controllers/path/travel.h"
 #include "plant/vocabulary/units.h"
+#include "sim/metrology/circular_test.h"
+#include "sim/metrology/section_circle.h"
 #include "sim/stability.h"
 
 namespace servomill::sim {
@@ -208,6 +211,51 @@ void refuse_absent_sections(const Scenario& scenario, const std::vector<std::str
   if (!faults.empty()) throw InputError(std::move(faults));
 }
 
+// A section of a circular test that is no turn of a circle, or not the other half of its pair.
+void refuse_no_circles(const Scenario& scenario, const PreparedCase& prepared) {
+  std::map<std::string, std::variant<SectionCircle, NoCircle>> known;
+  std::map<std::string, Sense> senses;
+  std::vector<Fault> faults;
+  for (const QuantitySpec& quantity : scenario.quantities) {
+    if (quantity_info(quantity.name).circles == 0) continue;
+    const auto fault = [&](const std::string& what) {
+      faults.push_back({quantity.sections_place, fmt::format("{} of {}", quantity.name, what)});
+    };
+    const SectionCircle* first = nullptr;
+    for (const std::string& name : quantity.sections) {
+      if (!known.contains(name)) {
+        const auto positions = prepared.nominal_positions(name);
+        const auto found = known.emplace(name, circle_of_section(positions)).first;
+        if (const auto* circle = std::get_if<SectionCircle>(&found->second)) {
+          senses[name] = sense_of(circle->in_plane(positions), circle->nominal);
+        }
+      }
+      if (const auto* no = std::get_if<NoCircle>(&known.at(name))) {
+        fault(fmt::format("section '{}' in {}, which {}", name, scenario.program.file, no->why));
+        break;
+      }
+      const auto& circle = std::get<SectionCircle>(known.at(name));
+      const std::string plane = {"XYZ"[circle.first], "XYZ"[circle.second]};
+      if (quantity.axis != '\0' && plane.find(quantity.axis) == std::string::npos) {
+        fault(fmt::format("{}, but section '{}' in {} is a circle in {}", quantity.axis, name,
+                          scenario.program.file, plane));
+      }
+      if (first == nullptr) {
+        first = &circle;
+      } else if (!is_same_circle(*first, circle)) {
+        fault(fmt::format("sections '{}' and '{}' in {}, which are not the same circle",
+                          quantity.sections[0], name, scenario.program.file));
+      } else if (senses.at(quantity.sections[0]) == senses.at(name)) {
+        fault(
+            fmt::format("sections '{}' and '{}' in {}, which turn in the same direction; "
+                        "must be one clockwise, one counter-clockwise",
+                        quantity.sections[0], name, scenario.program.file));
+      }
+    }
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
 // Faults of several cases, each said once; with the case if not all cases have it.
 class CaseFaults {
  public:
@@ -345,6 +393,25 @@ CaseOutput PreparedCase::run(const StopFlag& stop, std::atomic<float>& progress)
 
 const std::vector<std::string>& PreparedCase::sections() const { return parts_->path->sections(); }
 
+std::vector<Eigen::Vector3d> PreparedCase::nominal_positions(const std::string& section) const {
+  const Parts& p = *parts_;
+  const MachineSettings& machine = p.scenario.machine;
+  const double period = machine.nc.periods.seconds(p.scenario.record_period);
+  std::vector<Eigen::Vector3d> positions;
+  controllers::Trajectory::Cursor cursor{};
+  std::size_t piece = 0;
+  for (std::size_t n = 0; static_cast<double>(n) * period <= p.trajectory->duration(); ++n) {
+    const auto now = p.trajectory->at(static_cast<double>(n) * period, cursor);
+    piece = p.path->piece_at(now.s, piece);
+    const ProgramPath::Piece& at = p.path->piece(piece);
+    if (at.rapid || p.path->sections()[static_cast<std::size_t>(at.section)] != section) continue;
+    Joints Q_prog = machine.chain.layout.joints(p.path->at(piece, now.s));
+    Q_prog.tail<kJoints - kLinearJoints>() = now.Q_ref.tail<kJoints - kLinearJoints>();
+    positions.push_back(plant::forward(machine.chain, Q_prog, p.tips.at(at.tool_offset)).p_WT);
+  }
+  return positions;
+}
+
 CaseData CaseOutput::data() const {
   return {name, &result.servo, sections, duration, blocks, result.outcome.finished};
 }
@@ -381,6 +448,7 @@ std::vector<PreparedCase> prepare(const Scenario& scenario) {
   }
   faults.report(scenario.cases.size());
   refuse_absent_sections(scenario, prepared.front().sections());
+  refuse_no_circles(scenario, prepared.front());
   return prepared;
 }
 

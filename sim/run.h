@@ -33,6 +33,10 @@ class PreparedCase {
   /// Names of the sections of the original program.
   const std::vector<std::string>& sections() const;
 
+  /// Where the tool centre point of the ideal machine will be (in the workpiece, m) at the samples
+  /// of feed motion in a section.
+  std::vector<Eigen::Vector3d> nominal_positions(const std::string& section) const;
+
   CaseOutput run(const StopFlag& stop, std::atomic<float>& progress);
 
  private:

@@ -520,11 +520,30 @@ class ScenarioReader {
     if (info.needs_imposed && out_.imposed.empty()) {
       table.fault("name", "needs the key 'imposed' of the scenario");
     }
-    spec.sections = table.texts_or("sections", {});
+    spec.sections = info.circles > 0 ? table.texts("sections") : table.texts_or("sections", {});
     spec.sections_place = table.place("sections");
     spec.reference = table.text_or("reference", "");
     if (table.has("kind")) spec.kind = kKinds[table.choice("kind", kKinds)];
-    out_.quantities.push_back(std::move(spec));
+    if (info.circles > 0) {
+      add_circles(table, spec, static_cast<std::size_t>(info.circles));
+    } else {
+      out_.quantities.push_back(std::move(spec));
+    }
+  }
+
+  // Circles are evaluated one by one, or in pairs of directions: a quantity for each.
+  void add_circles(Reader& table, const QuantitySpec& all, std::size_t together) {
+    if (table.has("sections") && (all.sections.empty() || all.sections.size() % together != 0)) {
+      table.fault("sections", together == 1
+                                  ? "must name at least one turn of a circle"
+                                  : "must name pairs of turns of a circle, one in each direction");
+    }
+    for (std::size_t i = 0; i + together <= all.sections.size(); i += together) {
+      QuantitySpec one = all;
+      const auto first = all.sections.begin() + static_cast<std::ptrdiff_t>(i);
+      one.sections.assign(first, first + static_cast<std::ptrdiff_t>(together));
+      out_.quantities.push_back(std::move(one));
+    }
   }
 
   static std::vector<std::string_view> letters_of(std::string_view axes) {

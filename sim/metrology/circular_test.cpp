@@ -143,6 +143,11 @@ std::optional<std::string> why_no_turn(Points2 points, const Circle& nominal) {
   return std::nullopt;
 }
 
+Sense sense_of(Points2 points, const Circle& nominal) {
+  return travel_of(points, nominal.centre).turned > 0.0 ? Sense::counter_clockwise
+                                                        : Sense::clockwise;
+}
+
 CircularTurn evaluate_turn(Points2 points, const Circle& nominal) {
   assert(!why_no_turn(points, nominal));
   CircularTurn turn;

@@ -82,6 +82,9 @@ double squareness_of(const std::vector<RadialDeviation>& curve, double radius);
 std::optional<std::string> why_no_turn(Points2 points, const Circle& nominal);
 
 /// @pre why_no_turn(points, nominal) is nullopt
+Sense sense_of(Points2 points, const Circle& nominal);
+
+/// @pre why_no_turn(points, nominal) is nullopt
 CircularTurn evaluate_turn(Points2 points, const Circle& nominal);
 
 /// @pre two turns, one in each direction
