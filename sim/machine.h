@@ -30,6 +30,7 @@ struct LoopPeriods {
   Tick velocity = 20;
   Tick current = 10;
   double seconds(Tick ticks) const { return static_cast<double>(ticks) * base; }
+  bool operator==(const LoopPeriods&) const = default;
 };
 
 /// Whether all these periods (ticks) fit into one static schedule: sim/schedule.h bounds its

@@ -7,13 +7,11 @@
 #include <map>
 #include <mutex>
 #include <thread>
-#include <variant>
 
 #include "controllers/gcode/printer.h"
 #include "controllers/path/travel.h"
 #include "plant/vocabulary/units.h"
-#include "sim/metrology/circular_test.h"
-#include "sim/metrology/section_circle.h"
+#include "sim/circular_sections.h"
 #include "sim/stability.h"
 
 namespace servomill::sim {
@@ -102,7 +100,7 @@ Place place_in(const StrategySpec& spec, const std::string& complaint) {
 std::unique_ptr<strategies::Strategy> make_strategy(const StrategySpec& spec,
                                                     const Scenario& scenario, const CaseSpec& one,
                                                     const Eigen::Vector3d& tip) {
-  const MachineSettings& machine = scenario.machine;
+  const MachineSettings& machine = scenario.machine_of(one);
   const auto model = scenario.errors.find(spec.model);
   const strategies::Belief belief = {
       machine.chain.layout,
@@ -159,8 +157,8 @@ void refuse_absent_axes(const std::vector<Move>& moves, const Scenario& scenario
   if (!faults.empty()) throw InputError(std::move(faults));
 }
 
-void refuse_start_outside(const Scenario& scenario, const Joints& start) {
-  const MachineSettings& machine = scenario.machine;
+void refuse_start_outside(const Scenario& scenario, const MachineSettings& machine,
+                          const Joints& start) {
   std::vector<Fault> faults;
   for (int j = 0; j < kJoints; ++j) {
     if (!machine.chain.layout.has(j)) continue;
@@ -211,51 +209,6 @@ void refuse_absent_sections(const Scenario& scenario, const std::vector<std::str
   if (!faults.empty()) throw InputError(std::move(faults));
 }
 
-// A section of a circular test that is no turn of a circle, or not the other half of its pair.
-void refuse_no_circles(const Scenario& scenario, const PreparedCase& prepared) {
-  std::map<std::string, std::variant<SectionCircle, NoCircle>> known;
-  std::map<std::string, Sense> senses;
-  std::vector<Fault> faults;
-  for (const QuantitySpec& quantity : scenario.quantities) {
-    if (quantity_info(quantity.name).circles == 0) continue;
-    const auto fault = [&](const std::string& what) {
-      faults.push_back({quantity.sections_place, fmt::format("{} of {}", quantity.name, what)});
-    };
-    const SectionCircle* first = nullptr;
-    for (const std::string& name : quantity.sections) {
-      if (!known.contains(name)) {
-        const auto positions = prepared.nominal_positions(name);
-        const auto found = known.emplace(name, circle_of_section(positions)).first;
-        if (const auto* circle = std::get_if<SectionCircle>(&found->second)) {
-          senses[name] = sense_of(circle->in_plane(positions), circle->nominal);
-        }
-      }
-      if (const auto* no = std::get_if<NoCircle>(&known.at(name))) {
-        fault(fmt::format("section '{}' in {}, which {}", name, scenario.program.file, no->why));
-        break;
-      }
-      const auto& circle = std::get<SectionCircle>(known.at(name));
-      const std::string plane = {"XYZ"[circle.first], "XYZ"[circle.second]};
-      if (quantity.axis != '\0' && plane.find(quantity.axis) == std::string::npos) {
-        fault(fmt::format("{}, but section '{}' in {} is a circle in {}", quantity.axis, name,
-                          scenario.program.file, plane));
-      }
-      if (first == nullptr) {
-        first = &circle;
-      } else if (!is_same_circle(*first, circle)) {
-        fault(fmt::format("sections '{}' and '{}' in {}, which are not the same circle",
-                          quantity.sections[0], name, scenario.program.file));
-      } else if (senses.at(quantity.sections[0]) == senses.at(name)) {
-        fault(
-            fmt::format("sections '{}' and '{}' in {}, which turn in the same direction; "
-                        "must be one clockwise, one counter-clockwise",
-                        quantity.sections[0], name, scenario.program.file));
-      }
-    }
-  }
-  if (!faults.empty()) throw InputError(std::move(faults));
-}
-
 // Faults of several cases, each said once; with the case if not all cases have it.
 class CaseFaults {
  public:
@@ -292,10 +245,10 @@ class CaseFaults {
   std::vector<Found> found_;
 };
 
-controllers::PathOptions path_options(const Scenario& scenario) {
+controllers::PathOptions path_options(const Scenario& scenario, const MachineSettings& machine) {
   controllers::PathOptions options;
-  options.tolerance = scenario.machine.nc.path_tolerance;
-  options.rotary_tolerance = scenario.machine.nc.rotary_tolerance;
+  options.tolerance = machine.nc.path_tolerance;
+  options.rotary_tolerance = machine.nc.rotary_tolerance;
   options.feed_override = scenario.program.feed_override;
   return options;
 }
@@ -316,14 +269,15 @@ struct PreparedCase::Parts {
 
 PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec)
     : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, {}, 0.0}) {
-  const MachineSettings& machine = scenario.machine;
+  const MachineSettings& machine = scenario.machine_of(spec);
   Parts& parts = *parts_;
   std::vector<Move> moves = read_program(scenario, spec);
   parts.tips = tips_of(moves, scenario.program.tools);
   parts.path = std::make_unique<ProgramPath>(moves, machine_start(scenario, spec));
   if (parts.path->size() == 0) throw InputError({scenario.program.file}, "moves no axis");
   refuse_absent_axes(moves, scenario, machine_start(scenario, spec));
-  refuse_start_outside(scenario, machine.chain.layout.joints(machine_start(scenario, spec)));
+  refuse_start_outside(scenario, machine,
+                       machine.chain.layout.joints(machine_start(scenario, spec)));
 
   // the strategies, each of which may rewrite what the one before left
   const Eigen::Vector3d tip = first_tip(moves, parts.tips);
@@ -340,7 +294,7 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec)
   if (!faults.empty()) throw InputError(std::move(faults));
   parts.trajectory = std::make_unique<controllers::Trajectory>(controllers::plan(
       moves, machine.chain.layout, start, {machine.nc.v_max, machine.nc.a_max, machine.nc.j_max},
-      path_options(scenario)));
+      path_options(scenario, machine)));
   refuse_endless(scenario, parts.trajectory->duration());
   parts.blocks = static_cast<double>(
       std::count_if(moves.begin(), moves.end(), [](const Move& m) { return is_motion(m.kind); }));
@@ -359,7 +313,7 @@ PreparedCase::PreparedCase(PreparedCase&&) noexcept = default;
 
 CaseOutput PreparedCase::run(const StopFlag& stop, std::atomic<float>& progress) {
   Parts& p = *parts_;
-  const MachineSettings& machine = p.scenario.machine;
+  const MachineSettings& machine = p.scenario.machine_of(p.spec);
   FeedbackHardware hardware = p.scenario.hardware;
   hardware.connected = p.spec.feedback_hardware;
   CaseInputs inputs{machine,
@@ -395,7 +349,7 @@ const std::vector<std::string>& PreparedCase::sections() const { return parts_->
 
 std::vector<Eigen::Vector3d> PreparedCase::nominal_positions(const std::string& section) const {
   const Parts& p = *parts_;
-  const MachineSettings& machine = p.scenario.machine;
+  const MachineSettings& machine = p.scenario.machine_of(p.spec);
   const double period = machine.nc.periods.seconds(p.scenario.record_period);
   std::vector<Eigen::Vector3d> positions;
   controllers::Trajectory::Cursor cursor{};
@@ -431,16 +385,20 @@ namespace {
 
 // Everything that can be wrong with the input is found here.
 std::vector<PreparedCase> prepare(const Scenario& scenario) {
-  Tick delay = scenario.machine.scale_delay;
+  const auto reading_delay = [&](const CaseSpec& spec) {
+    return scenario.machine.scale_delay +
+           (spec.feedback_hardware ? scenario.hardware.signal_delay : 0);
+  };
+  Tick longest = scenario.machine.scale_delay;
   for (const CaseSpec& spec : scenario.cases) {
-    if (!spec.feedback_hardware) continue;
-    delay = scenario.machine.scale_delay + scenario.hardware.signal_delay;
+    if (!spec.machine) longest = std::max(longest, reading_delay(spec));
   }
-  check_stability(scenario.machine, delay);
+  check_stability(scenario.machine, longest);
   std::vector<PreparedCase> prepared;
   CaseFaults faults;
   for (const CaseSpec& spec : scenario.cases) {
     try {
+      if (spec.machine) check_stability(*spec.machine, reading_delay(spec));
       prepared.emplace_back(scenario, spec);
     } catch (const InputError& error) {
       faults.add(spec.name, error);
@@ -448,7 +406,10 @@ std::vector<PreparedCase> prepare(const Scenario& scenario) {
   }
   faults.report(scenario.cases.size());
   refuse_absent_sections(scenario, prepared.front().sections());
-  refuse_no_circles(scenario, prepared.front());
+  auto faults_of_circles = circular_faults(scenario, [&](const std::string& section) {
+    return prepared.front().nominal_positions(section);
+  });
+  if (!faults_of_circles.empty()) throw InputError(std::move(faults_of_circles));
   return prepared;
 }
 

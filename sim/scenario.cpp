@@ -85,6 +85,7 @@ class ScenarioReader {
       read_sweep(sweep);
     }
     root.finish();
+    read_case_machines();
     document_.merge(with_program_text());
     out_.resolved = document_.to_toml();
   }
@@ -367,6 +368,7 @@ class ScenarioReader {
     for (Reader& strategy : table.tables_or_none("strategy")) {
       read_strategy(strategy, spec);
     }
+    if (table.has("machine_override")) note_machine_override(table);
     if (spec.has_feedback()) {
       if (table.has("feedback_hardware") && !spec.feedback_hardware) {
         table.fault("feedback_hardware", "a case with the strategy feedback needs its hardware");
@@ -374,6 +376,49 @@ class ScenarioReader {
       spec.feedback_hardware = true;
     }
     out_.cases.push_back(std::move(spec));
+  }
+
+  // Read when all else is known to be right: on top of a faulty machine nothing can be said.
+  void note_machine_override(Reader& table) {
+    const Value* override = table.raw("machine_override");
+    if (override->type != Value::Type::table) {
+      table.fault("machine_override", "must be a table");
+      return;
+    }
+    if (override->find("structure") != nullptr) {
+      table.fault("machine_override", "has the key structure, which is common to all cases");
+    }
+    case_overrides_.emplace(out_.cases.size(), *override);
+  }
+
+  // The machines of cases that override keys of it: that of the scenario, with what they say laid
+  // over it.
+  void read_case_machines() {
+    std::vector<Fault> faults;
+    for (const auto& [index, override] : case_overrides_) {
+      Document document = document_;
+      document.merge(as_machine(override));
+      Reader root(document);
+      for (const std::string& key : root.keys()) {
+        if (key != "machine") root.raw(key);
+      }
+      try {
+        Reader machine = root.table("machine");
+        CaseSpec& one = out_.cases[index];
+        one.machine = read_machine(machine);
+        root.finish();
+        if (one.machine->nc.periods != out_.machine.nc.periods ||
+            one.machine->scale_delay != out_.machine.scale_delay) {
+          faults.push_back({override.place,
+                            fmt::format("case {}: machine_override changes the periods of the "
+                                        "loops or nc.scale_delay_us, which are common to all cases",
+                                        one.name)});
+        }
+      } catch (const InputError& error) {
+        faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+      }
+    }
+    if (!faults.empty()) throw InputError(std::move(faults));
   }
 
   // The name becomes a group of the result file.
@@ -568,8 +613,9 @@ class ScenarioReader {
   Document document_;
   const std::vector<std::string>& changes_;
   Scenario& out_;
-  std::vector<std::string> error_models_;  // names, as far as read
-  bool cases_are_known_ = true;            // all have names of their own
+  std::vector<std::string> error_models_;        // names, as far as read
+  bool cases_are_known_ = true;                  // all have names of their own
+  std::map<std::size_t, Value> case_overrides_;  // machine_override, by index of the case
 };
 
 constexpr int kMostBases = 8;

@@ -44,6 +44,7 @@ struct CaseSpec {
   std::vector<StrategySpec> strategies;
   bool feedback_hardware = false;
   ServoModel servo = ServoModel::cascade;
+  std::optional<MachineSettings> machine;  // where the case overrides keys of the machine
 
   bool has_feedback() const;  ///< among its strategies
 };
@@ -87,6 +88,10 @@ struct Scenario {
   std::string resolved;            // one TOML document with the machine and all changes in it
 
   const CaseSpec* find_case(std::string_view case_name) const;
+  /// The machine that a case runs on. Axes and periods are those of `machine` for all cases.
+  const MachineSettings& machine_of(const CaseSpec& one) const {
+    return one.machine ? *one.machine : machine;
+  }
 };
 
 /// Reads a scenario and the files that it names (paths relative to it).

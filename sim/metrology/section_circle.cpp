@@ -27,7 +27,7 @@ std::vector<Vector2d> SectionCircle::in_plane(std::span<const Vector3d> points) 
 }
 
 std::variant<SectionCircle, NoCircle> circle_of_section(std::span<const Vector3d> nominal) {
-  if (nominal.size() < 3) return NoCircle{"has no feed motion to speak of"};
+  if (nominal.size() < 3) return NoCircle{"has no feed motion"};
   Vector3d low = nominal.front(), high = nominal.front();
   for (const Vector3d& p : nominal) {
     low = low.cwiseMin(p);

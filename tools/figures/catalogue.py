@@ -2,7 +2,7 @@
 import dataclasses
 from typing import Callable
 
-from figures import deviations, error_functions, lag, notches, straightness, volumetric
+from figures import circular, deviations, error_functions, lag, notches, straightness, volumetric
 
 
 @dataclasses.dataclass(frozen=True)
@@ -29,6 +29,8 @@ FIGURES = (
     Figure("figure15", "run", "top plane of nominal, generated, compensated; differences",
            volumetric.draw_plane),
     Figure("lag", "sweep", "residual and response time against feed", lag.draw),
+    Figure("circular", "run", "circular test: radial deviation as a ball bar shows it", circular.draw),
+    Figure("reversals", "run", "circular test: where the axes reverse", circular.draw_reversals),
     Figure("deviations", "run", "following error, tool deviation and contour error over time",
            deviations.draw),
 )
