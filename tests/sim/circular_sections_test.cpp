@@ -11,20 +11,20 @@
 namespace servomill::sim {
 namespace {
 
-// R = 20 mm; turns begin and end at speed, on a diagonal where no axis reverses.
+// R = 28 mm; turns begin and end at speed, on a diagonal where no axis reverses.
 constexpr const char* kProgram =
-    "G17 G21 G40 G90 G94 G64 P0.0001\nF4000\n"
-    "G0 X20 Y20\nG1 X40 Y0\n"
+    "G17 G21 G40 G90 G94 G64 P0.001\nF4000\n"
+    "G0 X0 Y40\nG3 X40 Y0 I20 J-20\n"
     "(MSG, ccw)\nG3 X40 Y0 I-20 J20\n"
-    "(MSG, approach)\nG3 X40 Y40 I-20 J20\nG2 X40 Y0 I-20 J-20\n"
+    "(MSG, approach)\nG3 X0 Y40 I-20 J20\nG2 X40 Y0 I20 J-20\n"
     "(MSG, cw)\nG2 X40 Y0 I-20 J20\n"
     "(MSG, approach)\nG2 X0 Y40 I-20 J20\n"
-    "(MSG, half)\nG3 X0 Y0 I20 J-20\n"
-    "(MSG, square)\nG1 X10\nG1 Y10\nG1 X0\nG1 Y0\n"
+    "(MSG, half)\nG3 X40 Y0 I20 J-20\n"
+    "(MSG, square)\nG1 X50\nG1 Y10\nG1 X40\nG1 Y0\n"
     "(MSG, line)\nG1 X30\n"
     "(MSG, skew)\nG1 X0 Y10 Z5\n"
     "(MSG, small)\nG3 X0 Y10 I-5 J0\n"
-    "(MSG, zx)\nG18 G3 X0 Z5 I0 K-5\n";
+    "(MSG, zx)\nG18 G3 X0 Z5 I0 K-5\nM2\n";
 
 std::string quantity(const std::string& name, const std::string& rest) {
   return "[[quantity]]\nname = \"" + name + "\"\n" + rest + "\n";
@@ -59,8 +59,7 @@ TEST(CircularSections, AreEvaluatedOneByOneOrInPairs) {
 TEST(CircularSections, MustBeNamedAsMeant) {
   EXPECT_EQ(faults_of(quantity("circular_deviation", "sections = [\"ccw\", \"zx\"]")), "");
   EXPECT_EQ(faults_of(quantity("reversal_spike", "axis = \"Z\"\nsections = [\"zx\"]")), "");
-  EXPECT_EQ(faults_of(quantity("circular_deviation", "")),
-            "quantity[0].sections is missing; must be a list of texts\n");
+  EXPECT_EQ(faults_of(quantity("circular_deviation", "")), "quantity[0].sections is missing\n");
   EXPECT_EQ(faults_of(quantity("circular_deviation", "sections = []")),
             "quantity[0].sections = []; must name at least one turn of a circle\n");
   EXPECT_EQ(faults_of(quantity("bidirectional_circular_deviation",
