@@ -18,6 +18,7 @@ constexpr double kReversal = -0.5;     // cosine of the sharpest corner that is 
 constexpr double kLongLeg = 3.0;       // windows, below it corners share their curvature
 constexpr std::array<double, 3> kCurveShares = {0.25, 0.5, 0.8};  // tried on each chain
 constexpr double kChordAngle = 0.1;                               // rad, longest chord of an arc
+constexpr double kSameCircle = 1e-9;    // m, by which circles that are meant to be one may differ
 constexpr double kChordsPerWindow = 4;  // chords of an arc in the half-width of its window
 
 }  // namespace
@@ -120,7 +121,11 @@ class Planner {
     if (last_ && must_stop(*last_, leg)) finish_chain();
     LegSpan span{index, vertices_.size() - 1, 0, feed_limit(move, leg), leg.rapid};
     if (arc) {
-      add_arc(*arc, move, step, static_cast<int>(index));
+      const bool continues = last_ && last_arc_ && is_same_circle(*last_arc_, *arc, step);
+      if (!continues) arc_index_ = static_cast<int>(index);
+      // on one circle the joint of two arcs is a point like any other
+      if (continues && !skipped_) vertices_.back().arc = arc_index_;
+      add_arc(*arc, move, step, arc_index_);
     } else {
       add_point(u_end, move, -1);
     }
@@ -131,7 +136,20 @@ class Planner {
     Q_ = Q_end;
     words_ = move.end_machine;
     last_ = leg;
+    last_arc_ = arc;
     if (leg.stop_after) finish_chain();
+  }
+
+  // Whether an arc goes on where another one ended, on the same circle and in the same direction.
+  static bool is_same_circle(const ArcSweep& one, const ArcSweep& next, const Joints& step) {
+    const auto near = [](double a, double b) { return std::abs(a - b) < kSameCircle; };
+    const bool is_flat = near(one.begin[one.c], one.end[one.c]) &&
+                         near(next.begin[one.c], next.end[one.c]) &&
+                         step.tail<kJoints - kLinearJoints>().isZero(0.0);
+    return is_flat && one.c == next.c && (one.sweep > 0.0) == (next.sweep > 0.0) &&
+           near(one.centre_a, next.centre_a) && near(one.centre_b, next.centre_b) &&
+           near(one.r_begin, next.r_begin) && near(one.r_end, next.r_end) &&
+           near(one.r_begin, one.r_end);
   }
 
   Joints arc_tangent(const ArcSweep& arc, const Joints& step, double fraction) const {
@@ -248,6 +266,7 @@ class Planner {
     vertices_.assign(1, PathVertex{u_, 0.0, 0.0, -1});
     spans_.clear();
     last_.reset();
+    last_arc_.reset();
     skipped_ = false;
   }
 
@@ -316,8 +335,10 @@ class Planner {
   Trajectory out_;
   double t_ = 0.0;
   // of the chain being collected
-  AxisWords words_;  // where it is, machine coordinates
-  Joints Q_, u_;     // the same, joints; scaled
+  AxisWords words_;                   // where it is, machine coordinates
+  Joints Q_, u_;                      // the same, joints; scaled
+  std::optional<ArcSweep> last_arc_;  // of the leg before, if it was an arc
+  int arc_index_ = -1;                // of the circle that is being followed
   std::vector<PathVertex> vertices_;
   std::vector<LegSpan> spans_;
   std::optional<Leg> last_;
