@@ -1,0 +1,77 @@
+#include "sim/frequency/axis_stand.h"
+
+#include <algorithm>
+
+namespace servomill::sim {
+namespace {
+
+// The loops of the axis, and every tick.
+std::vector<Rate> stand_rates(const LoopPeriods& periods, Tick reading_delay, PositionLoop loop) {
+  std::vector<Rate> rates = loop_rates(periods, reading_delay);
+  if (loop == PositionLoop::open) {
+    std::erase_if(rates, [](const Rate& rate) { return rate.due & (kSample | kPositionLoop); });
+  }
+  rates.push_back({kRecord, 1, 0});
+  return rates;
+}
+
+}  // namespace
+
+AxisStand::AxisStand(const MachineSettings& machine, int joint, Tick reading_delay,
+                     PositionLoop loop)
+    : machine_(machine),
+      joint_(joint),
+      schedule_(make_schedule(stand_rates(machine_.nc.periods, reading_delay, loop))),
+      axes_(machine_, {joint}, schedule_) {
+  settle(0.0);
+  axes_.each_state(joint_, [&](double&) { ++states_; });
+}
+
+void AxisStand::settle(double position) {
+  set_ = {};
+  Joints Q = Joints::Zero();
+  Q[joint_] = position;
+  axes_.inject(joint_, {});
+  axes_.settle(Q, Eigen::Vector3d::Zero());
+}
+
+void AxisStand::set_states(const Eigen::VectorXd& x) {
+  Eigen::Index k = 0;
+  axes_.each_state(joint_, [&](double& state) { state = x[k++]; });
+}
+
+Eigen::VectorXd AxisStand::get_states() {
+  Eigen::VectorXd x(states_);
+  Eigen::Index k = 0;
+  axes_.each_state(joint_, [&](double& state) { x[k++] = state; });
+  return x;
+}
+
+void AxisStand::run_loops(std::uint8_t due, const StandInput& in) {
+  axes_.inject(joint_, in.added);
+  if (due & kSample) axes_.take_reading(Eigen::Vector3d::Zero());
+  if (due & kPositionLoop) {
+    set_.Q_ref[joint_] = set_.Q_cmd[joint_] = in.q;
+    set_.dQ_ff[joint_] = in.dq;
+    set_.ddQ_ff[joint_] = in.ddq;
+    axes_.run_position_loops(set_);
+  }
+  if (due & kCurrentLoop) axes_.run_current_loops();
+  if (due & kVelocityLoop) axes_.run_velocity_loops();
+}
+
+AxisSignals AxisStand::signals() const {
+  AxisSignals out{};
+  const auto set = [&](AxisSignal signal, double value) { out[index_of(signal)] = value; };
+  set(AxisSignal::position, axes_.Q_true()[joint_]);
+  set(AxisSignal::velocity, axes_.dQ_true()[joint_]);
+  set(AxisSignal::motor_speed, axes_.motor_speed()[joint_]);
+  set(AxisSignal::current, axes_.current()[joint_]);
+  set(AxisSignal::reading, axes_.Q_read()[joint_]);
+  set(AxisSignal::position_error, set_.Q_cmd[joint_] - axes_.Q_read()[joint_]);
+  set(AxisSignal::measured_speed, axes_.measured_speed()[joint_]);
+  set(AxisSignal::speed_error, axes_.speed_error()[joint_]);
+  return out;
+}
+
+}  // namespace servomill::sim

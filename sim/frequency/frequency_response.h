@@ -1,0 +1,69 @@
+/// Exact frequency response of one axis with its sampled loops.
+#pragma once
+
+#include <complex>
+
+#include "sim/frequency/axis_stand.h"
+
+namespace servomill::sim {
+
+using Complex = std::complex<double>;
+
+/// Where a sinusoid of amplitude 1 enters.
+enum class Entry : std::uint8_t {
+  set_point,              // m, rad; its derivatives are not fed forward
+  set_point_fed_forward,  // the same with feed-forward as the NC has it
+  velocity_command,       // m/s, rad/s
+  current_command,        // A
+  force,                  // N, N m: on the slide, along +x
+  reading,                // m, rad
+};
+
+/// Fundamental of every signal as a complex amplitude.
+using Response = std::array<Complex, kAxisSignals>;
+
+/// What is fed in for the complex amplitude u of one tick's sinusoid: the real part of it. A force
+/// is held over the tick and given so that its fundamental is that of Re(u exp(j w t)).
+/// @param w  rad/s
+/// @param h  s, base period
+StandInput sinusoid(Entry entry, Complex u, double w, double h);
+
+/// The linear part of an axis (sim/stability.h) under sampled loops is a linear system whose
+/// coefficients repeat after one hyperperiod T: x(t + T) = Phi x(t) + f. A sinusoid exp(j w t) as
+/// input has the steady answer
+///
+///   x(t + T) = exp(j w T) x(t),   x(0) = (exp(j w T) I - Phi)^-1 x_f,
+///
+/// where x_f is where one hyperperiod leads from x = 0. Each signal is then y(t) = p(t) exp(j w t)
+/// with p of period T; its fundamental is the mean of p, taken over all base ticks, of a sampled
+/// signal over its instants. No state is waited for, an unstable loop has its response, too.
+/// Source: lifting of linear periodic systems, S. Bittanti, P. Colaneri, Periodic Systems, 2009.
+///
+/// A response at a reading, error or speed against the error of the same loop is the open loop
+/// L = y / e; where the hyperperiod is the period of that loop it is the sampled open loop exactly.
+class FrequencyResponse {
+ public:
+  /// @param loop  open: the velocity loop alone, without set point
+  FrequencyResponse(const MachineSettings& machine, int joint, Tick reading_delay,
+                    PositionLoop loop);
+
+  /// @param f  Hz, > 0
+  Response at(Entry entry, double f);
+
+  const AxisStand& stand() const { return stand_; }
+
+ private:
+  AxisStand stand_;
+  Eigen::MatrixXd monodromy_;
+};
+
+/// Output over input.
+inline Complex ratio(const Response& response, AxisSignal output, AxisSignal input) {
+  return response[index_of(output)] / response[index_of(input)];
+}
+
+/// Largest eigenvalue magnitude of the velocity loop without position loop over one hyperperiod of
+/// all loops; the position that nobody controls is left out. Below 1 the loop is stable.
+double velocity_spectral_radius(const MachineSettings& machine, int joint);
+
+}  // namespace servomill::sim
