@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "sim/stability.h"
@@ -12,30 +13,6 @@ namespace servomill::sim {
 namespace {
 
 constexpr Complex kJ{0.0, 1.0};
-
-// Mean of y(t) exp(-j w t) over the instants at which each signal exists.
-class Fundamental {
- public:
-  void add(std::uint8_t due, const AxisSignals& y, Complex turn) {
-    for (std::size_t s = 0; s < kAxisSignals; ++s) {
-      const std::uint8_t loop = sampled_by(static_cast<AxisSignal>(s));
-      if (loop != 0 && !(due & loop)) continue;
-      sum_[s] += y[s] * turn;
-      ++count_[s];
-    }
-  }
-  Response mean() const {
-    Response out{};
-    for (std::size_t s = 0; s < kAxisSignals; ++s) {
-      if (count_[s] > 0) out[s] = sum_[s] / static_cast<double>(count_[s]);
-    }
-    return out;
-  }
-
- private:
-  Response sum_{};
-  std::array<int, kAxisSignals> count_{};
-};
 
 constexpr auto kLookAway = [](Tick, std::uint8_t, const AxisSignals&) {};
 
@@ -122,6 +99,16 @@ Response FrequencyResponse::at(Entry entry, double f) {
   Response mean = sum.mean();
   for (Complex& one : mean) one *= 2.0;  // each instant was counted in both runs
   return mean;
+}
+
+double slowest_time_constant(const MachineSettings& machine, int joint, Tick reading_delay,
+                             PositionLoop loop) {
+  const LoopPeriods& p = machine.nc.periods;
+  const double T = p.seconds(hyperperiod(loop_rates(p, reading_delay)));
+  const double radius = loop == PositionLoop::closed
+                            ? spectral_radius(machine, joint, reading_delay)
+                            : velocity_spectral_radius(machine, joint);
+  return radius < 1.0 ? -T / std::log(radius) : std::numeric_limits<double>::infinity();
 }
 
 double velocity_spectral_radius(const MachineSettings& machine, int joint) {

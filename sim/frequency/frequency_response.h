@@ -1,13 +1,9 @@
 /// Exact frequency response of one axis with its sampled loops.
 #pragma once
 
-#include <complex>
-
-#include "sim/frequency/axis_stand.h"
+#include "sim/frequency/fundamental.h"
 
 namespace servomill::sim {
-
-using Complex = std::complex<double>;
 
 /// Where a sinusoid of amplitude 1 enters.
 enum class Entry : std::uint8_t {
@@ -18,9 +14,6 @@ enum class Entry : std::uint8_t {
   force,                  // N, N m: on the slide, along +x
   reading,                // m, rad
 };
-
-/// Fundamental of every signal as a complex amplitude.
-using Response = std::array<Complex, kAxisSignals>;
 
 /// What is fed in for the complex amplitude u of one tick's sinusoid: the real part of it. A force
 /// is held over the tick and given so that its fundamental is that of Re(u exp(j w t)).
@@ -57,13 +50,12 @@ class FrequencyResponse {
   Eigen::MatrixXd monodromy_;
 };
 
-/// Output over input.
-inline Complex ratio(const Response& response, AxisSignal output, AxisSignal input) {
-  return response[index_of(output)] / response[index_of(input)];
-}
-
 /// Largest eigenvalue magnitude of the velocity loop without position loop over one hyperperiod of
 /// all loops; the position that nobody controls is left out. Below 1 the loop is stable.
 double velocity_spectral_radius(const MachineSettings& machine, int joint);
+
+/// Time in which the slowest part of a transient falls to 1/e (s); infinite if it grows.
+double slowest_time_constant(const MachineSettings& machine, int joint, Tick reading_delay,
+                             PositionLoop loop);
 
 }  // namespace servomill::sim

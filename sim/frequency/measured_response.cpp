@@ -1,0 +1,215 @@
+#include "sim/frequency/measured_response.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace servomill::sim {
+namespace {
+
+constexpr double kDecay = 20.7;         // time constants to 1e-9
+constexpr double kLongestWait = 60.0;   // s
+constexpr double kLeastWindow = 0.1;    // s
+constexpr double kLeastPeriods = 2.0;   // of the lowest frequency in a window of one sine
+constexpr double kSharedPeriods = 6.0;  // of the lowest frequency in that of a multi-sine
+constexpr double kCurrentShare = 0.02;
+
+// Whole periods in whole hyperperiods.
+struct Window {
+  Tick hyperperiods = 1;
+  std::vector<Tick> periods;  // one number a frequency
+};
+
+// A sinusoid whose mirror image the sampling folds onto itself cannot be told from it.
+bool folds_onto_itself(Tick periods, Tick hyperperiods) {
+  return (2 * periods) % hyperperiods == 0;
+}
+
+Window window_of(double f, double T) {
+  const Tick periods = static_cast<Tick>(std::ceil(std::max(kLeastPeriods, f * kLeastWindow)));
+  Tick hyperperiods = std::max<Tick>(1, std::llround(static_cast<double>(periods) / (f * T)));
+  while (folds_onto_itself(periods, hyperperiods)) ++hyperperiods;
+  return {hyperperiods, {periods}};
+}
+
+Window window_of_all(const std::vector<double>& f, double T) {
+  const double lowest = *std::min_element(f.begin(), f.end());
+  Window window;
+  window.hyperperiods =
+      static_cast<Tick>(std::ceil(std::max(kLeastWindow, kSharedPeriods / lowest) / T - 1e-6));
+  for (const double one : f) {
+    Tick periods =
+        std::max<Tick>(1, std::llround(one * T * static_cast<double>(window.hyperperiods)));
+    if (folds_onto_itself(periods, window.hyperperiods)) ++periods;
+    if (window.periods.empty() || periods > window.periods.back()) {
+      window.periods.push_back(periods);
+    }
+  }
+  return window;
+}
+
+double frequency(const Window& window, std::size_t k, double T) {
+  return static_cast<double>(window.periods[k]) / (static_cast<double>(window.hyperperiods) * T);
+}
+
+// Sum of sinusoids of one window on the ticks of the stand.
+class Excitation {
+ public:
+  Excitation(const Window& window, const AxisStand& stand, const Measurement& how)
+      : how_(how), h_(stand.base()), ticks_(window.hyperperiods * stand.hyperperiod()) {
+    turn_.reserve(static_cast<std::size_t>(ticks_));
+    for (Tick n = 0; n < ticks_; ++n) {
+      turn_.push_back(std::polar(
+          1.0, 2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(ticks_)));
+    }
+    const double K = static_cast<double>(window.periods.size());
+    for (std::size_t k = 0; k < window.periods.size(); ++k) {
+      const double order = static_cast<double>(k);
+      lines_.push_back({window.periods[k],
+                        2.0 * std::numbers::pi * frequency(window, k, stand.period()),
+                        std::polar(1.0, -std::numbers::pi * order * (order + 1.0) / K)});
+    }
+    double peak = 0.0;
+    for (Tick n = 0; n < ticks_; ++n) peak = std::max(peak, std::abs(sum(n).real()));
+    for (Line& line : lines_) line.amplitude *= how_.amplitude / peak;
+    crest_factor_ = peak / std::sqrt(0.5 * K);
+  }
+
+  double crest_factor() const { return crest_factor_; }
+  std::size_t lines() const { return lines_.size(); }
+  Complex amplitude(std::size_t k) const { return lines_[k].amplitude; }
+  Complex turn(std::size_t k, Tick n) const {
+    return turn_[static_cast<std::size_t>(lines_[k].periods * (n % ticks_) % ticks_)];
+  }
+
+  StandInput at(Tick n) const {
+    StandInput in;
+    for (std::size_t k = 0; k < lines_.size(); ++k) {
+      const StandInput one =
+          sinusoid(how_.entry, lines_[k].amplitude * turn(k, n), lines_[k].w, h_);
+      in.q += one.q;
+      in.dq += one.dq;
+      in.ddq += one.ddq;
+      in.added.force += one.added.force;
+      in.added.velocity += one.added.velocity;
+      in.added.current += one.added.current;
+      in.added.reading += one.added.reading;
+    }
+    return in;
+  }
+
+ private:
+  struct Line {
+    Tick periods;
+    double w;  // rad/s
+    Complex amplitude;
+  };
+  Complex sum(Tick n) const {
+    Complex u = 0.0;
+    for (std::size_t k = 0; k < lines_.size(); ++k) u += lines_[k].amplitude * turn(k, n);
+    return u;
+  }
+
+  Measurement how_;
+  double h_;
+  Tick ticks_;
+  std::vector<Complex> turn_;
+  std::vector<Line> lines_;
+  double crest_factor_ = 0.0;
+};
+
+void measure_window(AxisStand& stand, PositionLoop loop, const Measurement& how,
+                    const Window& window, double wait, MeasuredResponse& out) {
+  const Excitation excitation(window, stand, how);
+  const double h = stand.base();
+  const auto feed = [&](Tick n) {
+    StandInput in = excitation.at(n);
+    in.q += how.position + how.velocity * h * static_cast<double>(n);
+    in.dq += how.velocity;
+    if (loop == PositionLoop::open) in.added.velocity += how.velocity;
+    return in;
+  };
+  std::vector<Fundamental> sums(excitation.lines());
+  const auto add = [&](Tick n, std::uint8_t due, AxisSignals y) {
+    const double moved = how.position + how.velocity * h * static_cast<double>(n);
+    y[index_of(AxisSignal::position)] -= moved;
+    y[index_of(AxisSignal::reading)] -= moved;
+    out.peak_current = std::max(out.peak_current, std::abs(y[index_of(AxisSignal::current)]));
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      sums[k].add(due, y, std::conj(excitation.turn(k, n)));
+    }
+  };
+
+  stand.settle(how.position);
+  const Tick H = stand.hyperperiod();
+  const Tick first = static_cast<Tick>(std::ceil(wait / stand.period()));
+  for (Tick p = 0; p < first; ++p) {
+    stand.run(p * H, feed, [](Tick, std::uint8_t, const AxisSignals&) {});
+  }
+  for (Tick p = first; p < first + window.hyperperiods; ++p) stand.run(p * H, feed, add);
+
+  out.crest_factor = excitation.crest_factor();
+  out.simulated_time += static_cast<double>(first + window.hyperperiods) * stand.period();
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    MeasuredPoint& point = out.points.emplace_back();
+    point.f = frequency(window, k, stand.period());
+    // of a real sinusoid half the amplitude turns forward
+    for (std::size_t s = 0; s < kAxisSignals; ++s) {
+      point.response[s] = 2.0 * sums[k].mean()[s] / excitation.amplitude(k);
+    }
+  }
+}
+
+}  // namespace
+
+MeasuredResponse measure(const MachineSettings& machine, int joint, Tick reading_delay,
+                         PositionLoop loop, const Measurement& how,
+                         const std::vector<double>& wanted) {
+  assert(how.amplitude > 0.0);
+  AxisStand stand(machine, joint, reading_delay, loop);
+  const double wait =
+      std::min(kLongestWait, kDecay * slowest_time_constant(machine, joint, reading_delay, loop));
+  MeasuredResponse out;
+  if (how.method == Method::multi_sine) {
+    measure_window(stand, loop, how, window_of_all(wanted, stand.period()), wait, out);
+    return out;
+  }
+  for (const double f : wanted) {
+    const Window window = window_of(f, stand.period());
+    if (!out.points.empty() && frequency(window, 0, stand.period()) <= out.points.back().f)
+      continue;
+    measure_window(stand, loop, how, window, wait, out);
+  }
+  return out;
+}
+
+double default_amplitude(const MachineSettings& machine, int joint, Entry entry) {
+  const controllers::CascadeParams& c = machine.nc.cascade[static_cast<std::size_t>(joint)];
+  const double current = kCurrentShare * c.i_max;
+  switch (entry) {
+    case Entry::set_point:
+    case Entry::set_point_fed_forward:
+    case Entry::reading:
+      return current * c.Kt * c.r / (c.Kp * c.Kv);
+    case Entry::velocity_command:
+      return current * c.Kt * c.r / c.Kp;
+    case Entry::current_command:
+      return current;
+    case Entry::force:
+      return current * c.Kt / c.r;
+  }
+  return current;
+}
+
+double default_velocity(const MachineSettings& machine, int joint, Entry entry, double amplitude) {
+  const plant::FeedDriveParams& drive = machine.drives[static_cast<std::size_t>(joint)];
+  if (drive.friction.kind == plant::FrictionKind::none && drive.gap == 0.0) return 0.0;
+  // four times the velocity command that the amplitude asks for, or stands for
+  constexpr double kAhead = 4.0;
+  const double share = amplitude / default_amplitude(machine, joint, entry);
+  return kAhead * share * default_amplitude(machine, joint, Entry::velocity_command);
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,57 @@
+/// Frequency response of one axis as an engineer measures it: fed with sinusoids, simulated with
+/// everything that the scenario gives the axis (friction, backlash, quantisation, limits).
+#pragma once
+
+#include <vector>
+
+#include "sim/frequency/frequency_response.h"
+
+namespace servomill::sim {
+
+enum class Method : std::uint8_t {
+  sine,        // one frequency after the other
+  multi_sine,  // all at once, phases after Schroeder
+};
+
+struct Measurement {
+  Entry entry = Entry::set_point;
+  Method method = Method::sine;
+  double amplitude = 0.0;  // peak of what is fed in, in the unit of the entry; > 0
+  double velocity = 0.0;   // m/s, rad/s: the axis moves on with it, so that friction does not stick
+  double position = 0.0;   // m, rad: where it begins
+};
+
+struct MeasuredPoint {
+  double f = 0.0;     // Hz
+  Response response;  // for the amplitude 1
+};
+
+struct MeasuredResponse {
+  std::vector<MeasuredPoint> points;
+  double crest_factor = 0.0;    // peak over effective value of what is fed in
+  double peak_current = 0.0;    // A, after the transient
+  double simulated_time = 0.0;  // s
+};
+
+/// Waits until the slowest transient has decayed to 1e-9, then takes fundamentals. Frequencies are
+/// moved to where whole periods fill whole hyperperiods: nothing leaks then, and what the sampling
+/// adds is orthogonal. Several that meet in one are measured once. A steady velocity is subtracted
+/// from position and reading.
+///
+/// A multi-sine has K equal amplitudes and the phases phi_k = -pi k (k - 1) / K.
+/// Source: M. Schroeder, Synthesis of low-peak-factor signals and binary sequences with low
+/// autocorrelation, IEEE Trans. Inf. Theory 16 (1970) 85, for equal power.
+/// @param wanted  Hz, rising, below half the rate of the loop that is fed
+/// @pre the loop is stable
+MeasuredResponse measure(const MachineSettings& machine, int joint, Tick reading_delay,
+                         PositionLoop loop, const Measurement& how,
+                         const std::vector<double>& wanted);
+
+/// Amplitude for which the velocity loop's proportional part asks for 2 % of the largest current.
+double default_amplitude(const MachineSettings& machine, int joint, Entry entry);
+
+/// Velocity at which friction does not stick under that amplitude; 0 for an axis without friction
+/// and backlash.
+double default_velocity(const MachineSettings& machine, int joint, Entry entry, double amplitude);
+
+}  // namespace servomill::sim

@@ -1,0 +1,101 @@
+/// Responses measured in the simulation against the exact ones.
+#include "sim/frequency/measured_response.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "plant/vocabulary/units.h"
+#include "sim/frequency/margins.h"
+#include "sim/scenario.h"
+#include "sim/stability.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr double kMagnitudeTol = 0.1;  // dB, wanted of a measurement
+constexpr double kPhaseTol = 1.0;      // deg
+
+MachineSettings hsm600u() {
+  return read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
+}
+
+void use_CC422(MachineSettings& machine) {
+  machine.nc.periods.position = 180;
+  machine.nc.periods.velocity = 60;
+  for (auto& cascade : machine.nc.cascade) cascade.Tv = 0.6e-3;
+}
+
+struct Deviation {
+  double dB = 0.0, deg = 0.0;
+};
+
+struct Of {
+  const char* name;
+  PositionLoop loop;
+  Entry entry;
+  AxisSignal output;
+  int input;  // a signal, or -1: what is fed in
+};
+
+Complex taken(const Of& of, const Response& response) {
+  const Complex y = response[index_of(of.output)];
+  return of.input < 0 ? y : y / response[static_cast<std::size_t>(of.input)];
+}
+
+Deviation largest_deviation(const MachineSettings& machine, int joint, Tick delay, const Of& of,
+                            const MeasuredResponse& measured) {
+  FrequencyResponse exact(machine, joint, delay, of.loop);
+  Deviation worst;
+  for (const MeasuredPoint& point : measured.points) {
+    const Complex q = taken(of, point.response) / taken(of, exact.at(of.entry, point.f));
+    worst.dB = std::max(worst.dB, std::abs(20.0 * std::log10(std::abs(q))));
+    worst.deg = std::max(worst.deg, std::abs(std::arg(q)) / deg);
+  }
+  return worst;
+}
+
+constexpr int kOfInput = -1;
+constexpr std::array<Of, 6> kAll = {{
+    {"position_closed", PositionLoop::closed, Entry::set_point, AxisSignal::position, kOfInput},
+    {"position_open", PositionLoop::closed, Entry::set_point, AxisSignal::reading,
+     static_cast<int>(AxisSignal::position_error)},
+    {"position_fed_forward", PositionLoop::closed, Entry::set_point_fed_forward,
+     AxisSignal::position, kOfInput},
+    {"velocity_closed", PositionLoop::open, Entry::velocity_command, AxisSignal::motor_speed,
+     kOfInput},
+    {"velocity_open", PositionLoop::open, Entry::velocity_command, AxisSignal::measured_speed,
+     static_cast<int>(AxisSignal::speed_error)},
+    {"compliance", PositionLoop::closed, Entry::force, AxisSignal::position, kOfInput},
+}};
+
+// Up to 0.4 times the rate of the loop, for presets and axes of each kind.
+TEST(MeasuredResponse, OfALinearDriveIsTheExactOne) {
+  constexpr int kY = 1, kC = 4;
+  for (const bool slow : {false, true}) {
+    for (const int joint : {kY, kC}) {
+      if (joint == kC && !slow) continue;
+      MachineSettings machine = linearised(hsm600u());
+      machine.nc.cascade[static_cast<std::size_t>(joint)].i_max = 1e9;
+      if (slow) use_CC422(machine);
+      for (const Of& of : kAll) {
+        const LoopPeriods& p = machine.nc.periods;
+        const double rate =
+            1.0 / p.seconds(of.loop == PositionLoop::closed ? p.position : p.velocity);
+        const Tick delay = slow ? 3 : 1;
+        const auto f = logarithmic(5.0, 0.4 * rate, 5);
+        const MeasuredResponse measured =
+            measure(machine, joint, delay, of.loop, {.entry = of.entry, .amplitude = 1.0}, f);
+        const Deviation worst = largest_deviation(machine, joint, delay, of, measured);
+        RecordProperty(fmt::format("{}_{}_{}", of.name, joint, slow ? "CC422" : "CC424"),
+                       fmt::format("{:.2e} dB {:.2e} deg", worst.dB, worst.deg));
+        EXPECT_LT(worst.dB, kMagnitudeTol) << of.name << " joint " << joint;
+        EXPECT_LT(worst.deg, kPhaseTol) << of.name << " joint " << joint;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace servomill::sim
