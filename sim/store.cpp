@@ -19,21 +19,6 @@ constexpr std::size_t kErrorSamples = 401;  // points at which error functions a
 constexpr double kEndlessRotary = 180 * deg;
 constexpr double kEndlessLinear = 500 * mm;
 
-void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view kind) {
-  root.attribute("Conventions", "CF-1.8");
-  root.attribute("servomill_version", kVersion);
-  root.attribute("schema_version", kSchemaVersion);
-  root.attribute("kind", kind);
-  root.attribute("scenario", scenario.name);
-  root.attribute("title", scenario.title);
-  root.attribute("source", scenario.source);
-  Hdf5Group inputs = root.group("inputs");
-  inputs.attribute("scenario", scenario.text);
-  inputs.attribute("machine", scenario.machine_text);
-  inputs.attribute("program", scenario.program.text);
-  inputs.attribute("resolved", scenario.resolved);
-}
-
 // Error functions of a model over the travel of their axes, for figures.
 void write_errors(Hdf5Group& root, const Scenario& scenario) {
   const JointLayout& layout = scenario.machine.chain.layout;
@@ -181,6 +166,21 @@ void check_schema(const InputFile& file, const std::string& path, const std::str
 }
 
 }  // namespace
+
+void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view kind) {
+  root.attribute("Conventions", "CF-1.8");
+  root.attribute("servomill_version", kVersion);
+  root.attribute("schema_version", kSchemaVersion);
+  root.attribute("kind", kind);
+  root.attribute("scenario", scenario.name);
+  root.attribute("title", scenario.title);
+  root.attribute("source", scenario.source);
+  Hdf5Group inputs = root.group("inputs");
+  inputs.attribute("scenario", scenario.text);
+  inputs.attribute("machine", scenario.machine_text);
+  inputs.attribute("program", scenario.program.text);
+  inputs.attribute("resolved", scenario.resolved);
+}
 
 RunStore::RunStore(const std::string& path, bool force, const Scenario& scenario)
     : file_(writable_name(path, force), force) {

@@ -14,6 +14,9 @@ namespace servomill::sim {
 /// Version of the layout of result files; a file of another one is refused.
 inline constexpr int kSchemaVersion = 1;
 
+/// What every result file begins with: version, kind, and the scenario with all that it read.
+void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view kind);
+
 /// Writes a run case by case, so that complete cases can be read even if it ends early. Layout:
 /// README, section "The result file".
 class RunStore {

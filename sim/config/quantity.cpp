@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
@@ -231,6 +232,43 @@ std::string name_of(Quantity quantity) {
 std::string example_unit(Quantity quantity) {
   const Name* known = find_name(quantity);
   return known != nullptr ? std::string(known->example) : product_of_base_units(quantity);
+}
+
+namespace {
+
+// "3.6 m/min/mm" -> 3.6, "m/min/mm"
+struct NumberAndUnit {
+  double number;
+  std::string_view unit;
+};
+
+std::optional<NumberAndUnit> split_quantity(std::string_view text) {
+  double number = 0.0;
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{}) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  const std::size_t begin = text.find_first_not_of(' ');
+  return NumberAndUnit{number, begin == std::string_view::npos ? "" : text.substr(begin)};
+}
+
+}  // namespace
+
+ScaledText scale_text(std::string_view text, Quantity quantity) {
+  const auto split = split_quantity(text);
+  const std::string expected =
+      fmt::format("must be {} such as \"3 {}\"", name_of(quantity), example_unit(quantity));
+  if (!split) return {0.0, {}, expected};
+  if (split->unit.empty()) return {0.0, {}, "has no unit; " + expected};
+  ParsedUnit parsed = parse_unit(split->unit);
+  if (!parsed.unit) return {0.0, {}, parsed.complaint};
+  if (parsed.unit->quantity != quantity) {
+    return {0.0,
+            {},
+            fmt::format("'{}' is the unit of {}; {}", split->unit, name_of(parsed.unit->quantity),
+                        expected)};
+  }
+  return {split->number * parsed.unit->factor, *parsed.unit, ""};
 }
 
 std::string in_unit(double si, std::string_view symbol) {

@@ -70,6 +70,15 @@ ParsedUnit parse_unit(std::string_view symbol);
 /// mm/s, "Kv" as a rate none. The longest such ending counts.
 std::optional<Unit> unit_of_key(std::string_view key, Quantity quantity);
 
+/// A text such as "3.6 m/min/mm" in SI, or why it is none.
+struct ScaledText {
+  double si = 0.0;
+  Unit unit;
+  std::string complaint;  // "has no unit; must be a length such as "3 mm""
+};
+
+ScaledText scale_text(std::string_view text, Quantity quantity);
+
 /// SI spelling: "m/s^2", "kg m^2/s^2/rad" or, where it has one, the usual name: "Nm/rad".
 std::string si_unit(Quantity quantity);
 

@@ -70,46 +70,6 @@ std::string shown(const Value& value) {
   return value.type == Value::Type::list ? "[...]" : "\"...\"";
 }
 
-// "3.6 m/min/mm" -> 3.6, "m/min/mm"
-struct NumberAndUnit {
-  double number;
-  std::string_view unit;
-};
-
-std::optional<NumberAndUnit> split_quantity(std::string_view text) {
-  double number = 0.0;
-  if (text.starts_with('+')) text.remove_prefix(1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{}) return std::nullopt;
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  const std::size_t begin = text.find_first_not_of(' ');
-  return NumberAndUnit{number, begin == std::string_view::npos ? "" : text.substr(begin)};
-}
-
-// The scale a value was written in, or why it has none.
-struct Scaled {
-  double si = 0.0;
-  Unit unit;
-  std::string complaint;
-};
-
-Scaled scale_text(std::string_view text, Quantity quantity) {
-  const auto split = split_quantity(text);
-  const std::string expected =
-      fmt::format("must be {} such as \"3 {}\"", name_of(quantity), example_unit(quantity));
-  if (!split) return {0.0, {}, expected};
-  if (split->unit.empty()) return {0.0, {}, "has no unit; " + expected};
-  ParsedUnit parsed = parse_unit(split->unit);
-  if (!parsed.unit) return {0.0, {}, parsed.complaint};
-  if (parsed.unit->quantity != quantity) {
-    return {0.0,
-            {},
-            fmt::format("'{}' is the unit of {}; {}", split->unit, name_of(parsed.unit->quantity),
-                        expected)};
-  }
-  return {split->number * parsed.unit->factor, *parsed.unit, ""};
-}
-
 }  // namespace
 
 // Faults and read keys of one document.
@@ -231,7 +191,7 @@ const Value* Reader::require(std::string_view key, Value::Type type) {
 
 double Reader::number(const Value& value, std::string_view key, const std::string& name,
                       Quantity quantity, Rules rules) {
-  Scaled scaled;
+  ScaledText scaled;
   const bool from_text = value.type == Value::Type::text && quantity != kNumber;
   const std::optional<Unit> from_key = unit_of_key(key, quantity);
   if (from_text) {

@@ -73,7 +73,9 @@ class Excitation {
     }
     double peak = 0.0;
     for (Tick n = 0; n < ticks_; ++n) peak = std::max(peak, std::abs(sum(n).real()));
-    for (Line& line : lines_) line.amplitude *= how_.amplitude / peak;
+    const double amplitude =
+        std::min(how_.amplitude, how_.max_acceleration / (lines_.back().w * lines_.back().w));
+    for (Line& line : lines_) line.amplitude *= amplitude / peak;
     crest_factor_ = peak / std::sqrt(0.5 * K);
   }
 

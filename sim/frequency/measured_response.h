@@ -2,6 +2,7 @@
 /// everything that the scenario gives the axis (friction, backlash, quantisation, limits).
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "sim/frequency/frequency_response.h"
@@ -17,8 +18,10 @@ struct Measurement {
   Entry entry = Entry::set_point;
   Method method = Method::sine;
   double amplitude = 0.0;  // peak of what is fed in, in the unit of the entry; > 0
-  double velocity = 0.0;   // m/s, rad/s: the axis moves on with it, so that friction does not stick
-  double position = 0.0;   // m, rad: where it begins
+  double max_acceleration = std::numeric_limits<double>::infinity();  // m/s^2: of a set point; it
+                                                                      // lowers the amplitude
+  double velocity = 0.0;  // m/s, rad/s: the axis moves on with it, so that friction does not stick
+  double position = 0.0;  // m, rad: where it begins
 };
 
 struct MeasuredPoint {

@@ -32,6 +32,9 @@ int check_command(const Arguments& arguments);
 int canon_command(const Arguments& arguments);
 int list_command(const Arguments& arguments);
 int sweep_command(const Arguments& arguments);
+int bode_command(const Arguments& arguments);
+int step_command(const Arguments& arguments);
+int tune_command(const Arguments& arguments);
 
 /// Options of one command: named ones, and words that stand by themselves.
 class Options {

@@ -19,12 +19,16 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 6> kCommands = {{
+constexpr std::array<Command, 9> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
     {"sweep", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
      "runs a scenario over the grid of its [sweep] table", sweep_command},
+    {"bode", "SCENARIO.toml --axis Y [--loop LOOP] [-o OUT.h5]",
+     "frequency responses of an axis, exact and measured", bode_command},
+    {"step", "SCENARIO.toml --axis Y [-o OUT.h5]", "step responses of an axis", step_command},
+    {"tune", "SCENARIO.toml --axis Y|all", "gains of an axis for given margins", tune_command},
     {"check", "FILE...", "checks scenarios, machines and programs", check_command},
     {"canon", "PROGRAM", "prints the canonical moves of a program, one JSON object a line",
      canon_command},

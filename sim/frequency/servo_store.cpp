@@ -1,0 +1,164 @@
+#include "sim/frequency/servo_store.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "plant/vocabulary/units.h"
+#include "sim/store.h"
+
+namespace servomill::sim {
+namespace {
+
+bool is_linear_axis(char axis) { return axis == 'X' || axis == 'Y' || axis == 'Z'; }
+
+std::vector<double> magnitudes(const std::vector<Complex>& y, double unit) {
+  std::vector<double> out;
+  for (const Complex& one : y) out.push_back(std::abs(one) / unit);
+  return out;
+}
+
+// Continuous along the frequency.
+std::vector<double> phases(const std::vector<Complex>& y) {
+  std::vector<double> out;
+  for (const Complex& one : y) {
+    double phase = std::arg(one);
+    if (!out.empty()) {
+      const double last = out.back() * deg;
+      phase = last + std::remainder(phase - last, 2.0 * std::numbers::pi);
+    }
+    out.push_back(phase / deg);
+  }
+  return out;
+}
+
+void write_curve(Hdf5Group group, const BodeCurve& curve, const Meaning& magnitude, double unit) {
+  group.attribute("long_name", curve.long_name);
+  group.list("frequency", curve.exact.f, {"Hz", "frequency"});
+  group.list("magnitude", magnitudes(curve.exact.y, unit), magnitude, "frequency");
+  group.list("phase", phases(curve.exact.y), {"deg", "phase, exact"}, "frequency");
+  if (curve.measured.empty()) return;
+  group.list("measured_frequency", curve.f, {"Hz", "measured frequency"});
+  group.list("measured_magnitude", magnitudes(curve.measured, unit), magnitude,
+             "measured_frequency");
+  group.list("measured_phase", phases(curve.measured), {"deg", "phase, measured"},
+             "measured_frequency");
+}
+
+}  // namespace
+
+std::string name_of(BodeLoop loop) {
+  switch (loop) {
+    case BodeLoop::position:
+      return "position";
+    case BodeLoop::velocity:
+      return "velocity";
+    case BodeLoop::compliance:
+      break;
+  }
+  return "compliance";
+}
+
+std::string name_of(StepKind kind) {
+  switch (kind) {
+    case StepKind::position:
+      return "position";
+    case StepKind::velocity:
+      return "velocity";
+    case StepKind::load:
+      break;
+  }
+  return "load";
+}
+
+BodeStore::BodeStore(const std::string& path, bool force, const Scenario& scenario)
+    : file_(writable_name(path, force), force) {
+  Hdf5Group root = file_.root();
+  write_inputs(root, scenario, "bode");
+}
+
+void BodeStore::add(char axis, const BodeResult& result) {
+  Hdf5Group of_axis = file_.root().group(fmt::format("bode/{}", axis));
+  const bool compliance = result.loop == BodeLoop::compliance;
+  const bool linear = is_linear_axis(axis);
+  const Meaning magnitude = {compliance ? (linear ? "um N-1" : "urad N-1 m-1") : "1", "magnitude"};
+  for (const BodeCurve& curve : result.curves) {
+    write_curve(of_axis.group(curve.name), curve, magnitude, compliance ? um : 1.0);
+  }
+  Hdf5Group loop = of_axis.group(name_of(result.loop) + "_loop");
+  loop.attribute("stable", result.stable ? 1 : 0);
+  loop.attribute("slowest_time_constant_s", result.time_constant);
+  loop.attribute("nyquist_Hz", result.nyquist);
+  if (compliance) {
+    loop.attribute("peak", result.closed.peak / um);
+    loop.attribute("peak_Hz", result.closed.peak_frequency);
+  } else {
+    loop.attribute("gain_margin", result.margins.gain);
+    loop.attribute("gain_margin_Hz", result.margins.gain_frequency);
+    loop.attribute("phase_margin_deg", result.margins.phase / deg);
+    loop.attribute("crossover_Hz", result.margins.crossover);
+    loop.attribute("sensitivity_peak", result.margins.sensitivity);
+    loop.attribute("bandwidth_Hz", result.closed.bandwidth);
+    loop.attribute("resonance_peak", result.closed.peak);
+    loop.attribute("resonance_Hz", result.closed.peak_frequency);
+  }
+  if (result.measured) {
+    loop.attribute("method", result.method == Method::sine ? "sine" : "multisine");
+    loop.attribute("amplitude_SI", result.amplitude);
+    loop.attribute("velocity_SI", result.velocity);
+    loop.attribute("crest_factor", result.crest_factor);
+    loop.attribute("peak_current_A", result.peak_current);
+  }
+}
+
+StepStore::StepStore(const std::string& path, bool force, const Scenario& scenario)
+    : file_(writable_name(path, force), force) {
+  Hdf5Group root = file_.root();
+  write_inputs(root, scenario, "step");
+}
+
+void StepStore::add(char axis, const StepSettings& settings, const StepResponse& response) {
+  Hdf5Group group = file_.root().group(fmt::format("step/{}/{}", axis, name_of(settings.kind)));
+  const bool linear = is_linear_axis(axis);
+  const std::string length = linear ? "mm" : "deg";
+  const double unit = linear ? mm : deg;
+  struct Column {
+    const char* name;
+    AxisSignal signal;
+    std::string units;
+    const char* long_name;
+    double unit;
+  };
+  const Column columns[] = {
+      {"position", AxisSignal::position, length, "position of the slide or table", unit},
+      {"velocity", AxisSignal::velocity, length + " s-1", "velocity of the slide or table", unit},
+      {"motor_speed", AxisSignal::motor_speed, "rad s-1", "motor speed", 1.0},
+      {"current", AxisSignal::current, "A", "torque-forming current", 1.0},
+      {"reading", AxisSignal::reading, length, "what the position loop reads", unit},
+  };
+  group.list("time", response.time, {"s", "time since the step"});
+  for (const Column& column : columns) {
+    std::vector<double> values;
+    for (const AxisSignals& row : response.signals) {
+      values.push_back(row[index_of(column.signal)] / column.unit);
+    }
+    group.list(column.name, values, {column.units, column.long_name}, "time");
+  }
+  const bool load = settings.kind == StepKind::load;
+  const StepFigures& f = response.figures;
+  group.attribute("height", settings.height / (load ? 1.0 : unit));
+  group.attribute(
+      "height_units",
+      load ? (linear ? "N" : "N m") : length + (settings.kind == StepKind::velocity ? " s-1" : ""));
+  group.attribute("band", settings.band);
+  group.attribute("overshoot", f.overshoot);
+  group.attribute("rise_time_s", f.rise_time);
+  group.attribute("settling_time_s", f.settling_time);
+  group.attribute("steady_error", f.steady_error / unit);
+  group.attribute("peak", f.peak / unit);
+  group.attribute("peak_time_s", f.peak_time);
+  group.attribute("peak_current_A", response.peak_current);
+}
+
+}  // namespace servomill::sim

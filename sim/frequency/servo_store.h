@@ -1,0 +1,45 @@
+/// Responses of axes on disk, for figures and other programs.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/frequency/bode.h"
+#include "sim/frequency/step_response.h"
+#include "sim/hdf5/hdf5_file.h"
+#include "sim/scenario.h"
+
+namespace servomill::sim {
+
+/// A file of the kind "bode": /bode/AXIS/CURVE with frequency, magnitude, phase of the exact
+/// response, measured_* where it was measured; margins are attributes of /bode/AXIS/LOOP_loop.
+/// @throws InputError if the file cannot be had under that name, SystemError
+class BodeStore {
+ public:
+  BodeStore(const std::string& path, bool force, const Scenario& scenario);
+  void add(char axis, const BodeResult& result);
+  void commit() { file_.commit(); }
+
+ private:
+  OutputFile file_;
+};
+
+/// A file of the kind "step": /step/AXIS/KIND with time and all signals; figures of merit are
+/// attributes.
+/// @throws InputError if the file cannot be had under that name, SystemError
+class StepStore {
+ public:
+  StepStore(const std::string& path, bool force, const Scenario& scenario);
+  void add(char axis, const StepSettings& settings, const StepResponse& response);
+  void commit() { file_.commit(); }
+
+ private:
+  OutputFile file_;
+};
+
+/// "position", "velocity", "compliance"; "position", "velocity", "load".
+std::string name_of(BodeLoop loop);
+std::string name_of(StepKind kind);
+
+}  // namespace servomill::sim

@@ -1,0 +1,108 @@
+#include "tools/servomill/axis_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::tools {
+
+namespace po = boost::program_options;
+
+void add_axis_options(Options& options, bool all_axes) {
+  options.add()("axis,a", po::value<std::string>()->value_name(all_axes ? "Y|all" : "Y"),
+                all_axes ? "axis, or several (X,Y), or all" : "axis, or several (X,Y)");
+  options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
+                "changes a key of the scenario, as for servomill run, such as "
+                "machine_override.axis.Y.Kv=\"4 m/min/mm\"");
+}
+
+std::vector<int> chosen_joints(const Options& options, const sim::MachineSettings& machine,
+                               bool all_axes) {
+  const JointLayout& layout = machine.chain.layout;
+  std::vector<std::string> letters;
+  for (const int j : machine.joints()) letters.emplace_back(1, layout.letter_of(j));
+  const std::string there_are = fmt::format("the machine has {}", fmt::join(letters, ", "));
+  if (!options.has("axis")) {
+    throw InputError({"--axis"}, fmt::format("is missing; {}", there_are));
+  }
+  const auto& text = options.get<std::string>("axis");
+  if (all_axes && text == "all") return machine.joints();
+  std::vector<int> joints;
+  std::stringstream words(text);
+  std::string word;
+  std::vector<std::string_view> names(letters.begin(), letters.end());
+  if (all_axes) names.emplace_back("all");
+  while (std::getline(words, word, ',')) {
+    const auto axis = word.size() == 1 ? axis_of(word.front()) : std::nullopt;
+    const auto joint = axis ? layout.joint_of(*axis) : std::nullopt;
+    if (!joint) {
+      throw InputError({"--axis"}, fmt::format("no axis '{}'{}; {}", word,
+                                               did_you_mean(word, names), there_are));
+    }
+    if (std::find(joints.begin(), joints.end(), *joint) == joints.end()) joints.push_back(*joint);
+  }
+  if (joints.empty()) throw InputError({"--axis"}, fmt::format("is empty; {}", there_are));
+  return joints;
+}
+
+std::optional<double> quantity_option(const Options& options, const std::string& name,
+                                      sim::Quantity quantity) {
+  if (!options.has(name)) return std::nullopt;
+  const auto& text = options.get<std::string>(name);
+  const sim::ScaledText scaled = sim::scale_text(text, quantity);
+  if (scaled.complaint.empty() && std::isfinite(scaled.si)) return scaled.si;
+  throw InputError(
+      {"--" + name},
+      fmt::format("'{}' {}", text, scaled.complaint.empty() ? "is not finite" : scaled.complaint));
+}
+
+std::optional<double> positive_option(const Options& options, const std::string& name,
+                                      sim::Quantity quantity) {
+  const auto value = quantity_option(options, name, quantity);
+  if (value && !(*value > 0.0)) {
+    throw InputError({"--" + name},
+                     fmt::format("'{}' must be > 0", options.get<std::string>(name)));
+  }
+  return value;
+}
+
+double positive_number(const Options& options, const std::string& name) {
+  const double value = options.get<double>(name);
+  if (value > 0.0 && std::isfinite(value)) return value;
+  throw InputError({"--" + name}, fmt::format("{:g}; must be > 0", value));
+}
+
+std::size_t choice_option(const Options& options, const std::string& name,
+                          std::span<const std::string_view> words) {
+  const auto& word = options.get<std::string>(name);
+  const auto found = std::find(words.begin(), words.end(), word);
+  if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+  throw InputError({"--" + name}, fmt::format("'{}' is not one of {}{}", word,
+                                              fmt::join(words, ", "), did_you_mean(word, words)));
+}
+
+std::string axis_headline(const sim::MachineSettings& machine, int joint, Tick reading_delay) {
+  const sim::LoopPeriods& p = machine.nc.periods;
+  const auto ms_of = [&](Tick ticks) { return p.seconds(ticks) / ms; };
+  const controllers::CascadeParams& c = machine.nc.cascade[static_cast<std::size_t>(joint)];
+  std::string out = fmt::format(
+      "axis {} of {}: Kv {:.4g} 1/s, velocity loop {:.4g} rad/s{}, periods {:g}, {:g}, {:g} ms",
+      machine.chain.layout.letter_of(joint), machine.name, c.Kv, c.Kp / c.J,
+      c.Ki > 0.0 ? fmt::format(" with reset time {:.4g} ms", c.Kp / c.Ki / ms) : "",
+      ms_of(p.position), ms_of(p.velocity), ms_of(p.current));
+  if (reading_delay > 0) out += fmt::format(", reading {:g} us old", p.seconds(reading_delay) / us);
+  return out;
+}
+
+double decibel(double ratio) { return 20.0 * std::log10(ratio); }
+
+std::string json_number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null";
+}
+
+}  // namespace servomill::tools

@@ -1,0 +1,50 @@
+/// Options of the commands that look at the servo loops of one axis.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/config/quantity.h"
+#include "sim/scenario.h"
+#include "tools/servomill/command.h"
+
+namespace servomill::tools {
+
+/// Adds --axis and --set.
+void add_axis_options(Options& options, bool all_axes);
+
+/// Joints that --axis names: one, several ("X,Y") or, where allowed, all.
+/// @throws InputError for an axis that the machine lacks
+std::vector<int> chosen_joints(const Options& options, const sim::MachineSettings& machine,
+                               bool all_axes);
+
+/// Value of an option that takes a number with a unit ("20 um"), in SI.
+/// @throws InputError
+std::optional<double> quantity_option(const Options& options, const std::string& name,
+                                      sim::Quantity quantity);
+
+/// The same, which must be > 0.
+std::optional<double> positive_option(const Options& options, const std::string& name,
+                                      sim::Quantity quantity);
+
+/// Value of an option that takes a bare number > 0.
+/// @throws InputError for anything else, NaN included
+double positive_number(const Options& options, const std::string& name);
+
+/// A word out of several. @throws InputError with the nearest
+std::size_t choice_option(const Options& options, const std::string& name,
+                          std::span<const std::string_view> words);
+
+/// Machine, axis, periods and reading delay in one line.
+std::string axis_headline(const sim::MachineSettings& machine, int joint, Tick reading_delay);
+
+/// The same axis as a reader names a length of it: "um" or "urad".
+inline const char* small_unit(int joint) { return joint < kLinearJoints ? "um" : "urad"; }
+
+double decibel(double ratio);
+
+/// A number of JSON, null where there is none.
+std::string json_number(double value);
+
+}  // namespace servomill::tools

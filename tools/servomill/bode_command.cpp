@@ -1,0 +1,278 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+#include "sim/frequency/bode.h"
+#include "sim/frequency/servo_store.h"
+#include "tools/servomill/axis_options.h"
+
+namespace servomill::tools {
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr std::array<std::string_view, 4> kLoops = {"position", "velocity", "compliance", "all"};
+constexpr std::array<std::string_view, 3> kMethods = {"sine", "multisine", "none"};
+constexpr std::size_t kMostPoints = 1000;
+
+std::vector<sim::BodeLoop> loops_of(const Options& options) {
+  const std::size_t chosen = choice_option(options, "loop", kLoops);
+  if (chosen < 3) return {static_cast<sim::BodeLoop>(chosen)};
+  return {sim::BodeLoop::position, sim::BodeLoop::velocity, sim::BodeLoop::compliance};
+}
+
+void check_range(const sim::BodeSettings& settings, const sim::LoopPeriods& periods) {
+  const double nyquist = sim::nyquist_frequency(periods, settings.loop);
+  const auto rule = [&](std::string_view name, double value) {
+    if (value <= nyquist * (1.0 + 1e-12)) return;
+    throw InputError(
+        {std::string(name)},
+        fmt::format("{:g} Hz; must be <= {:.6g} Hz, half the rate of the {} loop", value, nyquist,
+                    settings.loop == sim::BodeLoop::velocity ? "velocity" : "position"));
+  };
+  rule("--from", settings.from);
+  if (!settings.to) return;
+  rule("--to", *settings.to);
+  if (*settings.to > settings.from) return;
+  throw InputError({"--to"},
+                   fmt::format("{:g} Hz; must be > --from, {:g} Hz", *settings.to, settings.from));
+}
+
+sim::Quantity quantity_of(sim::BodeLoop loop, int joint) {
+  const bool linear = joint < kLinearJoints;
+  switch (loop) {
+    case sim::BodeLoop::position:
+      return linear ? sim::kLength : sim::kAngle;
+    case sim::BodeLoop::velocity:
+      return linear ? sim::kVelocity : sim::kAngularVelocity;
+    case sim::BodeLoop::compliance:
+      break;
+  }
+  return linear ? sim::kForce : sim::kTorque;
+}
+
+std::string in_words(sim::BodeLoop loop, int joint, double si) {
+  const bool linear = joint < kLinearJoints;
+  switch (loop) {
+    case sim::BodeLoop::position:
+      return sim::in_unit(si, linear ? "um" : "urad");
+    case sim::BodeLoop::velocity:
+      return sim::in_unit(si, linear ? "mm/s" : "rad/s");
+    case sim::BodeLoop::compliance:
+      break;
+  }
+  return sim::in_unit(si, linear ? "N" : "Nm");
+}
+
+sim::BodeSettings settings_of(const Options& options, sim::BodeLoop loop, int joint) {
+  sim::BodeSettings settings;
+  settings.loop = loop;
+  settings.from = positive_number(options, "from");
+  if (options.has("to")) settings.to = positive_number(options, "to");
+  const int points = options.get<int>("points");
+  if (points < 2 || points > static_cast<int>(kMostPoints)) {
+    throw InputError({"--points"}, fmt::format("{}; must be >= 2 and <= {}", points, kMostPoints));
+  }
+  settings.points = static_cast<std::size_t>(points);
+  const std::size_t method = choice_option(options, "method", kMethods);
+  settings.measure = method < 2;
+  settings.method = method == 1 ? sim::Method::multi_sine : sim::Method::sine;
+  settings.amplitude = positive_option(options, "amplitude", quantity_of(loop, joint));
+  settings.velocity = quantity_option(
+      options, "velocity", joint < kLinearJoints ? sim::kVelocity : sim::kAngularVelocity);
+  return settings;
+}
+
+double shown(sim::BodeLoop loop, double magnitude) {
+  return loop == sim::BodeLoop::compliance ? magnitude / um : decibel(magnitude);
+}
+
+// Without a sign where it rounds to zero.
+double rounded(double value, double unit) { return std::round(value / unit) * unit + 0.0; }
+
+void print_curve(const sim::BodeResult& result, const sim::BodeCurve& curve, int joint) {
+  const bool compliance = result.loop == sim::BodeLoop::compliance;
+  const std::string unit =
+      compliance ? fmt::format("{}/{}", small_unit(joint), joint < kLinearJoints ? "N" : "Nm")
+                 : "dB";
+  fmt::print("\n{}\n{:>10}  {:>12} {:>9}", curve.long_name, "f, Hz", unit, "deg");
+  if (!curve.measured.empty())
+    fmt::print("  {:>12} {:>9}  {:>8} {:>8}", "measured", "deg", "diff dB", "diff deg");
+  fmt::print("\n");
+  for (std::size_t i = 0; i < curve.f.size(); ++i) {
+    const auto number = [&](sim::Complex y) {
+      return fmt::format("{:12.{}f} {:9.2f}", shown(result.loop, std::abs(y)), compliance ? 6 : 3,
+                         std::arg(y) / deg);
+    };
+    fmt::print("{:10.3f}  {}", curve.f[i], number(curve.exact_at[i]));
+    if (!curve.measured.empty() && curve.measured[i] == 0.0) {
+      fmt::print("  {:>12} {:>9}", "-", "-");  // below the measuring step of the encoder
+    } else if (!curve.measured.empty()) {
+      const sim::Complex q = curve.measured[i] / curve.exact_at[i];
+      fmt::print("  {}  {:8.3f} {:8.2f}", number(curve.measured[i]),
+                 rounded(decibel(std::abs(q)), 1e-3), rounded(std::arg(q) / deg, 1e-2));
+    }
+    fmt::print("\n");
+  }
+}
+
+std::string or_none(double value, const std::string& text) {
+  return std::isfinite(value) ? text : "none up to the Nyquist frequency";
+}
+
+void print_summary(const sim::BodeResult& result, int joint) {
+  const sim::Margins& m = result.margins;
+  const sim::ClosedLoop& c = result.closed;
+  fmt::print("\n{}: {}\n",
+             result.loop == sim::BodeLoop::compliance ? "compliance, position loop"
+                                                      : name_of(result.loop) + " loop",
+             result.stable
+                 ? fmt::format("stable, slowest time constant {:.3g} ms", result.time_constant / ms)
+                 : "UNSTABLE; nothing is measured");
+  if (result.loop == sim::BodeLoop::compliance) {
+    fmt::print("  largest compliance   {:.4g} {}/{} at {:.4g} Hz\n", c.peak / um, small_unit(joint),
+               joint < kLinearJoints ? "N" : "Nm", c.peak_frequency);
+  } else {
+    fmt::print("  gain margin          {}\n",
+               or_none(m.gain, fmt::format("{:.2f} dB (factor {:.3f}) at {:.4g} Hz",
+                                           decibel(m.gain), m.gain, m.gain_frequency)));
+    if (std::isfinite(m.reduction)) {
+      fmt::print("  gain reduction       {:.2f} dB until it oscillates\n", decibel(m.reduction));
+    }
+    fmt::print("  phase margin         {}\n",
+               or_none(m.phase, fmt::format("{:.2f} deg at the crossover of {:.4g} Hz",
+                                            m.phase / deg, m.crossover)));
+    fmt::print("  largest sensitivity  {:.3f} ({:.2f} dB) at {:.4g} Hz\n", m.sensitivity,
+               decibel(m.sensitivity), m.sensitivity_frequency);
+    fmt::print("  bandwidth (-3 dB)    {}\n",
+               or_none(c.bandwidth, fmt::format("{:.4g} Hz", c.bandwidth)));
+    fmt::print("  resonance peak       {}\n",
+               c.peak > 1.0 + 1e-6
+                   ? fmt::format("{:.2f} dB at {:.4g} Hz", decibel(c.peak), c.peak_frequency)
+                   : "none");
+  }
+  if (!result.measured) return;
+  fmt::print(
+      "  measured with        {} of {}{}, crest factor {:.2f}; current up to {:.3g} A; "
+      "{:.3g} s simulated\n",
+      result.method == sim::Method::sine ? "single sinusoids" : "a multi-sine",
+      in_words(result.loop, joint, result.amplitude),
+      result.velocity != 0.0
+          ? fmt::format(" at {}", in_words(sim::BodeLoop::velocity, joint, result.velocity))
+          : "",
+      result.crest_factor, result.peak_current, result.simulated_time);
+}
+
+void print_json(const sim::BodeResult& result, char axis) {
+  for (const sim::BodeCurve& curve : result.curves) {
+    for (std::size_t i = 0; i < curve.f.size(); ++i) {
+      const auto number = [](sim::Complex y) {
+        return fmt::format("{{\"magnitude\": {}, \"phase_deg\": {}}}", json_number(std::abs(y)),
+                           json_number(std::arg(y) / deg));
+      };
+      fmt::print(
+          "{{\"axis\": \"{}\", \"curve\": \"{}\", \"frequency_Hz\": {}, \"exact\": {}, "
+          "\"measured\": {}}}\n",
+          axis, curve.name, json_number(curve.f[i]), number(curve.exact_at[i]),
+          curve.measured.empty() ? "null" : number(curve.measured[i]));
+    }
+  }
+  const sim::Margins& m = result.margins;
+  const sim::ClosedLoop& c = result.closed;
+  fmt::print(
+      "{{\"axis\": \"{}\", \"loop\": \"{}\", \"stable\": {}, \"slowest_time_constant_s\": {}", axis,
+      name_of(result.loop), result.stable, json_number(result.time_constant));
+  if (result.loop != sim::BodeLoop::compliance) {
+    fmt::print(
+        ", \"gain_margin\": {}, \"gain_margin_Hz\": {}, \"phase_margin_deg\": {}, "
+        "\"crossover_Hz\": {}, \"sensitivity_peak\": {}, \"bandwidth_Hz\": {}",
+        json_number(m.gain), json_number(m.gain_frequency), json_number(m.phase / deg),
+        json_number(m.crossover), json_number(m.sensitivity), json_number(c.bandwidth));
+  }
+  fmt::print(", \"peak\": {}, \"peak_Hz\": {}}}\n", json_number(c.peak),
+             json_number(c.peak_frequency));
+}
+
+}  // namespace
+
+int bode_command(const Arguments& arguments) {
+  Options options(
+      "bode", "SCENARIO.toml --axis Y [--loop position|velocity|compliance|all] [-o OUT.h5]",
+      "Prints frequency responses of an axis with its sampled loops: open and closed position\n"
+      "loop, open and closed velocity loop, compliance (slide per force). 'Exact' is the\n"
+      "fundamental of the linear multirate model; 'measured' is what a simulation of the whole\n"
+      "axis with friction, backlash, quantisation and limits shows when it is fed with sinusoids.\n"
+      "The open position loop is reading over position error, the open velocity loop measured\n"
+      "speed over speed error. Margins are those of the exact model.",
+      "SCENARIO.toml");
+  add_axis_options(options, false);
+  options.add()("loop,l", po::value<std::string>()->default_value("position")->value_name("LOOP"),
+                "position, velocity, compliance or all");
+  options.add()("from", po::value<double>()->default_value(1.0)->value_name("HZ"),
+                "lowest frequency");
+  options.add()("to", po::value<double>()->value_name("HZ"),
+                "highest frequency, up to half the rate of the loop (default: 0.4 times its rate)");
+  options.add()("points", po::value<int>()->default_value(30)->value_name("N"),
+                "frequencies, evenly spaced in the logarithm");
+  options.add()("method", po::value<std::string>()->default_value("sine")->value_name("METHOD"),
+                "sine (one frequency after the other), multisine (all at once, Schroeder phases) "
+                "or none (exact only)");
+  options.add()("amplitude", po::value<std::string>()->value_name("\"20 um\""),
+                "peak of what is fed in: a length (position), a velocity (velocity), a force "
+                "(compliance), angles and torques for a rotary axis (default: the velocity loop "
+                "asks for 2 % of the largest current)");
+  options.add()("velocity", po::value<std::string>()->value_name("\"300 mm/min\""),
+                "steady velocity beneath, so that friction does not stick (default: 0 without "
+                "friction and backlash, else four times the velocity of the amplitude)");
+  options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
+                "writes the curves to a result file, for tools/plot.py");
+  options.add()("force,f", "replaces the result file if it exists");
+  options.add()("json", "prints one JSON object a frequency and curve, and one a loop");
+  options.add()("quiet,q", "prints nothing but faults");
+  if (!options.parse(arguments)) return kDone;
+
+  const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
+  const sim::MachineSettings& machine = scenario.machine;
+  const auto joints = chosen_joints(options, machine, false);
+  const auto loops = loops_of(options);
+  if (loops.size() > 1 && options.has("amplitude")) {
+    throw InputError({"--amplitude"}, "needs one --loop: its unit is that of what is fed in");
+  }
+  for (const int joint : joints) {
+    for (const sim::BodeLoop loop : loops) {
+      check_range(settings_of(options, loop, joint), machine.nc.periods);
+    }
+  }
+  std::optional<sim::BodeStore> store;
+  if (options.has("output")) {
+    store.emplace(options.get<std::string>("output"), options.has("force"), scenario);
+  }
+  const bool silent = options.has("quiet"), json = options.has("json");
+  const Tick delay = sim::reading_delay_of(scenario);
+  bool stable = true;
+  for (const int joint : joints) {
+    const char axis = machine.chain.layout.letter_of(joint);
+    if (!silent && !json) fmt::print("{}\n", axis_headline(machine, joint, delay));
+    for (const sim::BodeLoop loop : loops) {
+      const sim::BodeResult result =
+          sim::bode(machine, joint, delay, settings_of(options, loop, joint));
+      stable &= result.stable;
+      if (store) store->add(axis, result);
+      if (json && !silent) print_json(result, axis);
+      if (json || silent) continue;
+      for (const sim::BodeCurve& curve : result.curves) print_curve(result, curve, joint);
+      print_summary(result, joint);
+    }
+  }
+  if (store) {
+    store->commit();
+    if (!silent && !json) fmt::print("\nwritten to {}\n", options.get<std::string>("output"));
+  }
+  return stable ? kDone : kMachineStopped;
+}
+
+}  // namespace servomill::tools

@@ -1,0 +1,191 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+#include "sim/frequency/frequency_response.h"
+#include "sim/frequency/servo_store.h"
+#include "sim/stability.h"
+#include "tools/servomill/axis_options.h"
+
+namespace servomill::tools {
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr std::array<std::string_view, 4> kKinds = {"position", "velocity", "load", "all"};
+constexpr double kDefaultDecay = 12.0;      // time constants that are simulated
+constexpr double kLongestDuration = 100.0;  // s
+
+std::vector<sim::StepKind> kinds_of(const Options& options) {
+  const std::size_t chosen = choice_option(options, "kind", kKinds);
+  if (chosen < 3) return {static_cast<sim::StepKind>(chosen)};
+  return {sim::StepKind::position, sim::StepKind::velocity, sim::StepKind::load};
+}
+
+struct Units {
+  const char *height, *value;  // of what steps, of what answers
+  double height_unit, value_unit;
+  sim::Quantity quantity;
+  double default_height;
+};
+
+Units units_of(sim::StepKind kind, int joint) {
+  const bool linear = joint < kLinearJoints;
+  switch (kind) {
+    case sim::StepKind::position:
+      return linear ? Units{"mm", "um", mm, um, sim::kLength, 0.1 * mm}
+                    : Units{"deg", "urad", deg, urad, sim::kAngle, 0.02 * deg};
+    case sim::StepKind::velocity:
+      return linear ? Units{"mm/s", "mm/s", mm, mm, sim::kVelocity, 10.0 * mm}
+                    : Units{"deg/s", "deg/s", deg, deg, sim::kAngularVelocity, 1.0 * deg};
+    case sim::StepKind::load:
+      break;
+  }
+  return linear ? Units{"N", "um", 1.0, um, sim::kForce, 500.0}
+                : Units{"Nm", "urad", 1.0, urad, sim::kTorque, 50.0};
+}
+
+sim::StepSettings settings_of(const Options& options, sim::StepKind kind, int joint) {
+  sim::StepSettings settings;
+  settings.kind = kind;
+  const Units units = units_of(kind, joint);
+  settings.height =
+      quantity_option(options, "height", units.quantity).value_or(units.default_height);
+  if (settings.height == 0.0) throw InputError({"--height"}, "must not be 0");
+  const double band = positive_number(options, "band");
+  if (band >= 100.0) throw InputError({"--band"}, fmt::format("{:g}; must be < 100", band));
+  settings.band = band / 100.0;
+  settings.duration = positive_option(options, "duration", sim::kTime).value_or(0.0);
+  if (settings.duration > kLongestDuration) {
+    throw InputError({"--duration"},
+                     fmt::format("'{}' must be <= {:g} s", options.get<std::string>("duration"),
+                                 kLongestDuration));
+  }
+  return settings;
+}
+
+std::string milliseconds(double seconds) {
+  return std::isfinite(seconds) ? fmt::format("{:.2f} ms", seconds / ms) : "never";
+}
+
+void print_figures(const sim::StepSettings& settings, const sim::StepResponse& response, int joint,
+                   double i_max) {
+  const Units u = units_of(settings.kind, joint);
+  const sim::StepFigures& f = response.figures;
+  fmt::print("\n{} step of {:g} {}, {:.3g} s\n", name_of(settings.kind),
+             settings.height / u.height_unit, u.height, response.time.back());
+  if (settings.kind == sim::StepKind::load) {
+    fmt::print("  peak deviation  {:.4g} {} after {}\n", f.peak / u.value_unit, u.value,
+               milliseconds(f.peak_time));
+    fmt::print("  back within     {:g} % of it after {}\n", 100.0 * settings.band,
+               milliseconds(f.settling_time));
+    fmt::print("  left at the end {:.4g} {}\n", f.steady_error / u.value_unit, u.value);
+  } else {
+    fmt::print("  overshoot       {:.2f} % after {}\n", 100.0 * f.overshoot,
+               milliseconds(f.peak_time));
+    fmt::print("  rise time       {} from 10 % to 90 %\n", milliseconds(f.rise_time));
+    fmt::print("  settled         within {:g} % after {}\n", 100.0 * settings.band,
+               milliseconds(f.settling_time));
+    fmt::print("  steady error    {:.4g} {}\n", f.steady_error / u.value_unit, u.value);
+  }
+  fmt::print("  largest current {:.3g} A of {:g} A\n", response.peak_current, i_max);
+}
+
+void print_json(const sim::StepSettings& settings, const sim::StepResponse& response, char axis) {
+  const sim::StepFigures& f = response.figures;
+  fmt::print(
+      "{{\"axis\": \"{}\", \"step\": \"{}\", \"height_SI\": {}, \"overshoot\": {}, "
+      "\"rise_time_s\": {}, \"settling_time_s\": {}, \"band\": {}, \"steady_error_SI\": {}, "
+      "\"peak_SI\": {}, \"peak_time_s\": {}, \"peak_current_A\": {}}}\n",
+      axis, name_of(settings.kind), json_number(settings.height), json_number(f.overshoot),
+      json_number(f.rise_time), json_number(f.settling_time), json_number(settings.band),
+      json_number(f.steady_error), json_number(f.peak), json_number(f.peak_time),
+      json_number(response.peak_current));
+}
+
+}  // namespace
+
+int step_command(const Arguments& arguments) {
+  Options options(
+      "step", "SCENARIO.toml --axis Y [--kind position|velocity|load|all] [-o OUT.h5]",
+      "Steps an axis in the simulation, with friction, backlash, quantisation and limits as the\n"
+      "scenario has them, and prints figures of merit: a step of the set point (nothing is fed\n"
+      "forward), of the velocity command (position loop open; the motor counts, as slide\n"
+      "velocity), of a force on the slide.",
+      "SCENARIO.toml");
+  add_axis_options(options, false);
+  options.add()("kind,k", po::value<std::string>()->default_value("all")->value_name("KIND"),
+                "position, velocity, load or all");
+  options.add()("height", po::value<std::string>()->value_name("\"0.1 mm\""),
+                "of the step, with --kind (default: 0.1 mm, 10 mm/s, 500 N; 0.02 deg, 1 deg/s, "
+                "50 Nm)");
+  options.add()("band", po::value<double>()->default_value(2.0)->value_name("PERCENT"),
+                "settled within this share of the height, of the peak of a load step");
+  options.add()("duration", po::value<std::string>()->value_name("\"0.5 s\""),
+                "simulated after the step (default: 12 of the slowest time constant)");
+  options.add()("linear", "leaves friction, backlash, constant load, quantisation and limits away");
+  options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
+                "writes the signals to a result file, for tools/plot.py");
+  options.add()("force,f", "replaces the result file if it exists");
+  options.add()("json", "prints one JSON object a step");
+  options.add()("quiet,q", "prints nothing but faults");
+  if (!options.parse(arguments)) return kDone;
+
+  const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
+  const auto joints = chosen_joints(options, scenario.machine, false);
+  const auto kinds = kinds_of(options);
+  if (kinds.size() > 1 && options.has("height")) {
+    throw InputError({"--height"}, "needs one --kind: its unit is that of what steps");
+  }
+  for (const int joint : joints) {
+    for (const sim::StepKind kind : kinds) settings_of(options, kind, joint);
+  }
+  std::optional<sim::StepStore> store;
+  if (options.has("output")) {
+    store.emplace(options.get<std::string>("output"), options.has("force"), scenario);
+  }
+  const sim::MachineSettings machine =
+      options.has("linear") ? sim::linearised(scenario.machine) : scenario.machine;
+  const bool silent = options.has("quiet"), json = options.has("json");
+  const Tick delay = sim::reading_delay_of(scenario);
+  bool stable = true;
+  for (const int joint : joints) {
+    const char axis = machine.chain.layout.letter_of(joint);
+    if (!silent && !json) fmt::print("{}\n", axis_headline(machine, joint, delay));
+    for (const sim::StepKind kind : kinds) {
+      sim::StepSettings settings = settings_of(options, kind, joint);
+      const double slowest = sim::slowest_time_constant(
+          machine, joint, delay,
+          kind == sim::StepKind::velocity ? sim::PositionLoop::open : sim::PositionLoop::closed);
+      stable &= std::isfinite(slowest);
+      if (!std::isfinite(slowest)) {
+        fmt::print(stderr, "axis {}: the {} loop is unstable; no step is simulated\n", axis,
+                   kind == sim::StepKind::velocity ? "velocity" : "position");
+        continue;
+      }
+      if (settings.duration == 0.0) {
+        settings.duration = std::min(kLongestDuration, kDefaultDecay * slowest);
+      }
+      const sim::StepResponse response = sim::step_response(machine, joint, delay, settings);
+      if (store) store->add(axis, settings, response);
+      if (silent) continue;
+      if (json) {
+        print_json(settings, response, axis);
+      } else {
+        print_figures(settings, response, joint,
+                      scenario.machine.nc.cascade[static_cast<std::size_t>(joint)].i_max);
+      }
+    }
+  }
+  if (store) {
+    store->commit();
+    if (!silent && !json) fmt::print("\nwritten to {}\n", options.get<std::string>("output"));
+  }
+  return stable ? kDone : kMachineStopped;
+}
+
+}  // namespace servomill::tools
