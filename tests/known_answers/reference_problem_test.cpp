@@ -189,7 +189,7 @@ double largest_error(const Axes& axes, const std::string& reference) {
     const Joints x = Joints::Map(drive.x.data());
     if (n % kVolumetric == 0) {
       offset = offset_next;
-      offset_next.head<3>() = volumetric.error(x, p_ST).dp_W;
+      offset_next.head<3>() = volumetric.joint_offset(x, p_ST);
     }
     if (n % kPosition == 0) {
       set_point.take(reference_trajectory(static_cast<double>(n) * kTick));
