@@ -22,7 +22,7 @@ constexpr double kNear = 0.1;                 // of the radius: farther away it 
 
 // arcs about a reversal, in the direction of travel
 constexpr double kBeforeFrom = -15.0 * deg, kBeforeTo = -5.0 * deg;
-constexpr double kBehindFrom = 20.0 * deg, kBehindTo = 30.0 * deg;
+constexpr double kBehindFrom = 30.0 * deg, kBehindTo = 40.0 * deg;
 
 // The same angle within (-pi, pi].
 double wrapped(double angle) { return std::remainder(angle, kTurn); }

@@ -32,10 +32,11 @@ struct RadialDeviation {
 /// What happens where an axis of the plane reverses.
 ///
 /// The curve before and behind is taken as two parallel lines, by least squares over the arcs from
-/// 15 to 5 deg before the reversal and from 20 to 30 deg behind it, in the direction of travel. The
+/// 15 to 5 deg before the reversal and from 30 to 40 deg behind it, in the direction of travel. The
 /// step from one to the other is what backlash leaves. The spike (quadrant glitch) is the largest
-/// excursion beyond both lines, from 5 deg before the reversal to 20 deg behind it: a step alone is
-/// no spike. Of an ellipse a sin 2 theta, which has neither, the lines leave less than 0.1 a.
+/// excursion beyond both lines, from 5 deg before the reversal to 30 deg behind it: a step alone is
+/// no spike. Of ellipses, which have neither, the lines leave 0.06 a of a sin 2 theta (squareness)
+/// and 0.22 a of a cos 2 theta (scales that differ).
 struct Reversal {
   double theta = 0.0;        // nominal place: 0, 90, 180 or 270 deg
   int axis = 0;              // which reverses there: 0 the first of the plane, 1 the second

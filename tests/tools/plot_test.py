@@ -21,7 +21,7 @@ import numpy as np
 from PIL import Image
 
 import plot as program
-from figures import lag, notches, results, straightness, style, volumetric
+from figures import circular, lag, notches, results, straightness, style, volumetric
 
 SERVOMILL = ""
 AGREE = 1e-7        # um; `compare` prints nine digits of up to 100 um
@@ -113,6 +113,29 @@ class Agreement(WithFiles):
                 self.assertAlmostEqual(np.nanmax(np.abs(found[row["case"]][2][:, 2])),
                                        row["value"], delta=AGREE)
 
+    def test_radial_deviations_of_the_circle(self):
+        with results.Run(self.side) as run:
+            turns = circular.turns_of(run)
+        for quantity, extreme in (("radial_deviation_max", np.max), ("radial_deviation_min", np.min)):
+            rows = self.rows(self.side, quantity)
+            self.assertEqual(len(rows), 4)
+            for row in rows:
+                (turn,) = turns[row["case"]]
+                self.assertEqual((turn.label, turn.plane), ("circle", "XY"))
+                self.assertAlmostEqual(extreme(turn.dr), row["value"], delta=AGREE)
+
+    def test_divisions_are_round_and_two_hold_the_largest_deviation(self):
+        for largest, unit in ((0.29, 0.2), (25.3, 20.0), (2.0, 1.0), (4.1, 5.0), (100.0, 50.0)):
+            self.assertAlmostEqual(circular.division(largest), unit)
+
+    def test_angles_behind_a_reversal_follow_the_direction(self):
+        theta = np.array([80.0, 89.0, 92.0, 100.0, 500.0])
+        for sense, place in ((1, [-10.0, -1.0, 2.0, 10.0]), (-1, [-10.0, -2.0, 1.0, 10.0])):
+            turn = circular.Turn("", "", "XY", sense, 50.0, theta, theta, theta)
+            behind, form = circular.around_reversal(turn, 90.0)
+            self.assertEqual(list(behind), place)
+            self.assertEqual(list(form), [90.0 + sense * one for one in place])
+
     def test_base_is_read_between_its_samples_and_held_beyond_its_ends(self):
         class Base:
             @staticmethod
@@ -184,7 +207,8 @@ class Drawing(WithFiles):
     def test_all_that_a_run_holds_is_drawn_and_the_rest_explained(self):
         done = plot(self.side, "-o", self.out)
         self.assertEqual(done.returncode, 0, done.stderr)
-        names = ["deviations", "figure10", "figure11", "figure6", "figure9"]
+        names = ["circular", "deviations", "figure10", "figure11", "figure6", "figure9",
+                 "reversals"]
         self.assertEqual(self.drawn(), [f"side-{name}.png" for name in names])
         self.assertEqual(done.stderr.splitlines(), [
             "figure12: not drawn, no error functions of Z",
@@ -257,7 +281,7 @@ class Drawing(WithFiles):
         done = subprocess.run([PLOT, "--list"], capture_output=True, text=True)
         self.assertEqual([line.split()[0] for line in done.stdout.splitlines()],
                          ["figure6", "figure9", "figure10", "figure11", "figure12", "figure14",
-                          "figure15", "lag", "deviations"])
+                          "figure15", "lag", "circular", "reversals", "deviations"])
 
 
 class Mistakes(WithFiles):

@@ -14,7 +14,7 @@ from figures.results import NotInFile
 ROUND = 0.01          # mm: how far the nominal path of a circle may be off one
 WHOLE = 2.0           # deg: how far a turn may be off 360
 SHADES = ["#8fc1e3", style.BLUE, style.PURPLE, style.BLACK, style.RED, style.GREY]
-BEFORE, BEHIND = 15.0, 30.0   # deg about a reversal: what sim/metrology/circular_test.h looks at
+BEFORE, BEHIND = 15.0, 40.0   # deg about a reversal: what sim/metrology/circular_test.h looks at
 
 
 @dataclasses.dataclass
@@ -104,7 +104,8 @@ def looks_of(turns):
 
 def signed(value):
     """A number of a table with its sign, in two or three digits."""
-    return f"{value:+.2f}" if abs(value) < 10.0 else f"{value:+.1f}"
+    text = f"{value:+.2f}" if abs(value) < 10.0 else f"{value:+.1f}"
+    return "0.00" if text in ("+0.00", "-0.00") else text.replace("-", "−")
 
 
 def draw(run):
@@ -112,25 +113,36 @@ def draw(run):
     colours = looks_of(turns)
     columns = min(len(turns), 4)
     rows = -(-len(turns) // columns)
-    size = (3.3 * columns + 0.2, (3.75 + 0.19 * len(colours)) * rows + 0.85)
-    figure, strip, grid = style.panels([1.0] * rows, size, columns=columns)
+    height = WIDTH * (top() - bottom(colours)) / (2.0 * SIDE) + 0.3     # with the title
+    figure, strip, grid = style.panels([1.0] * rows, (WIDTH * columns + 0.1, height * rows + 0.75),
+                                       columns=columns)
     panels = [ax for row in grid for ax in row]
-    both, mean = (numbers(run, quantity) for quantity in (
-        "bidirectional_circular_deviation", "mean_bidirectional_radial_deviation"))
     for ax, (name, of_case) in zip(panels, turns.items()):
         _polar(ax, of_case, colours)
-        ax.set_title(name.replace("_", " "), loc="center", fontweight="bold", pad=4)
-        _table(ax, name, colours, both, mean)
+        _table(ax, run, name, colours)
+        ax.set_title(name.replace("_", " "), loc="center", fontweight="bold")
     for ax in panels[len(turns):]:
         ax.axis("off")
-    _legend(strip, colours)
+    _legend(strip, colours, 0.012)
     first = next(iter(turns.values()))[0]
     style.headline(figure, f"Circular test in {first.plane}, R {first.radius:.4g} mm: "
                            "radial deviation, magnified")
     return figure
 
 
+WIDTH = 3.3    # inches, of one picture
 CENTRE = 4.0   # divisions from the middle of the picture to the nominal circle
+REACH = 6.0    # ... to the outermost ring
+SIDE = 6.8     # ... to its sides
+LINE = 1.0     # ... from one line of the table to the next
+
+
+def top():
+    return REACH + 0.8
+
+
+def bottom(colours):
+    return -REACH - 1.0 - LINE * (len(colours) + 0.7)
 
 
 def _polar(ax, turns, colours):
@@ -140,12 +152,11 @@ def _polar(ax, turns, colours):
         radius = CENTRE + ring
         ax.plot(radius * np.cos(around), radius * np.sin(around), zorder=1,
                 color=style.GREY if ring == 0 else "#d5d5d5", linewidth=1.3 if ring == 0 else 0.7)
-    reach = CENTRE + 2.0
     for angle in range(0, 180, 45):
         c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
         for side in (-1.0, 1.0):
-            ax.plot([side * (CENTRE - 2) * c, side * reach * c],
-                    [side * (CENTRE - 2) * s, side * reach * s], color="#d5d5d5",
+            ax.plot([side * (CENTRE - 2) * c, side * REACH * c],
+                    [side * (CENTRE - 2) * s, side * REACH * s], color="#d5d5d5",
                     linewidth=0.7, zorder=1)
     for turn in turns:
         theta, radius = np.radians(turn.theta), CENTRE + turn.dr / unit
@@ -154,44 +165,43 @@ def _polar(ax, turns, colours):
                 color=colours[turn.label], linewidth=1.4,
                 linestyle="-" if turn.sense > 0 else (0, (4, 2.5)), zorder=3)
     plane = turns[0].plane
-    ax.text(reach + 0.15, 0.0, plane[0], ha="left", va="center", color=style.GREY)
-    ax.text(0.0, reach + 0.1, plane[1], ha="center", va="bottom", color=style.GREY)
+    ax.text(REACH + 0.15, 0.0, plane[0], ha="left", va="center", color=style.GREY)
+    ax.text(0.0, REACH + 0.1, plane[1], ha="center", va="bottom", color=style.GREY)
     # the scale, in the middle where no curve is
     ax.plot([-0.5, 0.5], [0.3, 0.3], color=style.BLACK, linewidth=2.2, solid_capstyle="butt")
     for end in (-0.5, 0.5):
         ax.plot([end, end], [0.12, 0.48], color=style.BLACK, linewidth=1.2)
     ax.text(0.0, -0.05, f"{unit:g} µm", ha="center", va="top", fontsize=10.5)
-    ax.set_xlim(-reach - 0.5, reach + 0.5)
-    ax.set_ylim(-reach - 0.2, reach + 0.6)
+    ax.set_xlim(-SIDE, SIDE)
+    ax.set_ylim(bottom(colours), top())
     ax.set_aspect("equal")
     ax.axis("off")
 
 
-def _table(ax, case, colours, both, mean):
+def _table(ax, run, case, colours):
     """Lines below the picture: what the comparison says of each label."""
-    lines = [(label, both.get((case, label)), mean.get((case, label))) for label in colours]
-    if all(g is None and d is None for _, g, d in lines):
-        return
-    down, top = 0.062, -0.02
-    for x, text in ((0.52, "G(b), µm"), (0.86, "D, µm")):
-        ax.text(x, top, text, transform=ax.transAxes, ha="right", va="top", fontsize=9.5,
-                color=style.GREY)
-    for row, (label, g, d) in enumerate(lines, start=1):
-        y = top - down * row
-        ax.text(0.0, y, label, transform=ax.transAxes, va="top", fontsize=9.5,
-                color=colours[label])
-        for x, value, text in ((0.52, g, style.number), (0.86, d, signed)):
-            ax.text(x, y, "–" if value is None else text(value), transform=ax.transAxes,
-                    ha="right", va="top", fontsize=9.5)
+    both, mean = (numbers(run, quantity) for quantity in (
+        "bidirectional_circular_deviation", "mean_bidirectional_radial_deviation"))
+    columns = [(1.4, "G(b)", both, style.number), (4.6, "D", mean, signed)]
+    y = -REACH - 1.0
+    for x, title, _, _ in columns:
+        ax.text(x, y, title + ", µm", ha="right", va="center", fontsize=9.5, color=style.GREY)
+    for label, colour in colours.items():
+        y -= LINE
+        ax.text(-5.6, y, label, va="center", fontsize=9.5, color=colour)
+        for x, _, values, text in columns:
+            value = values.get((case, label))
+            ax.text(x, y, "–" if value is None or not np.isfinite(value) else text(value),
+                    ha="right", va="center", fontsize=9.5)
 
 
-def _legend(strip, colours):
+def _legend(strip, colours, left=-0.01):
     handles = [style.plt.Line2D([], [], color=colour, linewidth=1.8, label=label)
                for label, colour in colours.items()]
     handles += [style.plt.Line2D([], [], color=style.GREY, linewidth=1.6, label="ccw"),
                 style.plt.Line2D([], [], color=style.GREY, linewidth=1.6, label="cw",
                                  linestyle=(0, (4, 2.5)))]
-    box = strip.legend(handles=handles, loc="center left", bbox_to_anchor=(-0.01, 0.5),
+    box = strip.legend(handles=handles, loc="center left", bbox_to_anchor=(left, 0.5),
                        ncol=len(handles), handlelength=2.0, columnspacing=1.3, borderpad=0,
                        handletextpad=0.6)
     box.set_in_layout(False)
@@ -224,6 +234,7 @@ def draw_reversals(run):
     plane = next(iter(turns.values()))[0].plane
     for quadrant, ax in enumerate(grid[0]):
         ax.set_title(f"{'+−'[quadrant // 2]}{plane[quadrant % 2]}: {plane[quadrant % 2]} reverses")
+    figure.align_ylabels([row[0] for row in grid])
     for ax in grid[-1]:
         ax.set_xlabel("behind the reversal, deg")
     _legend(strip, colours)
