@@ -66,6 +66,12 @@ struct NcSettings {
   bool check_stability = true;            // refuse gains with which the linear loop diverges
 };
 
+/// What moves the drives between two instants.
+enum class Integrator : std::uint8_t {
+  exact,  // plant/drives/drive_bank.h
+  cvode,  // plant/drives/cvode_bank.h: SUNDIALS at tight tolerance, the reference
+};
+
 /// Reference marks of a scale that the NC watches.
 struct MarkSettings {
   plant::MarkParams params;
@@ -76,6 +82,7 @@ struct MachineSettings {
   std::string name;
   plant::MachineChain chain;
   std::array<plant::FeedDriveParams, kJoints> drives;
+  Integrator integrator = Integrator::exact;
   std::array<plant::Encoder, kJoints> scale;  // position encoder of the slide or table
   std::array<plant::Encoder, kJoints> motor;  // rad
   std::array<std::optional<MarkSettings>, kJoints> marks;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "plant/drives/exact_step.h"
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
 #include "sim/read_drive.h"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kPresets = {"CC422", "CC424"};
 constexpr std::array<std::string_view, 3> kFilters = {"none", "mean", "triangle"};
+constexpr std::array<std::string_view, 2> kIntegrators = {"exact", "cvode"};
 constexpr std::array<std::string_view, 2> kSenses = {"tool", "table"};
 
 struct Preset {
@@ -111,7 +113,14 @@ struct Common {
 void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machine) {
   const auto lane = static_cast<std::size_t>(j);
   const bool linear = j < kLinearJoints;
+  const std::size_t before_drive = axis.faults();
   machine.drives[lane] = read_drive(axis, linear, common.friction_model);
+  if (axis.faults() == before_drive && machine.integrator == Integrator::exact) {
+    const double base = machine.nc.periods.base;
+    for (const std::string& why : plant::unrepresentable(machine.drives[lane], base)) {
+      axis.fault(why + "; make it softer, shorten base_period_us or use integrator = \"cvode\"");
+    }
+  }
   read_servo(axis, common.servo, j, machine);
   machine.nc.gain_place[lane] = axis.has("Kv") ? axis.place("Kv") : common.Kv_place;
   read_limits(axis, linear, j, machine.nc);
@@ -188,6 +197,7 @@ MachineSettings read_machine(Reader& table) {
   }
   machine.scale_delay = delay_ticks.value_or(0);
 
+  machine.integrator = static_cast<Integrator>(table.choice_or("integrator", 0, kIntegrators));
   Common common;
   common.servo = read_common_servo(nc);
   common.Kv_place = nc.place("Kv");

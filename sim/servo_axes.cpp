@@ -54,7 +54,11 @@ ServoAxes::ServoAxes(const MachineSettings& machine, std::vector<int> joints,
                      const std::vector<Instant>& schedule)
     : machine_(machine),
       joints_(std::move(joints)),
-      drives_(machine.drives, present(joints_), machine.nc.periods.base, steps_of(schedule)) {}
+      drives_(machine.drives, present(joints_), machine.nc.periods.base, steps_of(schedule)) {
+  if (machine.integrator == Integrator::cvode) {
+    cvode_.emplace(machine.drives, present(joints_), machine.nc.periods.base);
+  }
+}
 
 void ServoAxes::settle(const Joints& Q_true, const Eigen::Vector3d& displacement) {
   state_ = drives_.at_rest(Q_true);
@@ -202,6 +206,9 @@ std::optional<std::string> ServoAxes::supervise(int joint, const AxisSetPoint& s
         "counted {} signal periods instead of {} between the reference marks at {:.3f} and {:.3f} "
         "{}",
         mark.counted, mark.expected, mark.from / unit, mark.to / unit, unit_name);
+  }
+  if (plant::DriveBank::unresolved(state_, lane(joint)) > 0) {
+    return "friction too stiff for the exact step; use integrator = \"cvode\"";
   }
   const plant::Encoder& scale = machine_.scale[lane(joint)];
   const plant::Encoder& motor = machine_.motor[lane(joint)];

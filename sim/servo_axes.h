@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "plant/drives/cvode_bank.h"
 #include "plant/drives/drive_bank.h"
 #include "sim/machine.h"
 #include "sim/schedule.h"
@@ -61,7 +62,11 @@ class ServoAxes {
   void run_velocity_loops();
   /// Moves the drives to the next instant.
   void advance(Tick step) {
-    drives_.advance(state_, input_, step);
+    if (cvode_) {
+      cvode_->advance(state_, input_, step);
+    } else {
+      drives_.advance(state_, input_, step);
+    }
     now_ += step;
   }
 
@@ -117,6 +122,7 @@ class ServoAxes {
   const MachineSettings& machine_;
   std::vector<int> joints_;
   plant::DriveBank drives_;
+  std::optional<plant::CvodeBank> cvode_;  // moves the drives instead, if asked for
   plant::DriveState state_;
   plant::DriveInput input_;
   std::array<Loop, kJoints> loops_;
