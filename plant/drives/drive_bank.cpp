@@ -9,7 +9,7 @@
 namespace servomill::plant {
 namespace {
 
-constexpr int kVelocity = 3;  // row of v
+enum Row : int { kCurrent = 0, kVelocity = 3, kCommand = 5 };
 
 using Matrix7l = Eigen::Matrix<long double, 7, 7>;
 
@@ -25,7 +25,11 @@ Eigen::Matrix<double, 5, 7> hold_matrix(const FeedDriveParams& p, double h) {
   generator.topRows<5>() = drive_equations(p).cast<long double>() * static_cast<long double>(h);
   const Eigen::Matrix<long double, 7, 1> S = scale.cast<long double>();
   const Matrix7l scaled = S.cwiseInverse().asDiagonal() * generator * S.asDiagonal();
-  const Matrix7l E = S.asDiagonal() * Matrix7l(scaled.exp()) * S.cwiseInverse().asDiagonal();
+  Matrix7l E = S.asDiagonal() * Matrix7l(scaled.exp()) * S.cwiseInverse().asDiagonal();
+  if (p.current_is_command()) {
+    E.row(kCurrent).setZero();
+    E(kCurrent, kCommand) = 1.0L;
+  }
   return E.topRows<5>().cast<double>();
 }
 

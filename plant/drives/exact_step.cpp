@@ -19,6 +19,7 @@ using Vector5l = Eigen::Matrix<long double, 5, 1>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEventLength = 10e-9;  // s: events are located in a sub-step no longer than this
 constexpr double kCoastRate = 1e-3;     // rate x finest sub-step: coast() is exact to its cube
+constexpr double kFrictionRate = 1e-2;  // the same for the rates of friction, which are solved for
 constexpr double kSeriesRate = 2.0;     // rate x coarsest sub-step: the series converges in kTerms
 constexpr int kTerms = 30;              // 2^30 / 30! is below the last bit of long double
 constexpr int kMostHalvings = 26;
@@ -66,9 +67,30 @@ double fastest_rate(const FeedDriveParams& p) {
   return rate;
 }
 
+// The rates (1/s) with which friction acts on the slide, each with what it is made of.
+struct FrictionRate {
+  double rate;
+  const char* formula;
+};
+std::vector<FrictionRate> friction_rates(const FeedDriveParams& p) {
+  const FrictionParams& f = p.friction;
+  const double M = p.slide_mass();
+  if (f.kind == FrictionKind::regularised) {
+    return {{std::max(f.Fs_positive, f.Fs_negative) / (f.v0 * M), "Fs / (v0 M)"}};
+  }
+  if (f.kind == FrictionKind::lugre) {
+    const double Fc = std::min(f.Fc_positive, f.Fc_negative);
+    return {{std::sqrt(f.sigma0 / M), "sqrt(sigma0 / M)"},
+            {f.sigma1 / M, "sigma1 / M"},
+            {f.sigma0 * kStribeckEnd * f.vs / Fc, "6.5 vs sigma0 / Fc"}};
+  }
+  return {};
+}
+
 // Halvings of the base period that give the finest sub-step.
 int halvings_of(const FeedDriveParams& p, double base_period) {
-  const double finest = std::min(kEventLength, kCoastRate / fastest_rate(p));
+  double finest = std::min(kEventLength, kCoastRate / fastest_rate(p));
+  for (const FrictionRate& f : friction_rates(p)) finest = std::min(finest, kFrictionRate / f.rate);
   return std::max(0, static_cast<int>(std::ceil(std::log2(base_period / finest))));
 }
 
@@ -503,7 +525,7 @@ void ExactStep::cross(LaneState& s, double command, double F) const {
 
 void ExactStep::advance(LaneState& s, double command, double F, Tick step) const {
   assert(step > 0);
-  if (!params_.has_winding() && params_.T_i == 0.0) s.i = command;
+  if (params_.current_is_command()) s.i = command;
   if (params_.friction.kind == FrictionKind::set_valued) {
     if (s.v == 0.0) {
       from_rest(s, F);
@@ -544,24 +566,15 @@ void ExactStep::advance(LaneState& s, double command, double F, Tick step) const
 std::vector<std::string> unrepresentable(const FeedDriveParams& p, double base_period) {
   constexpr double kLongestToFinest = 1000.0;  // sub-steps in a base period
   std::vector<std::string> faults;
+  const double limit = kLongestToFinest / base_period;
   const auto demand = [&](double rate, const char* what) {
-    const double limit = kLongestToFinest / base_period;
     if (rate <= limit) return;
     faults.push_back(
         fmt::format("{} makes a rate of {:.3g} 1/s; the exact step resolves up to {:.3g} 1/s", what,
                     rate, limit));
   };
-  const FrictionParams& f = p.friction;
-  const double M = p.slide_mass();
-  const double Fs = std::max(f.Fs_positive, f.Fs_negative);
   demand(fastest_rate(p), "stiffness or damping of the drive");
-  if (f.kind == FrictionKind::regularised) demand(Fs / (f.v0 * M), "Fs / (v0 M)");
-  if (f.kind == FrictionKind::lugre) {
-    demand(std::sqrt(f.sigma0 / M), "sqrt(sigma0 / M)");
-    demand(f.sigma1 / M, "sigma1 / M");
-    const double Fc = std::min(f.Fc_positive, f.Fc_negative);
-    demand(f.sigma0 * kStribeckEnd * f.vs / Fc, "sigma0 6.5 vs / Fc");
-  }
+  for (const FrictionRate& f : friction_rates(p)) demand(f.rate, f.formula);
   return faults;
 }
 

@@ -62,12 +62,12 @@ Eigen::Matrix<double, 5, 7> drive_equations(const FeedDriveParams& p, bool stick
     A(kCurrent, kCurrent) = -p.R / p.L;
     A(kCurrent, kSpeed) = -p.Ke / p.L;
     A(kCurrent, kCommand) = 1.0 / p.L;
-  } else if (p.T_i > 0.0) {
-    A(kCurrent, kCurrent) = -1.0 / p.T_i;
-    A(kCurrent, kCommand) = 1.0 / p.T_i;
-  } else {  // the current is the command
+  } else if (p.current_is_command()) {
     A.col(kCommand) = A.col(kCurrent);
     A.col(kCurrent).setZero();
+  } else {
+    A(kCurrent, kCurrent) = -1.0 / p.T_i;
+    A(kCurrent, kCommand) = 1.0 / p.T_i;
   }
   return A;
 }

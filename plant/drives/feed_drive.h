@@ -56,6 +56,8 @@ struct FeedDriveParams {
   Cogging cogging;  // of a direct drive
 
   bool has_winding() const { return L > 0.0; }
+  /// Whether the current is the command itself, without lag or winding.
+  bool current_is_command() const { return !has_winding() && T_i <= 0.0; }
   bool is_rigid() const { return kind != DriveKind::two_mass; }
   /// Inertia that the motor sees (kg m^2): J + M r^2.
   double J_total() const { return J + M * r * r; }
