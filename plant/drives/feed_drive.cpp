@@ -95,7 +95,8 @@ double screw_force(const FeedDriveParams& p, const LaneState& s) {
 
 ContactMode contact_after(const FeedDriveParams& p, const LaneState& s) {
   const auto pushes = [&](ContactMode flank, double away) {
-    return away * flank_force(p, s, flank) > 0.0;
+    const double S = away * flank_force(p, s, flank);
+    return S > 0.0 || (S == 0.0 && away * (p.r * s.w - s.v) > 0.0);
   };
   switch (s.contact) {
     case ContactMode::positive:

@@ -135,14 +135,15 @@ double screw_force(const FeedDriveParams& params, const LaneState& state);
 /// towards +x: contact holds while it points away from the flank.
 double flank_force(const FeedDriveParams& params, const LaneState& state, ContactMode flank);
 
-/// Contact in which this state goes on: a flank that would have to pull lets go; from the gap a
-/// flank takes hold once its spring is compressed (beyond gap/2) and it would push. A spring that
-/// was still compressed when its damper made the flank let go relaxes by itself, so that delta may
-/// lie outside the gap for a while.
+/// Contact in which this state goes on. A flank that would have to pull lets go. From the gap a
+/// flank takes hold where its spring is compressed (delta beyond gap/2) and it would push. A spring
+/// that was still compressed when its damper made the flank let go relaxes by itself: delta may lie
+/// outside the gap for a while.
 ContactMode contact_after(const FeedDriveParams& params, const LaneState& state);
 
 /// Sum of the forces on the slide but for set-valued, regularised or LuGre friction (N): what a
-/// sticking slide must bear. Viscous friction included; of a rigid drive the motor's force, too.
+/// sticking slide must bear. Viscous friction included; of a rigid drive the motor's force, too,
+/// for which state.i must be the command where current_is_command().
 /// @param F  N, external force against the slide beside F_load
 double driving_force(const FeedDriveParams& params, const LaneState& state, double F);
 

@@ -203,6 +203,18 @@ TEST(SetValued, SticksAndSlipsLikeTheMassOnAPulledSpring) {
   EXPECT_NEAR(starts[2] - stops[1], stick, kPeriodTol);
 }
 
+TEST(SetValued, ARigidDriveFeelsItsCurrentAtOnceWhenNothingLags) {
+  constexpr double kPositionTol = 1e-15;  // m
+  FeedDriveParams p = bare_mass_with_coulomb();
+  p.Kt = 2.0;
+  const ExactStep drive(p, kTick, kStep);
+  LaneState s = run(drive, {}, 10, kStep, constant(0.99 * 450 / p.Kt));
+  EXPECT_EQ(s.x, 0.0);
+  s = run(drive, s, 50, kStep, constant(2.0 * 450 / p.Kt));
+  EXPECT_EQ(s.i, 450.0);
+  EXPECT_NEAR(s.x, 0.5 * 450 / p.slide_mass() * 1e-4, kPositionTol);  // after 10 ms
+}
+
 // --- LuGre and regularised friction -------------------------------------------------------------
 
 TEST(LuGre, HoldsWithinItsPresliding) {
@@ -301,6 +313,21 @@ TEST(Backlash, ADampedFlankReturnsWhatTheClosedFormSays) {
     while (s.contact == ContactMode::gap) drive.advance(s, 0.0, 0.0, 1);
     while (s.contact != ContactMode::gap) drive.advance(s, 0.0, 0.0, 1);
     EXPECT_NEAR(-approach(p, s) / before, expected, kRestitutionTol);
+  }
+}
+
+TEST(Backlash, AFlankThatTouchesCarriesFromTheFirstMoment) {
+  constexpr double kPositionTol = 1e-16;  // m
+  for (const double c : {0.0, 4e4}) {
+    FeedDriveParams p = x_axis();
+    p.c = c;
+    FeedDriveParams with_gap = p;
+    with_gap.gap = 20e-6;
+    const ExactStep drive(with_gap, kTick, kStep), tight(p, kTick, kStep);
+    const auto push = constant(1.0);
+    const LaneState s = run(drive, at_rest(with_gap, 0.0), 50, kStep, push);
+    EXPECT_NEAR(s.x, run(tight, {}, 50, kStep, push).x, kPositionTol);
+    EXPECT_EQ(s.contact, ContactMode::positive);
   }
 }
 
