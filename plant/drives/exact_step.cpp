@@ -146,10 +146,8 @@ double parabola(const double (&weight)[3], const std::array<double, 3>& value) {
 
 double direction(SlideMode slide) { return slide == SlideMode::negative ? -1.0 : 1.0; }
 
-// Where a straight line from a to b, a >= 0, falls below 0, as a fraction; 1: it does not.
-double fall(double a, double b) {
-  return b < 0.0 ? std::max(a, 0.0) / (std::max(a, 0.0) - b) : 1.0;
-}
+// Where a straight line from a to b >= 0 reaches 0, as a fraction.
+double rise(double a, double b) { return a >= 0.0 ? 0.0 : a / (a - b); }
 
 template <std::size_t n>
 void add(std::array<double, n>& sum, const std::array<double, n>& column, double factor) {
@@ -467,60 +465,52 @@ void ExactStep::from_rest(LaneState& s, double F) const {
   s.slide = slide_from_rest(params_.friction, driving_force(params_, s, F));
 }
 
+// Where on the way from s to end the slide stops or breaks away, as a fraction; 1: it does not.
+double ExactStep::slide_event(const LaneState& s, const LaneState& end, double F) const {
+  const FrictionParams& f = params_.friction;
+  if (f.kind != FrictionKind::set_valued) return 1.0;
+  if (sticks(s)) {
+    const double D0 = driving_force(params_, s, F), D1 = driving_force(params_, end, F);
+    if (D1 > f.Fs_positive) return rise(D0 - f.Fs_positive, D1 - f.Fs_positive);
+    if (D1 < -f.Fs_negative) return rise(-D0 - f.Fs_negative, -D1 - f.Fs_negative);
+    return 1.0;
+  }
+  const double v0 = direction(s.slide) * s.v, v1 = direction(s.slide) * end.v;
+  return v1 < 0.0 ? rise(-v0, -v1) : 1.0;
+}
+
+// Where a flank takes hold or lets go, likewise.
+double ExactStep::contact_event(const LaneState& s, const LaneState& end) const {
+  const ContactMode next = params_.gap > 0.0 ? contact_after(params_, end) : s.contact;
+  if (next == s.contact) return 1.0;
+  const ContactMode flank = next == ContactMode::gap ? s.contact : next;
+  const double away = flank == ContactMode::positive ? 1.0 : -1.0;
+  const double S0 = away * flank_force(params_, s, flank);
+  const double S1 = away * flank_force(params_, end, flank);
+  if (next == ContactMode::gap) return rise(-S0, -S1);
+  const double offset = contact_offset(params_, flank);
+  return std::max(rise(S0, S1), rise(away * (s.delta - offset), away * (end.delta - offset)));
+}
+
 // Through the finest sub-step, in which something happens: to the event, then on in the new mode.
 void ExactStep::cross(LaneState& s, double command, double F) const {
   const LaneState end = coast(s, command, F, finest_);
-  double slide_at = 1.0, contact_at = 1.0;
-  SlideMode slide = s.slide;
-  ContactMode contact = s.contact;
-  if (params_.friction.kind == FrictionKind::set_valued) {
-    if (sticks(s)) {
-      const double D0 = driving_force(params_, s, F), D1 = driving_force(params_, end, F);
-      const double up = fall(params_.friction.Fs_positive - D0, params_.friction.Fs_positive - D1);
-      const double down =
-          fall(params_.friction.Fs_negative + D0, params_.friction.Fs_negative + D1);
-      slide_at = std::min(up, down);
-      slide = up < down ? SlideMode::positive : SlideMode::negative;
-    } else {
-      slide_at = fall(direction(s.slide) * s.v, direction(s.slide) * end.v);
-    }
-  }
-  if (params_.gap > 0.0) {
-    contact = contact_after(params_, end);
-    if (contact != s.contact) {
-      const ContactMode flank = contact == ContactMode::gap ? s.contact : contact;
-      const double away = flank == ContactMode::positive ? 1.0 : -1.0;
-      const double S0 = away * flank_force(params_, s, flank);
-      const double S1 = away * flank_force(params_, end, flank);
-      const double offset = contact_offset(params_, flank);
-      contact_at =
-          contact == ContactMode::gap
-              ? fall(S0, S1)
-              : std::max(S0 < 0.0 ? fall(-S0, -S1) : 0.0,
-                         away * (s.delta - offset) < 0.0
-                             ? fall(-away * (s.delta - offset), -away * (end.delta - offset))
-                             : 0.0);
-      contact_at = std::min(contact_at, 1.0 - 1e-12);
-    }
-  }
+  const double slide_at = slide_event(s, end, F), contact_at = contact_event(s, end);
   const double first = std::min(slide_at, contact_at);
-  if (first >= 1.0) {  // it only grazed
-    s = end;
-    return;
-  }
-  s = coast(s, command, F, first * finest_);
-  if (contact_at == first) {
-    s.contact = contact;
+  LaneState next = coast(s, command, F, first * finest_);
+  if (first >= 1.0) {
+    // it only grazed
+  } else if (contact_at == first) {
+    next.contact = contact_after(params_, end);
   } else if (sticks(s)) {
-    s.slide = slide;
+    const bool upwards = driving_force(params_, end, F) > params_.friction.Fs_positive;
+    next.slide = upwards ? SlideMode::positive : SlideMode::negative;
   } else {
-    from_rest(s, F);
+    from_rest(next, F);
   }
-  s = coast(s, command, F, (1.0 - first) * finest_);
-  if (params_.friction.kind == FrictionKind::set_valued && !sticks(s) &&
-      direction(s.slide) * s.v <= 0.0) {
-    from_rest(s, F);
-  }
+  s = coast(next, command, F, (1.0 - first) * finest_);
+  const bool slides = params_.friction.kind == FrictionKind::set_valued && !sticks(s);
+  if (slides && direction(s.slide) * s.v <= 0.0) from_rest(s, F);
 }
 
 void ExactStep::advance(LaneState& s, double command, double F, Tick step) const {

@@ -45,8 +45,7 @@ struct Gliding {
 /// order 4, A-stable: no stiffness of friction makes it unstable). The matrices are prepared for a
 /// ladder of lengths base_period 2^n. A sub-step is halved until
 ///   1. the defect of the parabola at h/4 and 3h/4 moves the slide by less than the tolerance,
-///   2. nothing happens in it: the slide does not stop or break away (set-valued friction), does
-///   not
+///   2. nothing happens in it: the slide does not stop or break away (set-valued friction) or
 ///      reverse (LuGre: |v|), no flank takes hold or lets go (backlash).
 /// In the finest sub-step the event is located by a secant and the drive goes on in its new mode.
 /// Every event consumes at least that length, so that bouncing without end ends.
@@ -100,6 +99,8 @@ class ExactStep {
                  Trial& trial) const;
   double error_of(double F, double h, const Trial& trial) const;
   LaneState coast(const LaneState& s, double command, double F, double dt) const;
+  double slide_event(const LaneState& s, const LaneState& end, double F) const;
+  double contact_event(const LaneState& s, const LaneState& end) const;
   void cross(LaneState& s, double command, double F) const;
 
   Gliding gliding_;
