@@ -239,11 +239,15 @@ TEST(LuGre, HoldsWithinItsPresliding) {
 TEST(LuGre, IsStableAndExactInItsSteadyForceAtRapidSpeed) {
   // sigma0 |v| h / g = 15: an explicit step of 200 us would explode
   constexpr double kForceTol = 1e-6;  // N
-  FeedDriveParams p = bare_mass(FrictionKind::lugre);
-  const ExactStep drive(p, kTick, kStep);
-  LaneState s = moving(p, 0.67);  // bristles straight
-  s = run(drive, s, 50, kStep, constant(0.0));
-  EXPECT_NEAR(bristle_force(p.friction, s.v, s.z), 450, kForceTol);
+  const FeedDriveParams p = bare_mass(FrictionKind::lugre);
+  const double h = kStep * kTick;
+  const Resolution whole_steps{.tolerance = std::numeric_limits<double>::infinity(), .longest = h};
+  for (const Resolution& resolution : {Resolution{}, whole_steps}) {
+    const ExactStep drive(p, h, 1, resolution);
+    LaneState s = moving(p, 0.67);  // bristles straight
+    for (int n = 0; n < 50; ++n) drive.advance(s, 0.0, 0.0, 1);
+    EXPECT_NEAR(bristle_force(p.friction, s.v, s.z), 450, kForceTol);
+  }
 }
 
 TEST(Regularised, CreepsUnderLoadAtTheSpeedWhereItsForceBalances) {
@@ -596,6 +600,16 @@ TEST(EveryDrive, ALongStepIsManyShortOnes) {
       for (int k = 0; k < 12; ++k) drive.advance(fine, command, 0.0, 5);
       ASSERT_NEAR(coarse.x, fine.x, kLengthTol) << "seed " << seed << " step " << n;
     }
+  }
+}
+
+TEST(EveryDrive, ASubStepThatMissesItsToleranceIsCounted) {
+  const FeedDriveParams p = x_axis_with(FrictionKind::regularised);
+  for (const double tolerance : {2e-12, 1e-40}) {
+    const ExactStep drive(p, kTick, 1, {.tolerance = tolerance});
+    LaneState s;
+    drive.advance(s, 10.0, 0.0, 1);
+    EXPECT_EQ(s.control.unresolved > 0, tolerance < 1e-30);
   }
 }
 
