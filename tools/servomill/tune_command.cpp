@@ -1,7 +1,244 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+#include "sim/frequency/bode.h"
+#include "sim/frequency/tuning.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {
+namespace {
 
-int tune_command(const Arguments&) { return kDone; }
+namespace po = boost::program_options;
+
+sim::TuneSettings settings_of(const Options& options) {
+  sim::TuneSettings settings;
+  const double phase = positive_number(options, "phase-margin");
+  if (phase >= 90.0) throw InputError({"--phase-margin"}, fmt::format("{:g}; must be < 90", phase));
+  settings.phase_margin = phase * deg;
+  settings.gain_margin = std::pow(10.0, positive_number(options, "gain-margin") / 20.0);
+  const double overshoot = options.get<double>("overshoot");
+  if (!(overshoot >= 0.0 && overshoot < 100.0)) {
+    throw InputError({"--overshoot"}, fmt::format("{:g}; must be >= 0 and < 100", overshoot));
+  }
+  // what rounds to none
+  settings.overshoot = std::max(overshoot, 0.01) / 100.0;
+  if (options.has("bandwidth")) settings.bandwidth = positive_number(options, "bandwidth");
+  settings.reset_ratio = positive_number(options, "reset-ratio");
+  return settings;
+}
+
+std::string place(double frequency, const plant::FeedDriveParams& drive) {
+  const double resonance = sim::resonance_frequency(drive);
+  const bool near = resonance > 0.0 && std::abs(std::log(frequency / resonance)) < 0.3;
+  return fmt::format("{:.4g} Hz{}", frequency,
+                     near ? fmt::format(", near the resonance of {:.4g} Hz", resonance) : "");
+}
+
+std::string reason(const sim::Limit& limit, const sim::TuneSettings& wanted,
+                   const plant::FeedDriveParams& drive, std::string_view loop) {
+  switch (limit.kind) {
+    case sim::Limit::Kind::phase_margin:
+      return fmt::format("the {} loop's phase margin of {:g} deg at the crossover of {}", loop,
+                         wanted.phase_margin / deg, place(limit.frequency, drive));
+    case sim::Limit::Kind::gain_margin:
+      return fmt::format("the {} loop's gain margin of {:g} dB at {}", loop,
+                         std::round(1e3 * decibel(wanted.gain_margin)) / 1e3,
+                         place(limit.frequency, drive));
+    case sim::Limit::Kind::overshoot:
+      return fmt::format("the overshoot of {:g} % after a step of the set point",
+                         100.0 * wanted.overshoot);
+    case sim::Limit::Kind::bandwidth:
+      return fmt::format("the bandwidth of {:g} Hz that is asked for", limit.frequency);
+    case sim::Limit::Kind::range:
+      break;
+  }
+  return "the range of gains that is searched";
+}
+
+void print_row(std::string_view name, const std::string& before, const std::string& after) {
+  fmt::print("  {:<34} {:>22} {:>22}\n", name, before, after);
+}
+
+void print_table(const sim::Tuning& t, int joint) {
+  const auto row = [&](std::string_view name, auto of) {
+    print_row(name, of(t.before), of(t.after));
+  };
+  using A = sim::Assessment;
+  const auto gain = [](const sim::Margins& m) {
+    return std::isfinite(m.gain)
+               ? fmt::format("{:.1f} dB, {:.4g} Hz", decibel(m.gain), m.gain_frequency)
+               : std::string("none below Nyquist");
+  };
+  const auto phase = [](const sim::Margins& m) {
+    return std::isfinite(m.phase) ? fmt::format("{:.1f} deg, {:.4g} Hz", m.phase / deg, m.crossover)
+                                  : std::string("no crossover");
+  };
+  print_row("", "before", "after");
+  row("velocity bandwidth wv, rad/s", [](const A& a) { return fmt::format("{:.4g}", a.gains.wv); });
+  row("reset time Tn, ms", [](const A& a) { return fmt::format("{:.4g}", a.gains.Tn / ms); });
+  row("Kv, 1/s (m/min/mm)", [](const A& a) {
+    return fmt::format("{:.4g} ({:.3g})", a.gains.Kv, a.gains.Kv * 60.0 / 1000.0);
+  });
+  row("stable", [](const A& a) { return std::string(a.stable ? "yes" : "NO"); });
+  row("velocity loop, gain margin", [&](const A& a) { return gain(a.velocity); });
+  row("velocity loop, phase margin", [&](const A& a) { return phase(a.velocity); });
+  row("position loop, gain margin", [&](const A& a) { return gain(a.position); });
+  row("position loop, phase margin", [&](const A& a) { return phase(a.position); });
+  row("position bandwidth (-3 dB), Hz",
+      [](const A& a) { return fmt::format("{:.4g}", a.closed.bandwidth); });
+  row("overshoot of a position step, %", [](const A& a) {
+    return a.stable ? fmt::format("{:.2f}", 100.0 * a.overshoot) : std::string("-");
+  });
+  const bool linear = joint < kLinearJoints;
+  row(linear ? "peak after a load step, um per kN" : "peak after a load step, urad per kNm",
+      [](const A& a) {
+        return a.stable ? fmt::format("{:.4g}", a.load_peak * 1e9) : std::string("-");
+      });
+}
+
+// The margins as the whole axis shows them in the simulation, one sinusoid at each crossover.
+void confirm(const sim::MachineSettings& machine, int joint, Tick delay, const sim::Assessment& a) {
+  struct Loop {
+    const char* name;
+    sim::PositionLoop loop;
+    sim::Entry entry;
+    sim::AxisSignal output, input;
+    const sim::Margins& margins;
+  };
+  const Loop loops[] = {
+      {"velocity", sim::PositionLoop::open, sim::Entry::velocity_command,
+       sim::AxisSignal::measured_speed, sim::AxisSignal::speed_error, a.velocity},
+      {"position", sim::PositionLoop::closed, sim::Entry::set_point, sim::AxisSignal::reading,
+       sim::AxisSignal::position_error, a.position},
+  };
+  for (const Loop& one : loops) {
+    if (!std::isfinite(one.margins.phase)) continue;
+    sim::Measurement how;
+    how.entry = one.entry;
+    how.amplitude = sim::default_amplitude(machine, joint, one.entry);
+    how.velocity = sim::default_velocity(machine, joint, one.entry, how.amplitude);
+    const auto measured =
+        sim::measure(machine, joint, delay, one.loop, how, {one.margins.crossover});
+    const sim::Complex L = sim::ratio(measured.points.front().response, one.output, one.input);
+    fmt::print(
+        "  measured in the simulation: {} loop at {:.4g} Hz has |L| = {:.3f} and a phase "
+        "margin of {:.1f} deg\n",
+        one.name, measured.points.front().f, std::abs(L),
+        std::remainder(std::arg(L) / deg + 180.0, 360.0));
+  }
+}
+
+void print_toml(char axis, const sim::Gains& gains) {
+  fmt::print("\n[machine_override.axis.{}]\n", axis);
+  fmt::print("Kv = \"{:.4g} 1/s\"\n", gains.Kv);
+  fmt::print("velocity_bandwidth = \"{:.4g} rad/s\"\n", gains.wv);
+  fmt::print("velocity_reset_time_ms = {:.4g}\n", gains.Tn / ms);
+}
+
+void print_json(char axis, const sim::Tuning& t, double common_Kv) {
+  const auto gains = [](const sim::Assessment& a) {
+    return fmt::format(
+        "{{\"velocity_bandwidth_rad_per_s\": {}, \"reset_time_s\": {}, \"Kv_per_s\": {}, "
+        "\"stable\": {}, \"velocity_gain_margin\": {}, \"velocity_phase_margin_deg\": {}, "
+        "\"position_gain_margin\": {}, \"position_phase_margin_deg\": {}, \"bandwidth_Hz\": {}, "
+        "\"overshoot\": {}, \"load_peak_SI\": {}}}",
+        json_number(a.gains.wv), json_number(a.gains.Tn), json_number(a.gains.Kv), a.stable,
+        json_number(a.velocity.gain), json_number(a.velocity.phase / deg),
+        json_number(a.position.gain), json_number(a.position.phase / deg),
+        json_number(a.closed.bandwidth), json_number(a.overshoot), json_number(a.load_peak));
+  };
+  fmt::print(
+      "{{\"axis\": \"{}\", \"before\": {}, \"after\": {}, \"Kv_limit_per_s\": {}, "
+      "\"common_Kv_per_s\": {}}}\n",
+      axis, gains(t.before), gains(t.after), json_number(t.Kv_limit), json_number(common_Kv));
+}
+
+}  // namespace
+
+int tune_command(const Arguments& arguments) {
+  Options options(
+      "tune", "SCENARIO.toml --axis Y|all [--phase-margin 60] [--gain-margin 8]",
+      "Finds gains for an axis on the exact multirate model: the largest velocity bandwidth that\n"
+      "keeps phase and gain margin of the velocity loop (its reset time goes along), then the\n"
+      "largest Kv that keeps those of the position loop and the overshoot. Says what binds, what\n"
+      "changes, what a simulation of the whole axis shows, and prints the lines for the scenario.\n"
+      "Several axes get one Kv, as interpolation needs it: the smallest rules.",
+      "SCENARIO.toml");
+  add_axis_options(options, true);
+  options.add()("phase-margin", po::value<double>()->default_value(60.0)->value_name("DEG"),
+                "least of both loops");
+  options.add()("gain-margin", po::value<double>()->default_value(8.0)->value_name("DB"),
+                "least of both loops");
+  options.add()("overshoot", po::value<double>()->default_value(5.0)->value_name("PERCENT"),
+                "most after a step of the set point, nothing fed forward");
+  options.add()("bandwidth", po::value<double>()->value_name("HZ"),
+                "of the closed position loop (-3 dB); Kv goes no higher than it needs");
+  options.add()("reset-ratio", po::value<double>()->default_value(4.0)->value_name("N"),
+                "reset time times velocity bandwidth");
+  options.add()("json", "prints one JSON object an axis");
+  if (!options.parse(arguments)) return kDone;
+
+  const sim::TuneSettings wanted = settings_of(options);
+  const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
+  const sim::MachineSettings& machine = scenario.machine;
+  const auto joints = chosen_joints(options, machine, true);
+  const Tick delay = sim::reading_delay_of(scenario);
+  std::vector<sim::Tuning> tunings;
+  for (const int joint : joints) tunings.push_back(sim::tune(machine, joint, delay, wanted));
+  const auto slowest = std::min_element(tunings.begin(), tunings.end(),
+                                        [](const sim::Tuning& a, const sim::Tuning& b) {
+                                          return a.after.gains.Kv < b.after.gains.Kv;
+                                        });
+  const double common = slowest->after.gains.Kv;
+  const char ruling =
+      machine.chain.layout.letter_of(joints[static_cast<std::size_t>(slowest - tunings.begin())]);
+
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const int joint = joints[k];
+    const char axis = machine.chain.layout.letter_of(joint);
+    const plant::FeedDriveParams& drive = machine.drives[static_cast<std::size_t>(joint)];
+    const double own = tunings[k].after.gains.Kv;
+    if (joints.size() > 1) {
+      tunings[k] = sim::with_common_Kv(machine, joint, delay, tunings[k], common);
+    }
+    const sim::Tuning& t = tunings[k];
+    if (!t.after.stable) throw std::logic_error("tuned gains are not stable");
+    if (options.has("json")) {
+      print_json(axis, t, common);
+      continue;
+    }
+    fmt::print("{}{}\n\n", k == 0 ? "" : "\n", axis_headline(machine, joint, delay));
+    fmt::print("  wv = {:.4g} rad/s: {} rules\n", t.after.gains.wv,
+               reason(t.velocity, wanted, drive, "velocity"));
+    fmt::print("  Tn = {:.4g} ms: {:g} / wv, which costs {:.0f} deg of phase at wv\n",
+               t.after.gains.Tn / ms, wanted.reset_ratio,
+               std::atan(1.0 / wanted.reset_ratio) / deg);
+    fmt::print("  Kv = {:.4g} 1/s: {} rules\n", own, reason(t.position, wanted, drive, "position"));
+    if (wanted.bandwidth && t.position.kind != sim::Limit::Kind::bandwidth) {
+      fmt::print("  The bandwidth of {:g} Hz is not reached.\n", *wanted.bandwidth);
+    }
+    if (own > common) {
+      fmt::print("  Kv = {:.4g} 1/s, equal for interpolating axes: axis {} rules\n", common,
+                 ruling);
+    }
+    fmt::print("\n");
+    print_table(t, joint);
+    fmt::print("\n");
+    confirm(sim::with_gains(machine, joint, t.after.gains), joint, delay, t.after);
+  }
+  if (options.has("json")) return kDone;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    print_toml(machine.chain.layout.letter_of(joints[k]), tunings[k].after.gains);
+  }
+  if (joints.size() == 1) {
+    fmt::print("\nInterpolating axes need equal Kv: --axis all finds the common one.\n");
+  }
+  return kDone;
+}
 
 }  // namespace servomill::tools

@@ -1,0 +1,252 @@
+#include "sim/frequency/tuning.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "plant/vocabulary/units.h"
+#include "sim/frequency/frequency_response.h"
+#include "sim/frequency/step_response.h"
+#include "sim/stability.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr double kLowest = 0.5;           // Hz
+constexpr std::size_t kGrid = 300;        // frequencies of a curve
+constexpr double kScan = 1.1;             // factor between gains that are tried
+constexpr double kGainTol = 1e-5;         // of a gain that is sought
+constexpr double kLeastBandwidth = 20.0;  // rad/s; below, friction holds the motor, not its inertia
+constexpr double kLeastKv = 1.0;          // 1/s
+constexpr double kStepHeight = 1e-4;      // m, rad; the model is linear
+constexpr double kStepDuration = 12.0;    // of the slowest time constant
+constexpr double kLongestStep = 5.0;      // s
+
+ResponseAt open_velocity(FrequencyResponse& response) {
+  return [&](double f) {
+    return ratio(response.at(Entry::velocity_command, f), AxisSignal::measured_speed,
+                 AxisSignal::speed_error);
+  };
+}
+ResponseAt open_position(FrequencyResponse& response) {
+  return [&](double f) {
+    return ratio(response.at(Entry::set_point, f), AxisSignal::reading, AxisSignal::position_error);
+  };
+}
+
+std::vector<double> grid(double period) { return logarithmic(kLowest, 0.5 / period, kGrid); }
+
+// Which margin is missed, if any.
+std::optional<Limit> missed(const Margins& m, const TuneSettings& wanted) {
+  if (m.gain < wanted.gain_margin) return Limit{Limit::Kind::gain_margin, m.gain_frequency};
+  if (m.phase < wanted.phase_margin) return Limit{Limit::Kind::phase_margin, m.crossover};
+  return std::nullopt;
+}
+
+struct Largest {
+  double gain = 0.0;
+  Limit limit;
+};
+
+// The end of the first stretch of gains for which nothing is missed; 0 if there is none.
+Largest largest_gain(double least, double most,
+                     const std::function<std::optional<Limit>(double)>& check) {
+  Largest found;
+  double previous = 0.0;
+  for (double gain = least; gain <= most; gain *= kScan) {
+    const auto limit = check(gain);
+    if (!limit) {
+      previous = gain;
+    } else if (previous > 0.0) {
+      found.limit = *limit;
+      double good = previous, bad = gain;
+      while (bad - good > kGainTol * good) {
+        const double middle = 0.5 * (good + bad);
+        if (const auto why = check(middle)) {
+          bad = middle;
+          found.limit = *why;
+        } else {
+          good = middle;
+        }
+      }
+      found.gain = good;
+      return found;
+    }
+  }
+  found.gain = previous;
+  return found;
+}
+
+double rounded_down(double value) {
+  if (value <= 0.0) return 0.0;
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
+  return std::floor(value / unit) * unit;
+}
+double rounded_up(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
+  return std::ceil(value / unit) * unit;
+}
+
+Margins velocity_margins(const MachineSettings& machine, int joint, bool refined) {
+  FrequencyResponse response(machine, joint, 0, PositionLoop::open);
+  const ResponseAt L = open_velocity(response);
+  const Curve curve = curve_of(L, grid(machine.nc.periods.seconds(machine.nc.periods.velocity)));
+  return margins_of(curve, refined ? L : ResponseAt{});
+}
+
+double step_overshoot(const MachineSettings& linear, int joint, Tick reading_delay) {
+  const double slowest = slowest_time_constant(linear, joint, reading_delay, PositionLoop::closed);
+  if (!std::isfinite(slowest)) return Margins::kNone;
+  StepSettings step;
+  step.height = kStepHeight;
+  step.duration = std::min(kLongestStep, kStepDuration * slowest);
+  return step_response(linear, joint, reading_delay, step).figures.overshoot;
+}
+
+[[noreturn]] void no_gain(const MachineSettings& machine, int joint, std::string_view gain,
+                          const TuneSettings& wanted) {
+  throw InputError(
+      {"axis " + std::string(1, machine.chain.layout.letter_of(joint))},
+      fmt::format("no {} has a phase margin of {:.4g} deg together with a gain margin of {:.4g} "
+                  "dB; ask for less, or for a larger --reset-ratio",
+                  gain, wanted.phase_margin / deg, 20.0 * std::log10(wanted.gain_margin)));
+}
+
+Largest largest_Kv(const MachineSettings& machine, int joint, Tick reading_delay, Gains gains,
+                   const TuneSettings& wanted) {
+  gains.Kv = 1.0;
+  FrequencyResponse response(with_gains(machine, joint, gains), joint, reading_delay,
+                             PositionLoop::closed);
+  const double Tp = machine.nc.periods.seconds(machine.nc.periods.position);
+  const Curve one = curve_of(open_position(response), grid(Tp));
+  return largest_gain(kLeastKv, std::numbers::pi / Tp, [&](double Kv) {
+    Curve curve = one;
+    for (auto& L : curve.y) L *= Kv;
+    return missed(margins_of(curve), wanted);
+  });
+}
+
+// Largest Kv up to `most` with a quantity, rising with Kv, up to `bound`.
+template <class Of>
+double lowered(double most, double bound, const Of& quantity) {
+  if (quantity(most) <= bound) return most;
+  double good = 0.0, bad = most;
+  while (bad - good > 1e-4 * most) {
+    const double middle = 0.5 * (good + bad);
+    (quantity(middle) <= bound ? good : bad) = middle;
+  }
+  return good;
+}
+
+}  // namespace
+
+Gains gains_of(const MachineSettings& machine, int joint) {
+  const controllers::CascadeParams& c = machine.nc.cascade[static_cast<std::size_t>(joint)];
+  return {c.Kp / c.J, c.Ki > 0.0 ? c.Kp / c.Ki : 0.0, c.Kv};
+}
+
+MachineSettings with_gains(const MachineSettings& machine, int joint, const Gains& gains) {
+  MachineSettings out = machine;
+  controllers::CascadeParams& c = out.nc.cascade[static_cast<std::size_t>(joint)];
+  c.Kp = gains.wv * c.J;
+  c.Ki = gains.Tn > 0.0 ? c.Kp / gains.Tn : 0.0;
+  c.Kv = gains.Kv;
+  return out;
+}
+
+double resonance_frequency(const plant::FeedDriveParams& p) {
+  if (p.is_rigid()) return 0.0;
+  return std::sqrt(p.k * (1.0 / p.M + p.r * p.r / p.J)) / (2.0 * std::numbers::pi);
+}
+
+Assessment assess(const MachineSettings& machine, int joint, Tick reading_delay) {
+  const MachineSettings linear = linearised(machine);
+  Assessment out;
+  out.gains = gains_of(machine, joint);
+  out.velocity = velocity_margins(linear, joint, true);
+  FrequencyResponse response(linear, joint, reading_delay, PositionLoop::closed);
+  const ResponseAt L = open_position(response);
+  const ResponseAt T = [&](double f) {
+    return response.at(Entry::set_point, f)[index_of(AxisSignal::position)];
+  };
+  const auto f = grid(linear.nc.periods.seconds(linear.nc.periods.position));
+  out.position = margins_of(curve_of(L, f), L);
+  out.closed = closed_loop_of(curve_of(T, f), T);
+  out.stable = velocity_spectral_radius(linear, joint) < 1.0 &&
+               spectral_radius(linear, joint, reading_delay) < 1.0;
+  if (!out.stable) return out;
+  out.overshoot = step_overshoot(linear, joint, reading_delay);
+  StepSettings load;
+  load.kind = StepKind::load;
+  load.height = 1.0;
+  load.duration = std::min(
+      kLongestStep,
+      kStepDuration * slowest_time_constant(linear, joint, reading_delay, PositionLoop::closed));
+  out.load_peak = std::abs(step_response(linear, joint, reading_delay, load).figures.peak);
+  return out;
+}
+
+Tuning tune(const MachineSettings& machine, int joint, Tick reading_delay,
+            const TuneSettings& wanted) {
+  const MachineSettings linear = linearised(machine);
+  Tuning out;
+  out.before = assess(machine, joint, reading_delay);
+  const auto gains_for = [&](double wv) { return Gains{wv, wanted.reset_ratio / wv, 1.0}; };
+
+  const double Tv = linear.nc.periods.seconds(linear.nc.periods.velocity);
+  const Largest wv = largest_gain(kLeastBandwidth, std::numbers::pi / Tv, [&](double one) {
+    return missed(velocity_margins(with_gains(linear, joint, gains_for(one)), joint, false),
+                  wanted);
+  });
+  if (wv.gain == 0.0) no_gain(machine, joint, "velocity_bandwidth above 20 rad/s", wanted);
+  out.velocity = wv.limit;
+  Gains gains = gains_for(rounded_down(wv.gain));
+  gains.Tn = rounded_up(gains.Tn);
+
+  const Largest Kv = largest_Kv(linear, joint, reading_delay, gains, wanted);
+  if (Kv.gain == 0.0) no_gain(machine, joint, "Kv above 1 1/s", wanted);
+  out.position = Kv.limit;
+  gains.Kv = Kv.gain;
+  const auto at = [&](double one) {
+    Gains tried = gains;
+    tried.Kv = one;
+    return with_gains(linear, joint, tried);
+  };
+  const double calm = lowered(gains.Kv, wanted.overshoot, [&](double one) {
+    return step_overshoot(at(one), joint, reading_delay);
+  });
+  if (calm < gains.Kv) out.position = {Limit::Kind::overshoot, 0.0};
+  gains.Kv = out.Kv_limit = calm;
+  if (wanted.bandwidth) {
+    const double enough = lowered(gains.Kv, *wanted.bandwidth, [&](double one) {
+      FrequencyResponse response(at(one), joint, reading_delay, PositionLoop::closed);
+      const ResponseAt T = [&](double f) {
+        return response.at(Entry::set_point, f)[index_of(AxisSignal::position)];
+      };
+      return closed_loop_of(
+                 curve_of(T, grid(linear.nc.periods.seconds(linear.nc.periods.position))), T)
+          .bandwidth;
+    });
+    if (enough < gains.Kv) out.position = {Limit::Kind::bandwidth, *wanted.bandwidth};
+    gains.Kv = enough;
+  }
+  gains.Kv = rounded_down(gains.Kv);
+  out.after = assess(with_gains(machine, joint, gains), joint, reading_delay);
+  assert(out.after.stable);
+  return out;
+}
+
+Tuning with_common_Kv(const MachineSettings& machine, int joint, Tick reading_delay, Tuning tuning,
+                      double Kv) {
+  assert(Kv <= tuning.after.gains.Kv);
+  Gains gains = tuning.after.gains;
+  gains.Kv = Kv;
+  tuning.after = assess(with_gains(machine, joint, gains), joint, reading_delay);
+  return tuning;
+}
+
+}  // namespace servomill::sim

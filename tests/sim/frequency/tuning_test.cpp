@@ -1,0 +1,127 @@
+/// Tuned gains keep what was asked for, just.
+#include "sim/frequency/tuning.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/frequency/measured_response.h"
+#include "sim/scenario.h"
+#include "sim/stability.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr int kY = 1;
+constexpr double kRounding = 2e-3;  // of a gain: four digits, rounded down
+
+MachineSettings hsm600u() {
+  return read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
+}
+
+// Of Y with the margins that are the default, shared by the tests.
+const Tuning& tuned_Y() {
+  static const Tuning tuning = tune(hsm600u(), kY, 0, {});
+  return tuning;
+}
+
+void expect_kept(const Assessment& a, const TuneSettings& wanted) {
+  EXPECT_TRUE(a.stable);
+  for (const Margins& m : {a.velocity, a.position}) {
+    EXPECT_GE(m.gain, wanted.gain_margin * (1.0 - kRounding));
+    EXPECT_GE(m.phase, wanted.phase_margin * (1.0 - kRounding));
+  }
+  EXPECT_LE(a.overshoot, wanted.overshoot + kRounding);
+}
+
+TEST(Tune, KeepsTheMarginsAndLeavesNothingOver) {
+  const MachineSettings machine = hsm600u();
+  const TuneSettings wanted;
+  const Tuning& t = tuned_Y();
+  expect_kept(t.after, wanted);
+  RecordProperty("gains", fmt::format("{:.1f} rad/s {:.2f} ms {:.1f} 1/s", t.after.gains.wv,
+                                      t.after.gains.Tn / ms, t.after.gains.Kv));
+  ASSERT_EQ(t.velocity.kind, Limit::Kind::phase_margin);
+  EXPECT_NEAR(t.after.velocity.phase / wanted.phase_margin, 1.0, 2.0 * kRounding);
+  ASSERT_EQ(t.position.kind, Limit::Kind::gain_margin);
+  EXPECT_NEAR(t.after.position.gain / wanted.gain_margin, 1.0, 2.0 * kRounding);
+
+  Gains more = t.after.gains;
+  more.Kv *= 1.02;
+  EXPECT_LT(assess(with_gains(machine, kY, more), kY, 0).position.gain, wanted.gain_margin);
+  more = t.after.gains;
+  more.wv *= 1.02;
+  more.Tn /= 1.02;
+  EXPECT_LT(assess(with_gains(machine, kY, more), kY, 0).velocity.phase, wanted.phase_margin);
+}
+
+TEST(Tune, IsConfirmedByTheSimulationAtTheCrossovers) {
+  const MachineSettings machine = hsm600u();
+  const Tuning& t = tuned_Y();
+  const MachineSettings tuned = with_gains(machine, kY, t.after.gains);
+  const auto measured = [&](PositionLoop loop, Entry entry, AxisSignal y, AxisSignal e, double f) {
+    const Measurement how{.entry = entry, .amplitude = default_amplitude(tuned, kY, entry)};
+    return ratio(measure(tuned, kY, 0, loop, how, {f}).points.front().response, y, e);
+  };
+  // quantised encoders, and a frequency that is moved by up to a thousandth
+  constexpr double kSizeTol = 0.01, kPhaseTol = 0.5 * deg;
+  const Complex v =
+      measured(PositionLoop::open, Entry::velocity_command, AxisSignal::measured_speed,
+               AxisSignal::speed_error, t.after.velocity.crossover);
+  EXPECT_NEAR(std::abs(v), 1.0, kSizeTol);
+  EXPECT_NEAR(std::remainder(std::arg(-v), 2.0 * std::numbers::pi), t.after.velocity.phase,
+              kPhaseTol);
+  const Complex p = measured(PositionLoop::closed, Entry::set_point, AxisSignal::reading,
+                             AxisSignal::position_error, t.after.position.crossover);
+  EXPECT_NEAR(std::abs(p), 1.0, kSizeTol);
+  EXPECT_NEAR(std::remainder(std::arg(-p), 2.0 * std::numbers::pi), t.after.position.phase,
+              kPhaseTol);
+}
+
+TEST(Tune, StopsAtTheOvershoot) {
+  TuneSettings wanted;
+  wanted.gain_margin = 1.5;
+  wanted.phase_margin = 40.0 * deg;
+  wanted.overshoot = 0.02;
+  const Tuning t = tune(hsm600u(), kY, 0, wanted);
+  expect_kept(t.after, wanted);
+  EXPECT_EQ(t.position.kind, Limit::Kind::overshoot);
+  EXPECT_NEAR(t.after.overshoot, wanted.overshoot, kRounding);
+}
+
+TEST(Tune, GoesNoHigherThanTheBandwidthNeeds) {
+  TuneSettings wanted;
+  wanted.bandwidth = 20.0;
+  const Tuning t = tune(hsm600u(), kY, 0, wanted);
+  expect_kept(t.after, wanted);
+  EXPECT_EQ(t.position.kind, Limit::Kind::bandwidth);
+  EXPECT_NEAR(t.after.closed.bandwidth / *wanted.bandwidth, 1.0, 2.0 * kRounding);
+  EXPECT_LT(t.after.gains.Kv, t.Kv_limit);
+}
+
+TEST(Tune, KeepsMoreMarginAtALowerCommonKv) {
+  const MachineSettings machine = hsm600u();
+  const Tuning& own = tuned_Y();
+  const Tuning common = with_common_Kv(machine, kY, 0, own, 0.8 * own.after.gains.Kv);
+  expect_kept(common.after, {});
+  EXPECT_GT(common.after.position.gain, own.after.position.gain);
+  EXPECT_EQ(common.after.gains.wv, own.after.gains.wv);
+}
+
+TEST(Tune, RefusesWhatNoGainHas) {
+  TuneSettings wanted;
+  wanted.phase_margin = 85.0 * deg;
+  try {
+    tune(hsm600u(), kY, 0, wanted);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "axis Y: error: no velocity_bandwidth above 20 rad/s has a phase margin of 85 deg "
+                 "together with a gain margin of 8 dB; ask for less, or for a larger "
+                 "--reset-ratio");
+  }
+}
+
+}  // namespace
+}  // namespace servomill::sim
