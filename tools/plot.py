@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Draws figures from the result files (HDF5) of `servomill run` and `servomill sweep`.
+"""Draws figures from the result files (HDF5) of `servomill run`, `sweep`, `bode` and
+`step`.
 
 Figures are named after those of Guevel et al. 2025 that they answer to; `--list` prints all.
 Exit status: 0 drawn, 2 the input is wrong, 3 the system failed.

@@ -13,6 +13,11 @@ namespace {
 
 bool is_linear_axis(char axis) { return axis == 'X' || axis == 'Y' || axis == 'Z'; }
 
+double travel_per_radian(const MachineSettings& machine, char letter) {
+  const auto joint = machine.chain.layout.joint_of(*axis_of(letter));
+  return machine.drives[static_cast<std::size_t>(*joint)].r;
+}
+
 std::vector<double> magnitudes(const std::vector<Complex>& y, double unit) {
   std::vector<double> out;
   for (const Complex& one : y) out.push_back(std::abs(one) / unit);
@@ -113,7 +118,7 @@ void BodeStore::add(char axis, const BodeResult& result) {
 }
 
 StepStore::StepStore(const std::string& path, bool force, const Scenario& scenario)
-    : file_(writable_name(path, force), force) {
+    : machine_(scenario.machine), file_(writable_name(path, force), force) {
   Hdf5Group root = file_.root();
   write_inputs(root, scenario, "step");
 }
@@ -123,6 +128,9 @@ void StepStore::add(char axis, const StepSettings& settings, const StepResponse&
   const bool linear = is_linear_axis(axis);
   const std::string length = linear ? "mm" : "deg";
   const double unit = linear ? mm : deg;
+  file_.root()
+      .group(fmt::format("step/{}", axis))
+      .attribute("travel_per_radian", travel_per_radian(machine_, axis) / unit);
   struct Column {
     const char* name;
     AxisSignal signal;

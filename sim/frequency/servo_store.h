@@ -35,6 +35,7 @@ class StepStore {
   void commit() { file_.commit(); }
 
  private:
+  MachineSettings machine_;
   OutputFile file_;
 };
 

@@ -2,15 +2,16 @@
 import dataclasses
 from typing import Callable
 
-from figures import circular, deviations, error_functions, lag, notches, straightness, volumetric
+from figures import (bode, circular, deviations, error_functions, lag, notches, step, straightness,
+                     volumetric)
 
 
 @dataclasses.dataclass(frozen=True)
 class Figure:
     name: str
-    kind: str          # of the file: "run" or "sweep"
+    kind: str          # of the file: one of results.KINDS
     help: str
-    draw: Callable     # draw(Run or Sweep) -> matplotlib figure; NotInFile where it cannot
+    draw: Callable     # draw(what results.open_result gives) -> matplotlib figure; NotInFile where it cannot
 
 
 FIGURES = (
@@ -33,4 +34,11 @@ FIGURES = (
     Figure("reversals", "run", "circular test: where the axes reverse", circular.draw_reversals),
     Figure("deviations", "run", "following error, tool deviation and contour error over time",
            deviations.draw),
+    Figure("position", "bode", "position loop over frequency: open, closed, with feed-forward",
+           lambda responses: bode.draw(responses, "position")),
+    Figure("velocity", "bode", "velocity loop over frequency: open, closed",
+           lambda responses: bode.draw(responses, "velocity")),
+    Figure("compliance", "bode", "slide per force over frequency",
+           lambda responses: bode.draw(responses, "compliance")),
+    Figure("step", "step", "step responses of position, velocity and load", step.draw),
 )

@@ -43,7 +43,7 @@ class ResultFile:
         if int(root["schema_version"]) != SCHEMA_VERSION:
             raise InputError(f"{path}: error: has schema version {int(root['schema_version'])}; "
                              f"this program reads version {SCHEMA_VERSION}")
-        self.kind = str(root["kind"])          # "run" or "sweep"
+        self.kind = str(root["kind"])          # of KINDS
         self.title = str(root.get("title", ""))
         try:
             self.scenario = tomllib.loads(str(self.h5["inputs"].attrs["resolved"]))
@@ -179,13 +179,36 @@ class Sweep(ResultFile):
             for g in table.get("quantities", {}).values()]
 
 
+class Responses(ResultFile):
+    """A file that `servomill bode` or `servomill step` wrote: `axes` {letter: its group}."""
+
+    def __init__(self, path):
+        super().__init__(path)
+        self.axes = dict(self.h5.get(self.kind, {}))
+        if not self.axes:
+            raise InputError(f"{path}: error: holds no {self.kind} of any axis")
+
+    def unit(self, letter, curve):
+        """Unit of the magnitude of a curve, as a reader writes it."""
+        text = str(self.axes[letter][curve]["magnitude"].attrs["units"])
+        return {"um N-1": "µm/N", "urad N-1 m-1": "µrad/Nm"}.get(text, text)
+
+    def transmission(self, letter):
+        """Slide travel (mm, deg) per motor angle (rad)."""
+        return float(self.axes[letter].attrs["travel_per_radian"])
+
+
+KINDS = {"run": Run, "sweep": Sweep, "bode": Responses, "step": Responses}
+
+
 def open_result(path):
-    """The file as a Run or a Sweep."""
+    """The file as what its kind says."""
     with ResultFile(path) as probe:
         kind = probe.kind
-    if kind not in ("run", "sweep"):
-        raise InputError(f"{path}: error: holds a {kind}; figures are drawn from a run or a sweep")
-    return Run(path) if kind == "run" else Sweep(path)
+    if kind not in KINDS:
+        raise InputError(f"{path}: error: holds a {kind}; figures are drawn from " +
+                         ", ".join(KINDS))
+    return KINDS[kind](path)
 
 
 def along_path(base, values, s):
