@@ -86,7 +86,8 @@ BodeResult bode(const MachineSettings& machine, int joint, Tick reading_delay,
   out.method = settings.method;
 
   FrequencyResponse exact(machine, joint, reading_delay, loop);
-  const double to = settings.to.value_or(kDefaultReach * out.nyquist);
+  const double reach = kDefaultReach * out.nyquist;
+  const double to = settings.to.value_or(settings.from < reach ? reach : out.nyquist);
   const std::vector<double> wanted = logarithmic(settings.from, to, settings.points);
   Measurement how;
   how.method = settings.method;

@@ -38,10 +38,13 @@ struct BodeResult {
   double simulated_time = 0.0;                    // s
 };
 
+/// Below it the simulation of two periods takes too long.
+inline constexpr double kLowestMeasured = 0.1;  // Hz
+
 struct BodeSettings {
   BodeLoop loop = BodeLoop::position;
   double from = 1.0;         // Hz
-  std::optional<double> to;  // Hz; 0.4 times the rate of the loop
+  std::optional<double> to;  // Hz; none: 0.4 times the rate of the loop
   std::size_t points = 30;
   bool measure = true;
   Method method = Method::sine;

@@ -14,6 +14,7 @@ constexpr double kLongestWait = 60.0;   // s
 constexpr double kLeastWindow = 0.1;    // s
 constexpr double kLeastPeriods = 2.0;   // of the lowest frequency in a window of one sine
 constexpr double kSharedPeriods = 6.0;  // of the lowest frequency in that of a multi-sine
+constexpr Tick kMostKept = 4'000'000;   // turns of a window that are computed once
 constexpr double kCurrentShare = 0.02;
 
 // Whole periods in whole hyperperiods.
@@ -59,11 +60,8 @@ class Excitation {
  public:
   Excitation(const Window& window, const AxisStand& stand, const Measurement& how)
       : how_(how), h_(stand.base()), ticks_(window.hyperperiods * stand.hyperperiod()) {
-    turn_.reserve(static_cast<std::size_t>(ticks_));
-    for (Tick n = 0; n < ticks_; ++n) {
-      turn_.push_back(std::polar(
-          1.0, 2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(ticks_)));
-    }
+    if (ticks_ <= kMostKept) turn_.reserve(static_cast<std::size_t>(ticks_));
+    for (Tick n = 0; n < ticks_ && ticks_ <= kMostKept; ++n) turn_.push_back(turned(n));
     const double K = static_cast<double>(window.periods.size());
     for (std::size_t k = 0; k < window.periods.size(); ++k) {
       const double order = static_cast<double>(k);
@@ -83,7 +81,8 @@ class Excitation {
   std::size_t lines() const { return lines_.size(); }
   Complex amplitude(std::size_t k) const { return lines_[k].amplitude; }
   Complex turn(std::size_t k, Tick n) const {
-    return turn_[static_cast<std::size_t>(lines_[k].periods * (n % ticks_) % ticks_)];
+    const Tick share = lines_[k].periods * (n % ticks_) % ticks_;
+    return turn_.empty() ? turned(share) : turn_[static_cast<std::size_t>(share)];
   }
 
   StandInput at(Tick n) const {
@@ -108,6 +107,10 @@ class Excitation {
     double w;  // rad/s
     Complex amplitude;
   };
+  Complex turned(Tick share) const {
+    return std::polar(
+        1.0, 2.0 * std::numbers::pi * static_cast<double>(share) / static_cast<double>(ticks_));
+  }
   Complex sum(Tick n) const {
     Complex u = 0.0;
     for (std::size_t k = 0; k < lines_.size(); ++k) u += lines_[k].amplitude * turn(k, n);
@@ -117,7 +120,7 @@ class Excitation {
   Measurement how_;
   double h_;
   Tick ticks_;
-  std::vector<Complex> turn_;
+  std::vector<Complex> turn_;  // of each tick; empty for a long window
   std::vector<Line> lines_;
   double crest_factor_ = 0.0;
 };

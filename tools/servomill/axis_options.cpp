@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -13,16 +14,15 @@ namespace servomill::tools {
 
 namespace po = boost::program_options;
 
-void add_axis_options(Options& options, bool all_axes) {
-  options.add()("axis,a", po::value<std::string>()->value_name(all_axes ? "Y|all" : "Y"),
-                all_axes ? "axis, or several (X,Y), or all" : "axis, or several (X,Y)");
+void add_axis_options(Options& options) {
+  options.add()("axis,a", po::value<std::string>()->value_name("Y"),
+                "axis, or several (X,Y), or all");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario, as for servomill run, such as "
                 "machine_override.axis.Y.Kv=\"4 m/min/mm\"");
 }
 
-std::vector<int> chosen_joints(const Options& options, const sim::MachineSettings& machine,
-                               bool all_axes) {
+std::vector<int> chosen_joints(const Options& options, const sim::MachineSettings& machine) {
   const JointLayout& layout = machine.chain.layout;
   std::vector<std::string> letters;
   for (const int j : machine.joints()) letters.emplace_back(1, layout.letter_of(j));
@@ -31,18 +31,17 @@ std::vector<int> chosen_joints(const Options& options, const sim::MachineSetting
     throw InputError({"--axis"}, fmt::format("is missing; {}", there_are));
   }
   const auto& text = options.get<std::string>("axis");
-  if (all_axes && text == "all") return machine.joints();
+  if (text == "all") return machine.joints();
   std::vector<int> joints;
   std::stringstream words(text);
   std::string word;
-  std::vector<std::string_view> names(letters.begin(), letters.end());
-  if (all_axes) names.emplace_back("all");
+  constexpr std::array<std::string_view, 1> kAll = {"all"};
   while (std::getline(words, word, ',')) {
     const auto axis = word.size() == 1 ? axis_of(word.front()) : std::nullopt;
     const auto joint = axis ? layout.joint_of(*axis) : std::nullopt;
     if (!joint) {
-      throw InputError({"--axis"}, fmt::format("no axis '{}'{}; {}", word,
-                                               did_you_mean(word, names), there_are));
+      throw InputError(
+          {"--axis"}, fmt::format("no axis '{}'{}; {}", word, did_you_mean(word, kAll), there_are));
     }
     if (std::find(joints.begin(), joints.end(), *joint) == joints.end()) joints.push_back(*joint);
   }

@@ -12,12 +12,11 @@
 namespace servomill::tools {
 
 /// Adds --axis and --set.
-void add_axis_options(Options& options, bool all_axes);
+void add_axis_options(Options& options);
 
-/// Joints that --axis names: one, several ("X,Y") or, where allowed, all.
+/// Joints that --axis names: one, several ("X,Y") or all.
 /// @throws InputError for an axis that the machine lacks
-std::vector<int> chosen_joints(const Options& options, const sim::MachineSettings& machine,
-                               bool all_axes);
+std::vector<int> chosen_joints(const Options& options, const sim::MachineSettings& machine);
 
 /// Value of an option that takes a number with a unit ("20 um"), in SI.
 /// @throws InputError

@@ -27,19 +27,21 @@ std::vector<sim::BodeLoop> loops_of(const Options& options) {
 
 void check_range(const sim::BodeSettings& settings, const sim::LoopPeriods& periods) {
   const double nyquist = sim::nyquist_frequency(periods, settings.loop);
-  const auto rule = [&](std::string_view name, double value) {
-    if (value <= nyquist * (1.0 + 1e-12)) return;
-    throw InputError(
-        {std::string(name)},
-        fmt::format("{:g} Hz; must be <= {:.6g} Hz, half the rate of the {} loop", value, nyquist,
-                    settings.loop == sim::BodeLoop::velocity ? "velocity" : "position"));
+  const auto fault = [&](const char* name, double value, const std::string& rule) {
+    throw InputError({name}, fmt::format("{:g} Hz; must be {}", value, rule));
   };
-  rule("--from", settings.from);
+  const std::string half =
+      fmt::format("{:.6g} Hz, half the rate of the {} loop", nyquist,
+                  settings.loop == sim::BodeLoop::velocity ? "velocity" : "position");
+  if (settings.from >= nyquist) fault("--from", settings.from, "< " + half);
+  if (settings.measure && settings.from < sim::kLowestMeasured) {
+    fault("--from", settings.from,
+          fmt::format(">= {:g} Hz to be measured; --method none goes lower", sim::kLowestMeasured));
+  }
   if (!settings.to) return;
-  rule("--to", *settings.to);
+  if (*settings.to > nyquist * (1.0 + 1e-12)) fault("--to", *settings.to, "<= " + half);
   if (*settings.to > settings.from) return;
-  throw InputError({"--to"},
-                   fmt::format("{:g} Hz; must be > --from, {:g} Hz", *settings.to, settings.from));
+  fault("--to", *settings.to, fmt::format("> --from, {:g} Hz", settings.from));
 }
 
 sim::Quantity quantity_of(sim::BodeLoop loop, int joint) {
@@ -209,7 +211,7 @@ int bode_command(const Arguments& arguments) {
       "The open position loop is reading over position error, the open velocity loop measured\n"
       "speed over speed error. Margins are those of the exact model.",
       "SCENARIO.toml");
-  add_axis_options(options, false);
+  add_axis_options(options);
   options.add()("loop,l", po::value<std::string>()->default_value("position")->value_name("LOOP"),
                 "position, velocity, compliance or all");
   options.add()("from", po::value<double>()->default_value(1.0)->value_name("HZ"),
@@ -237,7 +239,7 @@ int bode_command(const Arguments& arguments) {
 
   const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
   const sim::MachineSettings& machine = scenario.machine;
-  const auto joints = chosen_joints(options, machine, false);
+  const auto joints = chosen_joints(options, machine);
   const auto loops = loops_of(options);
   if (loops.size() > 1 && options.has("amplitude")) {
     throw InputError({"--amplitude"}, "needs one --loop: its unit is that of what is fed in");

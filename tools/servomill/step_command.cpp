@@ -18,6 +18,8 @@ namespace po = boost::program_options;
 
 constexpr std::array<std::string_view, 4> kKinds = {"position", "velocity", "load", "all"};
 constexpr double kDefaultDecay = 12.0;      // time constants that are simulated
+constexpr Tick kMostRows = 20'000;          // of a response, about
+constexpr double kLeastOvershoot = 5e-5;    // less is none
 constexpr double kLongestDuration = 100.0;  // s
 
 std::vector<sim::StepKind> kinds_of(const Options& options) {
@@ -55,7 +57,10 @@ sim::StepSettings settings_of(const Options& options, sim::StepKind kind, int jo
   const Units units = units_of(kind, joint);
   settings.height =
       quantity_option(options, "height", units.quantity).value_or(units.default_height);
-  if (settings.height == 0.0) throw InputError({"--height"}, "must not be 0");
+  if (settings.height == 0.0) {
+    throw InputError({"--height"},
+                     fmt::format("'{}' must not be 0", options.get<std::string>("height")));
+  }
   const double band = positive_number(options, "band");
   if (band >= 100.0) throw InputError({"--band"}, fmt::format("{:g}; must be < 100", band));
   settings.band = band / 100.0;
@@ -78,18 +83,24 @@ void print_figures(const sim::StepSettings& settings, const sim::StepResponse& r
   const sim::StepFigures& f = response.figures;
   fmt::print("\n{} step of {:g} {}, {:.3g} s\n", name_of(settings.kind),
              settings.height / u.height_unit, u.height, response.time.back());
-  if (settings.kind == sim::StepKind::load) {
+  if (settings.kind == sim::StepKind::load && f.peak == 0.0) {
+    fmt::print("  holds still: friction bears the force\n");
+  } else if (settings.kind == sim::StepKind::load) {
     fmt::print("  peak deviation  {:.4g} {} after {}\n", f.peak / u.value_unit, u.value,
                milliseconds(f.peak_time));
-    fmt::print("  back within     {:g} % of it after {}\n", 100.0 * settings.band,
-               milliseconds(f.settling_time));
+    fmt::print("  back within     {:g} % of it: {}\n", 100.0 * settings.band,
+               std::isfinite(f.settling_time) ? "after " + milliseconds(f.settling_time)
+                                              : "not in this time");
     fmt::print("  left at the end {:.4g} {}\n", f.steady_error / u.value_unit, u.value);
   } else {
-    fmt::print("  overshoot       {:.2f} % after {}\n", 100.0 * f.overshoot,
-               milliseconds(f.peak_time));
+    fmt::print("  overshoot       {}\n", f.overshoot > kLeastOvershoot
+                                             ? fmt::format("{:.2f} % after {}", 100.0 * f.overshoot,
+                                                           milliseconds(f.peak_time))
+                                             : "none");
     fmt::print("  rise time       {} from 10 % to 90 %\n", milliseconds(f.rise_time));
-    fmt::print("  settled         within {:g} % after {}\n", 100.0 * settings.band,
-               milliseconds(f.settling_time));
+    fmt::print("  settled         within {:g} %: {}\n", 100.0 * settings.band,
+               std::isfinite(f.settling_time) ? "after " + milliseconds(f.settling_time)
+                                              : "not in this time");
     fmt::print("  steady error    {:.4g} {}\n", f.steady_error / u.value_unit, u.value);
   }
   fmt::print("  largest current {:.3g} A of {:g} A\n", response.peak_current, i_max);
@@ -117,7 +128,7 @@ int step_command(const Arguments& arguments) {
       "forward), of the velocity command (position loop open; the motor counts, as slide\n"
       "velocity), of a force on the slide.",
       "SCENARIO.toml");
-  add_axis_options(options, false);
+  add_axis_options(options);
   options.add()("kind,k", po::value<std::string>()->default_value("all")->value_name("KIND"),
                 "position, velocity, load or all");
   options.add()("height", po::value<std::string>()->value_name("\"0.1 mm\""),
@@ -136,7 +147,7 @@ int step_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
 
   const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
-  const auto joints = chosen_joints(options, scenario.machine, false);
+  const auto joints = chosen_joints(options, scenario.machine);
   const auto kinds = kinds_of(options);
   if (kinds.size() > 1 && options.has("height")) {
     throw InputError({"--height"}, "needs one --kind: its unit is that of what steps");
@@ -170,7 +181,9 @@ int step_command(const Arguments& arguments) {
       if (settings.duration == 0.0) {
         settings.duration = std::min(kLongestDuration, kDefaultDecay * slowest);
       }
-      const sim::StepResponse response = sim::step_response(machine, joint, delay, settings);
+      const auto ticks = static_cast<Tick>(settings.duration / machine.nc.periods.base);
+      const sim::StepResponse response =
+          sim::step_response(machine, joint, delay, settings, std::max<Tick>(1, ticks / kMostRows));
       if (store) store->add(axis, settings, response);
       if (silent) continue;
       if (json) {

@@ -169,7 +169,7 @@ int tune_command(const Arguments& arguments) {
       "changes, what a simulation of the whole axis shows, and prints the lines for the scenario.\n"
       "Several axes get one Kv, as interpolation needs it: the smallest rules.",
       "SCENARIO.toml");
-  add_axis_options(options, true);
+  add_axis_options(options);
   options.add()("phase-margin", po::value<double>()->default_value(60.0)->value_name("DEG"),
                 "least of both loops");
   options.add()("gain-margin", po::value<double>()->default_value(8.0)->value_name("DB"),
@@ -186,7 +186,7 @@ int tune_command(const Arguments& arguments) {
   const sim::TuneSettings wanted = settings_of(options);
   const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
   const sim::MachineSettings& machine = scenario.machine;
-  const auto joints = chosen_joints(options, machine, true);
+  const auto joints = chosen_joints(options, machine);
   const Tick delay = sim::reading_delay_of(scenario);
   std::vector<sim::Tuning> tunings;
   for (const int joint : joints) tunings.push_back(sim::tune(machine, joint, delay, wanted));

@@ -224,4 +224,26 @@ SWEEP = [
          commands=["servomill sweep scenario.toml -o out.h5"]),
 ]
 
-WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP)
+BODE, STEP, TUNE = (f"servomill {command} scenario.toml --axis Y" for command in ("bode", "step", "tune"))
+
+SERVO = [
+    typed("an axis that the machine lacks", "servomill bode scenario.toml", "servomill bode scenario.toml --axis y,Q",
+          "servomill step scenario.toml --axis A", "servomill step scenario.toml --axis ''",
+          "servomill tune scenario.toml --axis al"),
+    typed("frequencies that cannot be", BODE + " --from 0", BODE + " --from nan", BODE + " --to 2600",
+          BODE + " --loop velocity --from 2600", BODE + " --from 10 --to 10", BODE + " --points 1"),
+    typed("an amplitude that cannot be", BODE + " --amplitude '0 um'", BODE + " --amplitude 20",
+          BODE + " --amplitude '20 N'", BODE + " --loop compliance --amplitude '20 um'",
+          BODE + " --loop all --amplitude '20 um'", BODE + " --velocity '1 mm'"),
+    typed("a loop, a method, a step that there is not", BODE + " --loop positon", BODE + " --method sinus",
+          STEP + " --kind force"),
+    typed("a step that cannot be", STEP + " --kind load --height '0 N'", STEP + " --height '1 mm'",
+          STEP + " --kind load --height '1 mm'", STEP + " --band 100", STEP + " --duration '0 s'",
+          STEP + " --duration '1 h'"),
+    typed("margins that cannot be", TUNE + " --phase-margin 90", TUNE + " --gain-margin 0", TUNE + " --overshoot 100",
+          TUNE + " --bandwidth -5", TUNE + " --phase-margin 85"),
+    typed("a file to write responses to that cannot be had", BODE + " --method none -o scenario.toml",
+          STEP + " -o nowhere/out.h5"),
+]
+
+WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO)

@@ -97,5 +97,43 @@ TEST(MeasuredResponse, OfALinearDriveIsTheExactOne) {
   }
 }
 
+TEST(MeasuredResponse, OfAMultiSineIsTheExactOne) {
+  constexpr int kY = 1;
+  const MachineSettings machine = linearised(hsm600u());
+  const Measurement how{.entry = Entry::set_point, .method = Method::multi_sine, .amplitude = 1.0};
+  const auto wanted = logarithmic(10.0, 2000.0, 12);
+  const MeasuredResponse measured = measure(machine, kY, 0, PositionLoop::closed, how, wanted);
+  ASSERT_EQ(measured.points.size(), wanted.size());
+  const Deviation worst = largest_deviation(machine, kY, 0, kAll[0], measured);
+  RecordProperty("crest_factor", fmt::format("{:.2f}", measured.crest_factor));
+  EXPECT_LT(worst.dB, kMagnitudeTol);
+  EXPECT_LT(worst.deg, kPhaseTol);
+  // 12 sinusoids in phase have sqrt(2 * 12) = 4.9
+  EXPECT_LT(measured.crest_factor, 4.0);
+}
+
+// Friction that does not stick is a constant force; friction that does, is not.
+TEST(MeasuredResponse, OfAnAxisWithFrictionIsTheLinearOneWhileItMoves) {
+  constexpr int kY = 1;
+  constexpr double kLow = 3.0;  // Hz
+  MachineSettings machine = hsm600u();
+  machine.drives[kY].friction.kind = plant::FrictionKind::set_valued;
+  Measurement how{.entry = Entry::set_point};
+  how.amplitude = default_amplitude(machine, kY, how.entry);
+  how.velocity = default_velocity(machine, kY, how.entry, how.amplitude);
+  const auto deviation = [&] {
+    return largest_deviation(machine, kY, 0, kAll[0],
+                             measure(machine, kY, 0, PositionLoop::closed, how, {kLow}));
+  };
+  const Deviation moving = deviation();
+  how.velocity = 0.0;
+  const Deviation standing = deviation();
+  RecordProperty("moving", fmt::format("{:.3f} dB {:.2f} deg", moving.dB, moving.deg));
+  RecordProperty("standing", fmt::format("{:.3f} dB {:.2f} deg", standing.dB, standing.deg));
+  EXPECT_LT(moving.dB, kMagnitudeTol);
+  EXPECT_LT(moving.deg, kPhaseTol);
+  EXPECT_GT(standing.dB, 10.0 * kMagnitudeTol);
+}
+
 }  // namespace
 }  // namespace servomill::sim
