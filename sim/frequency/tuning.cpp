@@ -18,13 +18,15 @@ namespace {
 
 constexpr double kLowest = 0.5;           // Hz
 constexpr std::size_t kGrid = 300;        // frequencies of a curve
-constexpr double kScan = 1.1;             // factor between gains that are tried
-constexpr double kGainTol = 1e-5;         // of a gain that is sought
+constexpr double kScan = 1.15;            // factor between gains that are tried
+constexpr double kGainTol = 1e-4;         // of a gain that is sought
 constexpr double kLeastBandwidth = 20.0;  // rad/s; below, friction holds the motor, not its inertia
-constexpr double kLeastKv = 1.0;          // 1/s
-constexpr double kStepHeight = 1e-4;      // m, rad; the model is linear
-constexpr double kStepDuration = 12.0;    // of the slowest time constant
-constexpr double kLongestStep = 5.0;      // s
+constexpr double kCalmer[] = {0.8, 0.65, 0.5};  // of the largest velocity bandwidth
+constexpr double kWorthIt = 1.05;               // gain in Kv
+constexpr double kLeastKv = 1.0;                // 1/s
+constexpr double kStepHeight = 1e-4;            // m, rad; the model is linear
+constexpr double kStepDuration = 12.0;          // of the slowest time constant
+constexpr double kLongestStep = 5.0;            // s
 
 ResponseAt open_velocity(FrequencyResponse& response) {
   return [&](double f) {
@@ -198,11 +200,18 @@ Tuning tune(const MachineSettings& machine, int joint, Tick reading_delay,
   const auto gains_for = [&](double wv) { return Gains{wv, wanted.reset_ratio / wv, 1.0}; };
 
   const double Tv = linear.nc.periods.seconds(linear.nc.periods.velocity);
-  const Largest wv = largest_gain(kLeastBandwidth, std::numbers::pi / Tv, [&](double one) {
+  Largest wv = largest_gain(kLeastBandwidth, std::numbers::pi / Tv, [&](double one) {
     return missed(velocity_margins(with_gains(linear, joint, gains_for(one)), joint, false),
                   wanted);
   });
   if (wv.gain == 0.0) no_gain(machine, joint, "velocity_bandwidth above 20 rad/s", wanted);
+  if (wanted.wv_most && *wanted.wv_most < wv.gain) {
+    wv = {*wanted.wv_most, {Limit::Kind::most, 0.0}};
+    const MachineSettings capped = with_gains(linear, joint, gains_for(wv.gain));
+    if (missed(velocity_margins(capped, joint, false), wanted)) {
+      no_gain(machine, joint, "velocity_bandwidth up to --velocity-bandwidth", wanted);
+    }
+  }
   out.velocity = wv.limit;
   Gains gains = gains_for(rounded_down(wv.gain));
   gains.Tn = rounded_up(gains.Tn);
@@ -210,6 +219,13 @@ Tuning tune(const MachineSettings& machine, int joint, Tick reading_delay,
   const Largest Kv = largest_Kv(linear, joint, reading_delay, gains, wanted);
   if (Kv.gain == 0.0) no_gain(machine, joint, "Kv above 1 1/s", wanted);
   out.position = Kv.limit;
+  for (const double share : kCalmer) {
+    const double Kv_there =
+        largest_Kv(linear, joint, reading_delay, gains_for(share * wv.gain), wanted).gain;
+    if (Kv_there < kWorthIt * std::max(Kv.gain, out.calmer_Kv)) continue;
+    out.calmer_wv = share * wv.gain;
+    out.calmer_Kv = Kv_there;
+  }
   gains.Kv = Kv.gain;
   const auto at = [&](double one) {
     Gains tried = gains;

@@ -25,12 +25,13 @@ struct TuneSettings {
   double gain_margin = 2.512;        // least, of both loops: 8 dB
   double overshoot = 0.05;           // most, of a step of the set point
   std::optional<double> bandwidth;   // Hz, wanted of the closed position loop; none: all there is
+  std::optional<double> wv_most;     // rad/s, velocity bandwidth; none: all there is
   double reset_ratio = 4.0;          // Tn wv: the reset costs atan(1 / 4) = 14 deg at the crossover
 };
 
 /// What keeps a gain from being larger.
 struct Limit {
-  enum class Kind : std::uint8_t { phase_margin, gain_margin, overshoot, bandwidth, range };
+  enum class Kind : std::uint8_t { phase_margin, gain_margin, overshoot, bandwidth, most, range };
   Kind kind = Kind::range;
   double frequency = 0.0;  // Hz, where the margin is
 };
@@ -49,7 +50,9 @@ Assessment assess(const MachineSettings& machine, int joint, Tick reading_delay)
 struct Tuning {
   Assessment before, after;
   Limit velocity, position;  // what binds
-  double Kv_limit = 0.0;     // 1/s, largest Kv that keeps the margins
+  double Kv_limit = 0.0;     // 1/s, largest Kv that keeps margins and overshoot
+  // a lower velocity bandwidth whose margins of the position loop allow a higher Kv; 0: none found
+  double calmer_wv = 0.0, calmer_Kv = 0.0;  // rad/s, 1/s
 };
 
 /// First the largest velocity bandwidth, Tn going along with it, for which every smaller one down

@@ -79,6 +79,38 @@ class WithFiles(unittest.TestCase):
         self.assertEqual(self.drawn(), [])
 
 
+class Servo(WithFiles):
+    """Frequency and step responses."""
+
+    def test_draws_what_the_file_holds(self):
+        bode, step = self.out / "y.h5", self.out / "z.h5"
+        few = ["--points", 5, "--from", 10, "-q"]
+        servomill("bode", HERE / "side_and_contour.toml", "--axis", "Y,B", "--loop", "all", *few, "-o", bode)
+        servomill("step", HERE / "side_and_contour.toml", "--axis", "Z", "-q", "-o", step)
+        done = plot(bode, step, "-o", self.out / "figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        drawn = sorted(path.name for path in (self.out / "figures").iterdir())
+        self.assertEqual(drawn, ["y-compliance.png", "y-position.png", "y-velocity.png", "z-step.png"])
+        for name in drawn:
+            self.assertGreater((self.out / "figures" / name).stat().st_size, SMALLEST_PNG)
+
+    def test_measured_is_exact_where_the_encoder_resolves_it(self):
+        path = self.out / "y.h5"
+        servomill("bode", HERE / "side_and_contour.toml", "--axis", "Y", "--points", 4, "--from", 5, "--to", 100, "-q",
+                  "-o", path)
+        with results.open_result(path) as responses:
+            curve = responses.axes["Y"]["position_closed"]
+            f = curve["measured_frequency"][:]
+            exact = np.interp(np.log(f), np.log(curve["frequency"][:]), curve["magnitude"][:])
+            np.testing.assert_allclose(curve["measured_magnitude"][:], exact, rtol=0.01)
+
+    def test_a_loop_that_is_not_there(self):
+        path = self.root / "velocity_only.h5"
+        servomill("bode", HERE / "side_and_contour.toml", "--axis", "Y", "--loop", "velocity", "--method", "none", "-q",
+                  "-o", path)
+        self.fails(f"{path}: error: position: the file holds no position loop", path, "--figures", "position")
+
+
 class Agreement(WithFiles):
     """The numbers behind the figures are those that `servomill compare` prints."""
 

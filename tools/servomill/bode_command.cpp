@@ -126,8 +126,35 @@ std::string or_none(double value, const std::string& text) {
   return std::isfinite(value) ? text : "none up to the Nyquist frequency";
 }
 
-void print_summary(const sim::BodeResult& result, int joint) {
+void print_margins(const sim::BodeResult& result) {
   const sim::Margins& m = result.margins;
+  const sim::ClosedLoop& c = result.closed;
+  if (!result.stable) {  // distances to oscillation mean nothing
+    if (std::isfinite(m.reduction)) {
+      fmt::print("  the gain must fall   by {:.2f} dB or more\n", decibel(m.reduction));
+    }
+    return;
+  }
+  fmt::print("  gain margin          {}\n",
+             or_none(m.gain, fmt::format("{:.2f} dB (factor {:.3f}) at {:.4g} Hz", decibel(m.gain),
+                                         m.gain, m.gain_frequency)));
+  if (std::isfinite(m.reduction)) {
+    fmt::print("  gain reduction       {:.2f} dB until it oscillates\n", decibel(m.reduction));
+  }
+  fmt::print("  phase margin         {}\n",
+             or_none(m.phase, fmt::format("{:.2f} deg at the crossover of {:.4g} Hz", m.phase / deg,
+                                          m.crossover)));
+  fmt::print("  largest sensitivity  {:.3f} ({:.2f} dB) at {:.4g} Hz\n", m.sensitivity,
+             decibel(m.sensitivity), m.sensitivity_frequency);
+  fmt::print("  bandwidth (-3 dB)    {}\n",
+             or_none(c.bandwidth, fmt::format("{:.4g} Hz", c.bandwidth)));
+  fmt::print("  resonance peak       {}\n",
+             c.peak > 1.0 + 1e-6
+                 ? fmt::format("{:.2f} dB at {:.4g} Hz", decibel(c.peak), c.peak_frequency)
+                 : "none");
+}
+
+void print_summary(const sim::BodeResult& result, int joint) {
   const sim::ClosedLoop& c = result.closed;
   fmt::print("\n{}: {}\n",
              result.loop == sim::BodeLoop::compliance ? "compliance, position loop"
@@ -139,23 +166,7 @@ void print_summary(const sim::BodeResult& result, int joint) {
     fmt::print("  largest compliance   {:.4g} {}/{} at {:.4g} Hz\n", c.peak / um, small_unit(joint),
                joint < kLinearJoints ? "N" : "Nm", c.peak_frequency);
   } else {
-    fmt::print("  gain margin          {}\n",
-               or_none(m.gain, fmt::format("{:.2f} dB (factor {:.3f}) at {:.4g} Hz",
-                                           decibel(m.gain), m.gain, m.gain_frequency)));
-    if (std::isfinite(m.reduction)) {
-      fmt::print("  gain reduction       {:.2f} dB until it oscillates\n", decibel(m.reduction));
-    }
-    fmt::print("  phase margin         {}\n",
-               or_none(m.phase, fmt::format("{:.2f} deg at the crossover of {:.4g} Hz",
-                                            m.phase / deg, m.crossover)));
-    fmt::print("  largest sensitivity  {:.3f} ({:.2f} dB) at {:.4g} Hz\n", m.sensitivity,
-               decibel(m.sensitivity), m.sensitivity_frequency);
-    fmt::print("  bandwidth (-3 dB)    {}\n",
-               or_none(c.bandwidth, fmt::format("{:.4g} Hz", c.bandwidth)));
-    fmt::print("  resonance peak       {}\n",
-               c.peak > 1.0 + 1e-6
-                   ? fmt::format("{:.2f} dB at {:.4g} Hz", decibel(c.peak), c.peak_frequency)
-                   : "none");
+    print_margins(result);
   }
   if (!result.measured) return;
   fmt::print(

@@ -28,6 +28,7 @@ sim::TuneSettings settings_of(const Options& options) {
   // what rounds to none
   settings.overshoot = std::max(overshoot, 0.01) / 100.0;
   if (options.has("bandwidth")) settings.bandwidth = positive_number(options, "bandwidth");
+  settings.wv_most = positive_option(options, "velocity-bandwidth", sim::kAngularVelocity);
   settings.reset_ratio = positive_number(options, "reset-ratio");
   return settings;
 }
@@ -54,6 +55,8 @@ std::string reason(const sim::Limit& limit, const sim::TuneSettings& wanted,
                          100.0 * wanted.overshoot);
     case sim::Limit::Kind::bandwidth:
       return fmt::format("the bandwidth of {:g} Hz that is asked for", limit.frequency);
+    case sim::Limit::Kind::most:
+      return "--velocity-bandwidth";
     case sim::Limit::Kind::range:
       break;
   }
@@ -85,10 +88,12 @@ void print_table(const sim::Tuning& t, int joint) {
     return fmt::format("{:.4g} ({:.3g})", a.gains.Kv, a.gains.Kv * 60.0 / 1000.0);
   });
   row("stable", [](const A& a) { return std::string(a.stable ? "yes" : "NO"); });
-  row("velocity loop, gain margin", [&](const A& a) { return gain(a.velocity); });
-  row("velocity loop, phase margin", [&](const A& a) { return phase(a.velocity); });
-  row("position loop, gain margin", [&](const A& a) { return gain(a.position); });
-  row("position loop, phase margin", [&](const A& a) { return phase(a.position); });
+  row("velocity loop, gain margin", [&](const A& a) { return a.stable ? gain(a.velocity) : "-"; });
+  row("velocity loop, phase margin",
+      [&](const A& a) { return a.stable ? phase(a.velocity) : "-"; });
+  row("position loop, gain margin", [&](const A& a) { return a.stable ? gain(a.position) : "-"; });
+  row("position loop, phase margin",
+      [&](const A& a) { return a.stable ? phase(a.position) : "-"; });
   row("position bandwidth (-3 dB), Hz",
       [](const A& a) { return fmt::format("{:.4g}", a.closed.bandwidth); });
   row("overshoot of a position step, %", [](const A& a) {
@@ -178,6 +183,8 @@ int tune_command(const Arguments& arguments) {
                 "most after a step of the set point, nothing fed forward");
   options.add()("bandwidth", po::value<double>()->value_name("HZ"),
                 "of the closed position loop (-3 dB); Kv goes no higher than it needs");
+  options.add()("velocity-bandwidth", po::value<std::string>()->value_name("\"300 rad/s\""),
+                "no more than this");
   options.add()("reset-ratio", po::value<double>()->default_value(4.0)->value_name("N"),
                 "reset time times velocity bandwidth");
   options.add()("json", "prints one JSON object an axis");
@@ -219,6 +226,12 @@ int tune_command(const Arguments& arguments) {
                t.after.gains.Tn / ms, wanted.reset_ratio,
                std::atan(1.0 / wanted.reset_ratio) / deg);
     fmt::print("  Kv = {:.4g} 1/s: {} rules\n", own, reason(t.position, wanted, drive, "position"));
+    if (t.calmer_wv > 0.0) {
+      fmt::print(
+          "  Less would be more: at wv = {:.3g} rad/s the margins of the position loop allow "
+          "Kv = {:.3g} 1/s; see --velocity-bandwidth\n",
+          t.calmer_wv, t.calmer_Kv);
+    }
     if (wanted.bandwidth && t.position.kind != sim::Limit::Kind::bandwidth) {
       fmt::print("  The bandwidth of {:g} Hz is not reached.\n", *wanted.bandwidth);
     }

@@ -100,6 +100,19 @@ TEST(Tune, GoesNoHigherThanTheBandwidthNeeds) {
   EXPECT_LT(t.after.gains.Kv, t.Kv_limit);
 }
 
+TEST(Tune, TellsWhenALowerVelocityBandwidthAllowsMore) {
+  MachineSettings machine = hsm600u();
+  machine.drives[kY].T_i = 0.0;  // the velocity loop can be faster than the resonance
+  const Tuning t = tune(machine, kY, 0, {});
+  ASSERT_GT(t.calmer_wv, 0.0);
+  TuneSettings wanted;
+  wanted.wv_most = t.calmer_wv;
+  const Tuning calmer = tune(machine, kY, 0, wanted);
+  expect_kept(calmer.after, wanted);
+  EXPECT_EQ(calmer.velocity.kind, Limit::Kind::most);
+  EXPECT_GT(calmer.after.gains.Kv, 1.05 * t.after.gains.Kv);
+}
+
 TEST(Tune, KeepsMoreMarginAtALowerCommonKv) {
   const MachineSettings machine = hsm600u();
   const Tuning& own = tuned_Y();
