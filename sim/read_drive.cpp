@@ -64,17 +64,12 @@ void read_friction(Reader& axis, const AxisQuantities& q, plant::FrictionKind fa
   f.sigma1 =
       needed_if(table, f.kind == Kind::lugre, "bristle_damping", 0.0, q.damping, {at_least(0.0)});
   if (table.faults() > before) return;
-  const auto not_below = [&](std::string_view key, double Fs, std::string_view other, double Fc) {
-    if (Fs >= Fc) return;
-    const std::string rule = fmt::format("must be >= {} = {:g}", other, Fc);
-    if (table.has(key)) {
-      table.fault(key, rule);
-    } else {
-      table.fault(fmt::format("{} = {:g}, as {} is not given; {}", key, Fs, key, rule));
-    }
-  };
-  not_below("breakaway", f.Fs_positive, "coulomb", f.Fc_positive);
-  not_below("breakaway_negative", f.Fs_negative, "coulomb_negative", f.Fc_negative);
+  if (f.Fs_positive < f.Fc_positive) {
+    table.fault("breakaway", fmt::format("must be >= coulomb = {:g}", f.Fc_positive));
+  } else if (f.Fs_negative < f.Fc_negative) {
+    table.fault("breakaway_negative",
+                fmt::format("must be >= coulomb_negative = {:g}", f.Fc_negative));
+  }
   if (f.kind == Kind::lugre && f.Fc_positive * f.Fc_negative == 0.0) {
     table.fault("coulomb", "must be > 0 for the model lugre");
   }

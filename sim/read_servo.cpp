@@ -77,15 +77,14 @@ controllers::Biquad read_filter_section(Reader& filter, double Tv) {
 }
 
 void read_filters(Reader& axis, controllers::CascadeParams& cascade) {
-  auto filters = axis.tables_or_none("filter");
-  if (filters.size() > controllers::kMaxSections) {
-    axis.fault(fmt::format("has {} tables 'filter'; must be at most {}", filters.size(),
-                           controllers::kMaxSections));
-    filters.clear();
-    axis.raw("filter");
-  }
-  for (Reader& filter : filters) {
-    cascade.filters.append(read_filter_section(filter, cascade.Tv));
+  const std::size_t before = axis.faults();
+  for (Reader& filter : axis.tables_or_none("filter")) {
+    const controllers::Biquad section = read_filter_section(filter, cascade.Tv);
+    if (cascade.filters.count < controllers::kMaxSections) {
+      cascade.filters.append(section);
+    } else if (axis.faults() == before) {
+      axis.fault(fmt::format("has more than {} tables 'filter'", controllers::kMaxSections));
+    }
   }
 }
 

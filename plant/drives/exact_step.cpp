@@ -76,12 +76,13 @@ std::vector<FrictionRate> friction_rates(const FeedDriveParams& p) {
   const FrictionParams& f = p.friction;
   const double M = p.slide_mass();
   if (f.kind == FrictionKind::regularised) {
-    return {{std::max(f.Fs_positive, f.Fs_negative) / (f.v0 * M), "Fs / (v0 M)"}};
+    return {{std::max(f.Fs_positive, f.Fs_negative) / (f.v0 * M),
+             "the slope of the regularised friction, breakaway / (regularisation_velocity mass),"}};
   }
   if (f.kind == FrictionKind::lugre) {
     const double Fc = std::min(f.Fc_positive, f.Fc_negative);
-    return {{std::sqrt(f.sigma0 / M), "sqrt(sigma0 / M)"},
-            {f.sigma1 / M, "sigma1 / M"},
+    return {{std::sqrt(f.sigma0 / M), "the bristles' stiffness, sqrt(bristle_stiffness / mass),"},
+            {f.sigma1 / M, "the bristles' damping, bristle_damping / mass,"},
             {f.sigma0 * kStribeckEnd * f.vs / Fc, "6.5 vs sigma0 / Fc"}};
   }
   return {};
@@ -563,7 +564,7 @@ std::vector<std::string> unrepresentable(const FeedDriveParams& p, double base_p
         fmt::format("{} makes a rate of {:.3g} 1/s; the exact step resolves up to {:.3g} 1/s", what,
                     rate, limit));
   };
-  demand(fastest_rate(p), "stiffness or damping of the drive");
+  demand(fastest_rate(p), "the stiffness or damping of the drive");
   for (const FrictionRate& f : friction_rates(p)) demand(f.rate, f.formula);
   return faults;
 }

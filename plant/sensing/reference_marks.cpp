@@ -33,12 +33,12 @@ std::vector<std::string> implausible(const MarkParams& p) {
     if (!holds) faults.emplace_back(rule);
   };
   demand(p.period > 0.0, "period must be > 0");
-  demand(p.N > 0 && p.N % 2 == 0, "N must be even and > 0");
+  demand(p.N > 0 && p.N % 2 == 0, "increment must be even and > 0");
   demand(p.intervals >= 1, "intervals must be >= 1");
   demand(p.intervals < p.N / 2, "intervals must be < N / 2, or the code repeats");
   if (p.closed) {
     const double turns = p.period * p.N * p.intervals / (2.0 * std::numbers::pi);
-    demand(std::abs(turns - 1.0) <= kRounding, "N must divide the periods of a revolution");
+    demand(std::abs(turns - 1.0) <= kRounding, "increment must divide the periods of a revolution");
   }
   return faults;
 }

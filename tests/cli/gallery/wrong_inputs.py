@@ -140,6 +140,52 @@ MACHINE = [
     line("machine_override of a whole table by a number", '[machine_override.nc]\nKv = "60 1/s"', "[machine_override]\nnc = 3"),
 ]
 
+FRICTION = '[axis.X.friction]\nmodel = "lugre"\ncoulomb = "450 N"\nbreakaway = "560 N"\nstribeck_velocity = "2 mm/s"\n' \
+    'bristle_stiffness = "5e7 N/m"\nbristle_damping = "3e4 N s/m"\n'
+
+
+def axis(title, key):
+    """One more key of the axis X."""
+    return line(title, 'velocity_bandwidth = "200 rad/s"', 'velocity_bandwidth = "200 rad/s"\n' + key, "machine.toml")
+
+
+def table_of_axis(title, text):
+    """One more table of the axis X."""
+    return line(title, "[axis.Y]", text + "\n[axis.Y]", "machine.toml")
+
+
+AXIS = [
+    table_of_axis("friction: breakaway below Coulomb", FRICTION.replace('"560 N"', '"400 N"')),
+    table_of_axis("friction: breakaway below Coulomb in one direction",
+                  FRICTION + 'coulomb_negative = "500 N"\nbreakaway_negative = "450 N"\n'),
+    table_of_axis("friction: an unknown model", FRICTION.replace("lugre", "luger")),
+    table_of_axis("friction: what a model needs is missing", FRICTION.replace('bristle_stiffness = "5e7 N/m"\n', "")
+                  .replace('stribeck_velocity = "2 mm/s"\n', "")),
+    table_of_axis("friction: units of a rotary axis", FRICTION.replace('"450 N"', '"450 Nm"')),
+    table_of_axis("friction: LuGre without Coulomb", FRICTION.replace('"450 N"', '"0 N"')),
+    table_of_axis("friction: stiffer than the exact step can be", FRICTION.replace('"3e4 N s/m"', '"1e13 N s/m"')),
+    line("friction: a model for all axes, tables for none", 'name      = "Three-axis mill"',
+         'name      = "Three-axis mill"\nfriction_model = "lugre"', "machine.toml"),
+    line("an inertia below nothing", 'motor_inertia = "9.6e-3 kg m^2"', 'motor_inertia = "-9.6e-3 kg m^2"', "machine.toml"),
+    axis("backlash of a rigid drive", 'backlash = "3 um"'),
+    axis("a discrete current loop without a winding", 'current_loop = "pi"'),
+    table_of_axis("a winding without its current loop's bandwidth",
+                  '[axis.X.winding]\ninductance = "4 mH"\nresistance = "0.6 ohm"\n'),
+    table_of_axis("cogging of a ball screw", '[axis.X.cogging]\namplitude = "3 N"\nperiod = "10 mm"\n'),
+    table_of_axis("a filter beyond half the rate", '[[axis.X.filter]]\ntype = "notch"\nfrequency_Hz = 2500\nwidth_Hz = 50\n'),
+    table_of_axis("a filter of no type", '[[axis.X.filter]]\ntype = "nothc"\nfrequency_Hz = 120\n'),
+    table_of_axis("five filters", '[[axis.X.filter]]\ntype = "low_pass"\nfrequency_Hz = 500\n' * 5),
+    axis("a crossover without its frequency", 'position_feedback = "crossover"'),
+    axis("a feedback that there is not", 'position_feedback = "scales"'),
+    table_of_axis("a spike that does not fade", '[axis.X.friction_compensation]\ncoulomb = "450 N"\nspike = "100 N"\n'),
+    table_of_axis("an encoder without its period", "[axis.X.scale]\nsubdivision = 1024\n"),
+    table_of_axis("an encoder whose signals vanish", '[axis.X.scale]\nperiod = "20 um"\nsine_offset = 1.2\n'),
+    table_of_axis("marks on a scale of unknown period", "[axis.X.marks]\nincrement = 1000\n"),
+    table_of_axis("marks of an odd increment", '[axis.X.scale]\nperiod = "20 um"\n[axis.X.marks]\nincrement = 999\n'),
+    line("an integrator that there is not", 'name      = "Three-axis mill"',
+         'name      = "Three-axis mill"\nintegrator = "cvodes"', "machine.toml"),
+]
+
 SET = [
     typed("--set: no key, no value, no such place", "servomill run scenario.toml --set feed",
           "servomill run scenario.toml --set =3", "servomill run scenario.toml --set program.feed_override=",
@@ -246,4 +292,4 @@ SERVO = [
           STEP + " -o nowhere/out.h5"),
 ]
 
-WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO)
+WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO)

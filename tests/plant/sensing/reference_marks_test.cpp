@@ -278,13 +278,13 @@ TEST(Implausible, NamesWhatNoTrackCanBe) {
   EXPECT_TRUE(implausible(metre().params()).empty());
   EXPECT_TRUE(implausible(ron().params()).empty());
   EXPECT_EQ(implausible({0.0, 1000, 5}), Faults{"period must be > 0"});
-  EXPECT_EQ(implausible({kPeriod, 1001, 5}), Faults{"N must be even and > 0"});
+  EXPECT_EQ(implausible({kPeriod, 1001, 5}), Faults{"increment must be even and > 0"});
   EXPECT_EQ(implausible({kPeriod, 1000, 0}), Faults{"intervals must be >= 1"});
   EXPECT_EQ(implausible({kPeriod, 1000, 500}),
             Faults{"intervals must be < N / 2, or the code repeats"});
   EXPECT_TRUE(implausible({kPeriod, 1000, 499}).empty());
   EXPECT_EQ(implausible(marks_of_revolution(18500, 1000)),
-            Faults{"N must divide the periods of a revolution"});
+            Faults{"increment must divide the periods of a revolution"});
 }
 
 }  // namespace
