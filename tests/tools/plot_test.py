@@ -313,7 +313,8 @@ class Drawing(WithFiles):
         done = subprocess.run([PLOT, "--list"], capture_output=True, text=True)
         self.assertEqual([line.split()[0] for line in done.stdout.splitlines()],
                          ["figure6", "figure9", "figure10", "figure11", "figure12", "figure14",
-                          "figure15", "lag", "circular", "reversals", "deviations"])
+                          "figure15", "lag", "circular", "reversals", "deviations", "position", "velocity",
+                          "compliance", "step"])
 
 
 class Mistakes(WithFiles):

@@ -95,6 +95,8 @@ def _margins(above, below, loop, open_curve):
     f, phase = open_curve["frequency"][:], open_curve["phase"][:]
     phase = phase - 360.0 * np.round(phase[0] / 360.0)
     above.axhline(0.0, color=style.BLACK, linewidth=0.8)
+    if not int(loop["stable"]):
+        return
     arrow = {"arrowstyle": "<->", "color": style.BLACK, "linewidth": 1.2, "shrinkA": 0,
              "shrinkB": 0}
     text = {"fontsize": 10, "bbox": {"facecolor": "white", "edgecolor": "none", "alpha": 0.7,

@@ -60,7 +60,7 @@ def _panel(ax, letter, kind, step, transmission):
         units = str(found["height_units"]).replace(" s-1", "/s")
         ax.set_title(f"{letter}: {kind} step of {height:g} {units}")
     settled = float(found["settling_time_s"]) * 1e3
-    if np.isfinite(settled):
+    if np.isfinite(settled) and settled > 0.0:
         ax.axvline(settled, color=style.GREY, linewidth=0.9, linestyle=style.DOT)
         ax.text(settled, ax.get_ylim()[0], f" settled {settled:.0f} ms", color=style.GREY,
                 fontsize=9.5, va="bottom")
@@ -86,6 +86,7 @@ def _message(responses, letters):
         if "load" in group:
             length = str(group["load"]["position"].attrs["units"])
             unit, factor = UM[length]
-            said.append(f"{float(group['load'].attrs['peak']) * factor:.3g} {unit} under load")
+            peak = float(group["load"].attrs["peak"]) * factor
+            said.append(f"{peak:.3g} {unit} under load" if peak else "holds the load")
         parts.append(f"{letter} " + ", ".join(said))
     return "Step responses: " + "; ".join(parts)

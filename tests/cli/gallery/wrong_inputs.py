@@ -276,7 +276,7 @@ SERVO = [
     typed("an axis that the machine lacks", "servomill bode scenario.toml", "servomill bode scenario.toml --axis y,Q",
           "servomill step scenario.toml --axis A", "servomill step scenario.toml --axis ''",
           "servomill tune scenario.toml --axis al"),
-    typed("frequencies that cannot be", BODE + " --from 0", BODE + " --from nan", BODE + " --to 2600",
+    typed("frequencies that cannot be", BODE + " --from 0", BODE + " --from nan", BODE + " --from 0.01", BODE + " --to 2600",
           BODE + " --loop velocity --from 2600", BODE + " --from 10 --to 10", BODE + " --points 1"),
     typed("an amplitude that cannot be", BODE + " --amplitude '0 um'", BODE + " --amplitude 20",
           BODE + " --amplitude '20 N'", BODE + " --loop compliance --amplitude '20 um'",
