@@ -13,39 +13,14 @@
 
 #include "plant/drives/cvode_drive.h"
 #include "plant/drives/exact_step.h"
+#include "tests/plant/drives/drives.h"
 
 namespace servomill::plant {
 namespace {
 
 constexpr double kAgreementTol = 0.1;  // nm, what the default tolerance of the exact step leaves
-constexpr double kTick = 10e-6;
-constexpr int kHolds = 1500;  // held commands
-constexpr Tick kHold = 40;    // ticks of each; 0.6 s in all
-
-// Axis X of the HSM 600U with the friction that goes with it.
-FeedDriveParams axis_x(FrictionKind friction) {
-  FeedDriveParams p;
-  p.r = 0.02 / (2 * std::numbers::pi);
-  p.J = 9.6e-3;
-  p.M = 750;
-  p.k = 2.2e8;
-  p.c = 4.0e4;
-  p.b_motor = 0.01;
-  p.b_load = 1500;
-  p.Kt = 1.6;
-  p.i_max = 50;
-  p.T_i = 0.35e-3;
-  p.friction = {.kind = friction,
-                .Fc_positive = 450,
-                .Fc_negative = 450,
-                .Fs_positive = 560,
-                .Fs_negative = 560,
-                .vs = 2e-3,
-                .v0 = 1e-4,
-                .sigma0 = 5e7,
-                .sigma1 = 3e4};
-  return p;
-}
+constexpr int kHolds = 1500;           // held commands
+constexpr Tick kHold = 40;             // ticks of each; 0.6 s in all
 
 FeedDriveParams with_winding(FeedDriveParams p) {
   p.L = 4e-3;
@@ -142,11 +117,11 @@ void expect_agreement(const std::string& name, const FeedDriveParams& p) {
 }
 
 void expect_agreement_of_all(FrictionKind kind) {
-  expect_agreement("two_mass", axis_x(kind));
-  expect_agreement("winding", with_winding(axis_x(kind)));
-  expect_agreement("backlash", with_backlash(axis_x(kind)));
-  expect_agreement("rigid", rigid_with_load(axis_x(kind)));
-  expect_agreement("rigid_without_lag", without_lag(rigid_with_load(axis_x(kind))));
+  expect_agreement("two_mass", x_axis_with(kind));
+  expect_agreement("winding", with_winding(x_axis_with(kind)));
+  expect_agreement("backlash", with_backlash(x_axis_with(kind)));
+  expect_agreement("rigid", rigid_with_load(x_axis_with(kind)));
+  expect_agreement("rigid_without_lag", without_lag(rigid_with_load(x_axis_with(kind))));
 }
 
 TEST(ExactStepAndCvode, AgreeWithSetValuedFriction) {
@@ -173,9 +148,9 @@ void expect_fourth_order(const FeedDriveParams& p) {
 }
 
 TEST(ExactStepAndCvode, DifferByTheFourthPowerOfTheSubStep) {
-  expect_fourth_order(axis_x(FrictionKind::set_valued));
-  expect_fourth_order(with_backlash(axis_x(FrictionKind::set_valued)));
-  expect_fourth_order(axis_x(FrictionKind::lugre));
+  expect_fourth_order(x_axis_with(FrictionKind::set_valued));
+  expect_fourth_order(with_backlash(x_axis_with(FrictionKind::set_valued)));
+  expect_fourth_order(x_axis_with(FrictionKind::lugre));
 }
 
 }  // namespace

@@ -6,29 +6,14 @@
 
 #include "plant/drives/drive_bank.h"
 #include "tests/counting_new.h"
+#include "tests/plant/drives/drives.h"
 
 namespace servomill::plant {
 namespace {
 
 TEST(DriveBank, DoesNotAllocate) {
-  FeedDriveParams p;
-  p.r = 0.02 / (2 * std::numbers::pi);
-  p.J = 9.6e-3;
-  p.M = 750;
-  p.k = 2.2e8;
-  p.c = 4.0e4;
-  p.Kt = 1.6;
-  p.T_i = 0.35e-3;
-  p.friction = {.Fc_positive = 450,
-                .Fc_negative = 450,
-                .Fs_positive = 560,
-                .Fs_negative = 560,
-                .vs = 2e-3,
-                .v0 = 1e-4,
-                .sigma0 = 5e7,
-                .sigma1 = 3e4};
   std::array<FeedDriveParams, kJoints> params;
-  params.fill(p);
+  params.fill(x_axis_with(FrictionKind::none));
   params[0].friction.kind = FrictionKind::none;
   params[1].friction.kind = FrictionKind::set_valued;
   params[2].friction.kind = FrictionKind::regularised;
@@ -36,7 +21,7 @@ TEST(DriveBank, DoesNotAllocate) {
   params[4].friction.kind = FrictionKind::set_valued;
   params[4].gap = 10e-6;
   const std::vector<Tick> steps = {20};
-  const DriveBank bank(params, {true, true, true, true, true}, 10e-6, steps);
+  const DriveBank bank(params, {true, true, true, true, true}, kTick, steps);
   DriveState s = bank.at_rest(Joints::Zero());
   DriveInput input;
   const std::size_t before = allocations;

@@ -6,27 +6,12 @@
 #include <numbers>
 
 #include "plant/drives/cvode_drive.h"
+#include "tests/plant/drives/drives.h"
 
 namespace servomill::plant {
 namespace {
 
-constexpr double kTick = 10e-6;
 constexpr std::array<bool, kJoints> kOnlyX = {true, false, false, false, false};
-
-FeedDriveParams x_axis() {  // the coherent set of the HSM 600U, axis X
-  FeedDriveParams p;
-  p.r = 0.02 / (2 * std::numbers::pi);
-  p.J = 9.6e-3;
-  p.M = 750;
-  p.k = 2.2e8;
-  p.c = 4.0e4;
-  p.b_motor = 0.01;
-  p.b_load = 1500;
-  p.Kt = 1.6;
-  p.i_max = 50;
-  p.T_i = 0.35e-3;
-  return p;
-}
 
 DriveBank bank_of(const FeedDriveParams& p, std::initializer_list<Tick> steps) {
   return DriveBank({p, {}, {}, {}, {}}, kOnlyX, kTick, std::vector<Tick>(steps));

@@ -7,44 +7,13 @@
 #include <numbers>
 #include <random>
 
+#include "tests/plant/drives/drives.h"
+
 namespace servomill::plant {
 namespace {
 
-constexpr double kTick = 10e-6;
 constexpr Tick kStep = 20;  // 200 us
 constexpr double kNanometre = 1e-9;
-
-FeedDriveParams x_axis() {  // the coherent set of the HSM 600U, axis X
-  FeedDriveParams p;
-  p.r = 0.02 / (2 * std::numbers::pi);
-  p.J = 9.6e-3;
-  p.M = 750;
-  p.k = 2.2e8;
-  p.c = 4.0e4;
-  p.b_motor = 0.01;
-  p.b_load = 1500;
-  p.Kt = 1.6;
-  p.T_i = 0.35e-3;
-  return p;
-}
-
-FrictionParams friction(FrictionKind kind) {
-  FrictionParams f;
-  f.kind = kind;
-  f.Fc_positive = f.Fc_negative = 450;
-  f.Fs_positive = f.Fs_negative = 560;
-  f.vs = 2e-3;
-  f.v0 = 1e-4;
-  f.sigma0 = 5e7;
-  f.sigma1 = 3e4;
-  return f;
-}
-
-FeedDriveParams x_axis_with(FrictionKind kind) {
-  FeedDriveParams p = x_axis();
-  p.friction = friction(kind);
-  return p;
-}
 
 // A mass of 100 kg without anything else.
 FeedDriveParams bare_mass(FrictionKind kind) {
