@@ -11,7 +11,20 @@ namespace {
 
 using Complex = std::complex<double>;
 
+constexpr int kDeepest = 8;            // halvings between two points
 constexpr double kCrossingTol = 1e-9;  // of the frequency
+
+// Adds points between the last one of the curve and (f, response), where the response turns.
+void fill(Curve& curve, const ResponseAt& y, double f, Complex response, int depth) {
+  const double last = curve.f.back();
+  if (depth == 0 || !(std::abs(std::log(response / curve.y.back())) > kLargestTurn)) return;
+  const double middle = std::sqrt(last * f);
+  const Complex there = y(middle);
+  fill(curve, y, middle, there, depth - 1);
+  curve.f.push_back(middle);
+  curve.y.push_back(there);
+  fill(curve, y, f, response, depth - 1);
+}
 
 // Between two points of the curve: logarithm of the magnitude and phase are straight lines.
 Complex interpolated(const Curve& curve, std::size_t i, double f) {
@@ -62,10 +75,14 @@ std::vector<double> logarithmic(double from, double to, std::size_t points) {
   return f;
 }
 
-Curve curve_of(const ResponseAt& y, std::vector<double> f) {
-  Curve curve{std::move(f), {}};
-  curve.y.reserve(curve.f.size());
-  for (const double one : curve.f) curve.y.push_back(y(one));
+Curve curve_of(const ResponseAt& y, const std::vector<double>& f) {
+  Curve curve;
+  for (const double one : f) {
+    const Complex response = y(one);
+    if (!curve.f.empty()) fill(curve, y, one, response, kDeepest);
+    curve.f.push_back(one);
+    curve.y.push_back(response);
+  }
   return curve;
 }
 

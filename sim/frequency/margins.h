@@ -20,7 +20,11 @@ using ResponseAt = std::function<std::complex<double>(double f)>;
 /// Frequencies from `from` to `to` (Hz), both included, evenly spaced in the logarithm.
 std::vector<double> logarithmic(double from, double to, std::size_t points);
 
-Curve curve_of(const ResponseAt& y, std::vector<double> f);
+/// With points between the given ones wherever the response changes by more than kLargestTurn from
+/// one to the next (of its logarithm: magnitude by that share, phase by that many rad), so that no
+/// resonance stays unseen whose phase or magnitude the given points notice.
+inline constexpr double kLargestTurn = 0.2;
+Curve curve_of(const ResponseAt& y, const std::vector<double>& f);
 
 /// How far an open loop L (negative feedback) is from oscillating.
 struct Margins {

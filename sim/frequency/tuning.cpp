@@ -17,7 +17,7 @@ namespace servomill::sim {
 namespace {
 
 constexpr double kLowest = 0.5;           // Hz
-constexpr std::size_t kGrid = 300;        // frequencies of a curve
+constexpr std::size_t kGrid = 150;        // frequencies of a curve, before those where it turns
 constexpr double kScan = 1.15;            // factor between gains that are tried
 constexpr double kGainTol = 1e-4;         // of a gain that is sought
 constexpr double kLeastBandwidth = 20.0;  // rad/s; below, friction holds the motor, not its inertia
@@ -40,7 +40,25 @@ ResponseAt open_position(FrequencyResponse& response) {
   };
 }
 
-std::vector<double> grid(double period) { return logarithmic(kLowest, 0.5 / period, kGrid); }
+// With the frequencies at which the drive rings, so that no peak is stepped over.
+std::vector<double> grid(double period, const plant::FeedDriveParams& drive) {
+  std::vector<double> f = logarithmic(kLowest, 0.5 / period, kGrid);
+  for (const double rings : {antiresonance_frequency(drive), resonance_frequency(drive)}) {
+    if (rings <= f.front() || rings >= f.back()) continue;
+    f.insert(std::upper_bound(f.begin(), f.end(), rings), rings);
+  }
+  return f;
+}
+
+const plant::FeedDriveParams& drive_of(const MachineSettings& machine, int joint) {
+  return machine.drives[static_cast<std::size_t>(joint)];
+}
+std::vector<double> position_grid(const MachineSettings& machine, int joint) {
+  return grid(machine.nc.periods.seconds(machine.nc.periods.position), drive_of(machine, joint));
+}
+std::vector<double> velocity_grid(const MachineSettings& machine, int joint) {
+  return grid(machine.nc.periods.seconds(machine.nc.periods.velocity), drive_of(machine, joint));
+}
 
 // Which margin is missed, if any.
 std::optional<Limit> missed(const Margins& m, const TuneSettings& wanted) {
@@ -93,11 +111,10 @@ double rounded_up(double value) {
   return std::ceil(value / unit) * unit;
 }
 
-Margins velocity_margins(const MachineSettings& machine, int joint, bool refined) {
+Margins velocity_margins(const MachineSettings& machine, int joint) {
   FrequencyResponse response(machine, joint, 0, PositionLoop::open);
   const ResponseAt L = open_velocity(response);
-  const Curve curve = curve_of(L, grid(machine.nc.periods.seconds(machine.nc.periods.velocity)));
-  return margins_of(curve, refined ? L : ResponseAt{});
+  return margins_of(curve_of(L, velocity_grid(machine, joint)), L);
 }
 
 double step_overshoot(const MachineSettings& linear, int joint, Tick reading_delay) {
@@ -124,7 +141,7 @@ Largest largest_Kv(const MachineSettings& machine, int joint, Tick reading_delay
   FrequencyResponse response(with_gains(machine, joint, gains), joint, reading_delay,
                              PositionLoop::closed);
   const double Tp = machine.nc.periods.seconds(machine.nc.periods.position);
-  const Curve one = curve_of(open_position(response), grid(Tp));
+  const Curve one = curve_of(open_position(response), position_grid(machine, joint));
   return largest_gain(kLeastKv, std::numbers::pi / Tp, [&](double Kv) {
     Curve curve = one;
     for (auto& L : curve.y) L *= Kv;
@@ -165,17 +182,21 @@ double resonance_frequency(const plant::FeedDriveParams& p) {
   return std::sqrt(p.k * (1.0 / p.M + p.r * p.r / p.J)) / (2.0 * std::numbers::pi);
 }
 
+double antiresonance_frequency(const plant::FeedDriveParams& p) {
+  return p.is_rigid() ? 0.0 : std::sqrt(p.k / p.M) / (2.0 * std::numbers::pi);
+}
+
 Assessment assess(const MachineSettings& machine, int joint, Tick reading_delay) {
   const MachineSettings linear = linearised(machine);
   Assessment out;
   out.gains = gains_of(machine, joint);
-  out.velocity = velocity_margins(linear, joint, true);
+  out.velocity = velocity_margins(linear, joint);
   FrequencyResponse response(linear, joint, reading_delay, PositionLoop::closed);
   const ResponseAt L = open_position(response);
   const ResponseAt T = [&](double f) {
     return response.at(Entry::set_point, f)[index_of(AxisSignal::position)];
   };
-  const auto f = grid(linear.nc.periods.seconds(linear.nc.periods.position));
+  const auto f = position_grid(linear, joint);
   out.position = margins_of(curve_of(L, f), L);
   out.closed = closed_loop_of(curve_of(T, f), T);
   out.stable = velocity_spectral_radius(linear, joint) < 1.0 &&
@@ -201,14 +222,13 @@ Tuning tune(const MachineSettings& machine, int joint, Tick reading_delay,
 
   const double Tv = linear.nc.periods.seconds(linear.nc.periods.velocity);
   Largest wv = largest_gain(kLeastBandwidth, std::numbers::pi / Tv, [&](double one) {
-    return missed(velocity_margins(with_gains(linear, joint, gains_for(one)), joint, false),
-                  wanted);
+    return missed(velocity_margins(with_gains(linear, joint, gains_for(one)), joint), wanted);
   });
   if (wv.gain == 0.0) no_gain(machine, joint, "velocity_bandwidth above 20 rad/s", wanted);
   if (wanted.wv_most && *wanted.wv_most < wv.gain) {
     wv = {*wanted.wv_most, {Limit::Kind::most, 0.0}};
     const MachineSettings capped = with_gains(linear, joint, gains_for(wv.gain));
-    if (missed(velocity_margins(capped, joint, false), wanted)) {
+    if (missed(velocity_margins(capped, joint), wanted)) {
       no_gain(machine, joint, "velocity_bandwidth up to --velocity-bandwidth", wanted);
     }
   }
@@ -243,9 +263,7 @@ Tuning tune(const MachineSettings& machine, int joint, Tick reading_delay,
       const ResponseAt T = [&](double f) {
         return response.at(Entry::set_point, f)[index_of(AxisSignal::position)];
       };
-      return closed_loop_of(
-                 curve_of(T, grid(linear.nc.periods.seconds(linear.nc.periods.position))), T)
-          .bandwidth;
+      return closed_loop_of(curve_of(T, position_grid(linear, joint)), T).bandwidth;
     });
     if (enough < gains.Kv) out.position = {Limit::Kind::bandwidth, *wanted.bandwidth};
     gains.Kv = enough;

@@ -70,5 +70,7 @@ Tuning with_common_Kv(const MachineSettings& machine, int joint, Tick reading_de
 
 /// Frequency at which motor and load oscillate against one another (Hz); 0 for a rigid drive.
 double resonance_frequency(const plant::FeedDriveParams& drive);
+/// Frequency at which the load alone would oscillate on a motor held still (Hz); 0 for a rigid one.
+double antiresonance_frequency(const plant::FeedDriveParams& drive);
 
 }  // namespace servomill::sim

@@ -56,6 +56,23 @@ TEST(Tune, KeepsTheMarginsAndLeavesNothingOver) {
   EXPECT_LT(assess(with_gains(machine, kY, more), kY, 0).velocity.phase, wanted.phase_margin);
 }
 
+// The resonance of C is sharp: between two points of a coarse grid it would rise above 1 unseen.
+TEST(Tune, KeepsTheMarginsAtASharpResonance) {
+  constexpr int kC = 4;
+  const MachineSettings machine = hsm600u();
+  const Tuning t = tune(machine, kC, 0, {});
+  expect_kept(t.after, {});
+  const double resonance = resonance_frequency(machine.drives[kC]);
+  const MachineSettings tuned = with_gains(machine, kC, t.after.gains);
+  FrequencyResponse exact(tuned, kC, 0, PositionLoop::open);
+  for (const double f : logarithmic(0.8 * resonance, 1.25 * resonance, 2000)) {
+    const Complex L = ratio(exact.at(Entry::velocity_command, f), AxisSignal::measured_speed,
+                            AxisSignal::speed_error);
+    if (std::abs(L) < 1.0) continue;
+    EXPECT_GT(std::abs(std::arg(-L)), TuneSettings{}.phase_margin * (1.0 - kRounding)) << f;
+  }
+}
+
 TEST(Tune, IsConfirmedByTheSimulationAtTheCrossovers) {
   const MachineSettings machine = hsm600u();
   const Tuning& t = tuned_Y();
