@@ -84,7 +84,7 @@ TEST(MeasuredResponse, OfALinearDriveIsTheExactOne) {
         const double rate =
             1.0 / p.seconds(of.loop == PositionLoop::closed ? p.position : p.velocity);
         const Tick delay = slow ? 3 : 1;
-        const auto f = logarithmic(5.0, 0.4 * rate, 5);
+        const auto f = logarithmic(5.0, 0.4 * rate, 4);
         const MeasuredResponse measured =
             measure(machine, joint, delay, of.loop, {.entry = of.entry, .amplitude = 1.0}, f);
         const Deviation worst = largest_deviation(machine, joint, delay, of, measured);
