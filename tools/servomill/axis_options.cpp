@@ -17,9 +17,28 @@ namespace po = boost::program_options;
 void add_axis_options(Options& options) {
   options.add()("axis,a", po::value<std::string>()->value_name("Y"),
                 "axis, or several (X,Y), or all");
+  options.add()("case", po::value<std::string>()->value_name("NAME"),
+                "takes the machine as this case of the scenario has it");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario, as for servomill run, such as "
                 "machine_override.axis.Y.Kv=\"4 m/min/mm\"");
+}
+
+sim::Scenario scenario_for_axes(const Options& options) {
+  sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
+  if (!options.has("case")) return scenario;
+  const auto& name = options.get<std::string>("case");
+  const sim::CaseSpec* found = scenario.find_case(name);
+  if (found == nullptr) {
+    std::vector<std::string_view> names;
+    for (const sim::CaseSpec& one : scenario.cases) names.push_back(one.name);
+    throw InputError({"--case"}, fmt::format("the scenario has no case '{}'{}; it has {}", name,
+                                             did_you_mean(name, names), fmt::join(names, ", ")));
+  }
+  const sim::CaseSpec one = *found;
+  scenario.machine = scenario.machine_of(one);
+  scenario.cases = {one};
+  return scenario;
 }
 
 std::vector<int> chosen_joints(const Options& options, const sim::MachineSettings& machine) {

@@ -11,8 +11,12 @@
 
 namespace servomill::tools {
 
-/// Adds --axis and --set.
+/// Adds --axis, --case and --set.
 void add_axis_options(Options& options);
+
+/// The scenario of the command, its machine and feedback hardware as --case has them.
+/// @throws InputError for a case that there is not
+sim::Scenario scenario_for_axes(const Options& options);
 
 /// Joints that --axis names: one, several ("X,Y") or all.
 /// @throws InputError for an axis that the machine lacks

@@ -248,7 +248,7 @@ int bode_command(const Arguments& arguments) {
   options.add()("quiet,q", "prints nothing but faults");
   if (!options.parse(arguments)) return kDone;
 
-  const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
+  const sim::Scenario scenario = scenario_for_axes(options);
   const sim::MachineSettings& machine = scenario.machine;
   const auto joints = chosen_joints(options, machine);
   const auto loops = loops_of(options);

@@ -146,7 +146,7 @@ int step_command(const Arguments& arguments) {
   options.add()("quiet,q", "prints nothing but faults");
   if (!options.parse(arguments)) return kDone;
 
-  const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
+  const sim::Scenario scenario = scenario_for_axes(options);
   const auto joints = chosen_joints(options, scenario.machine);
   const auto kinds = kinds_of(options);
   if (kinds.size() > 1 && options.has("height")) {

@@ -191,7 +191,7 @@ int tune_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
 
   const sim::TuneSettings wanted = settings_of(options);
-  const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
+  const sim::Scenario scenario = scenario_for_axes(options);
   const sim::MachineSettings& machine = scenario.machine;
   const auto joints = chosen_joints(options, machine);
   const Tick delay = sim::reading_delay_of(scenario);

@@ -276,6 +276,7 @@ SERVO = [
     typed("an axis that the machine lacks", "servomill bode scenario.toml", "servomill bode scenario.toml --axis y,Q",
           "servomill step scenario.toml --axis A", "servomill step scenario.toml --axis ''",
           "servomill tune scenario.toml --axis al"),
+    typed("a case that there is not", BODE + " --case tabel", "servomill tune scenario.toml --axis X --case nominl"),
     typed("frequencies that cannot be", BODE + " --from 0", BODE + " --from nan", BODE + " --from 0.01", BODE + " --to 2600",
           BODE + " --loop velocity --from 2600", BODE + " --from 10 --to 10", BODE + " --points 1"),
     typed("an amplitude that cannot be", BODE + " --amplitude '0 um'", BODE + " --amplitude 20",
