@@ -160,6 +160,11 @@ class Agreement(WithFiles):
         for largest, unit in ((0.29, 0.2), (25.3, 20.0), (2.0, 1.0), (4.1, 5.0), (100.0, 50.0)):
             self.assertAlmostEqual(circular.division(largest), unit)
 
+    def test_cases_that_can_be_compared_share_the_coarser_division(self):
+        largest = {"none": 0.29, "filter": 1.5, "friction": 21.9, "compensated": 6.3, "mismatch": 117.0}
+        self.assertEqual({case: float(f"{unit:.6g}") for case, unit in circular.divisions(largest).items()},
+                         {"none": 0.2, "filter": 1.0, "friction": 20.0, "compensated": 20.0, "mismatch": 100.0})
+
     def test_angles_behind_a_reversal_follow_the_direction(self):
         theta = np.array([80.0, 89.0, 92.0, 100.0, 500.0])
         for sense, place in ((1, [-10.0, -1.0, 2.0, 10.0]), (-1, [-10.0, -2.0, 1.0, 10.0])):

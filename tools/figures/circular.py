@@ -14,7 +14,7 @@ from figures.results import NotInFile
 ROUND = 0.01          # mm: how far the nominal path of a circle may be off one
 WHOLE = 2.0           # deg: how far a turn may be off 360
 SHADES = ["#8fc1e3", style.BLUE, style.PURPLE, style.BLACK, style.RED, style.GREY]
-BEFORE, BEHIND = 15.0, 40.0   # deg about a reversal: what sim/metrology/circular_test.h looks at
+BEFORE, BEHIND = 10.0, 20.0   # deg about a reversal: where friction shows
 
 
 @dataclasses.dataclass
@@ -96,6 +96,20 @@ def division(largest):
     return next(m * exponent for m in (1.0, 2.0, 5.0, 10.0) if 2.0 * m * exponent >= largest)
 
 
+ALIKE = 4.0   # divisions that differ by no more are drawn as the coarser one
+
+
+def divisions(largest):
+    """{case: division} of {case: largest deviation}: one for cases that can be compared so."""
+    found, coarsest = {}, np.inf
+    for case in sorted(largest, key=largest.get, reverse=True):
+        own = division(largest[case])
+        if own * ALIKE < coarsest * (1.0 - 1e-9):
+            coarsest = own
+        found[case] = coarsest
+    return found
+
+
 def looks_of(turns):
     """{label: colour} in the order of the program."""
     labels = list(dict.fromkeys(turn.label for of_case in turns.values() for turn in of_case))
@@ -111,14 +125,16 @@ def signed(value):
 def draw(run):
     turns = turns_of(run)
     colours = looks_of(turns)
-    columns = min(len(turns), 4)
+    columns = len(turns) if len(turns) <= 4 else 3
+    units = divisions({name: max(np.abs(turn.dr).max() for turn in of_case)
+                       for name, of_case in turns.items()})
     rows = -(-len(turns) // columns)
     height = WIDTH * (top() - bottom(colours)) / (2.0 * SIDE) + 0.3     # with the title
     figure, strip, grid = style.panels([1.0] * rows, (WIDTH * columns + 0.1, height * rows + 0.75),
                                        columns=columns)
     panels = [ax for row in grid for ax in row]
     for ax, (name, of_case) in zip(panels, turns.items()):
-        _polar(ax, of_case, colours)
+        _polar(ax, of_case, colours, units[name])
         _table(ax, run, name, colours)
         ax.set_title(name.replace("_", " "), loc="center", fontweight="bold")
     for ax in panels[len(turns):]:
@@ -145,8 +161,7 @@ def bottom(colours):
     return -REACH - 1.0 - LINE * (len(colours) + 0.7)
 
 
-def _polar(ax, turns, colours):
-    unit = division(max(np.abs(turn.dr).max() for turn in turns))
+def _polar(ax, turns, colours, unit):
     around = np.radians(np.linspace(0.0, 360.0, 721))
     for ring in range(-2, 3):
         radius = CENTRE + ring
@@ -171,7 +186,8 @@ def _polar(ax, turns, colours):
     ax.plot([-0.5, 0.5], [0.3, 0.3], color=style.BLACK, linewidth=2.2, solid_capstyle="butt")
     for end in (-0.5, 0.5):
         ax.plot([end, end], [0.12, 0.48], color=style.BLACK, linewidth=1.2)
-    ax.text(0.0, -0.05, f"{unit:g} µm", ha="center", va="top", fontsize=10.5)
+    ax.text(0.0, -0.05, f"{unit:g} µm", ha="center", va="top", fontsize=10.5,
+            fontweight="bold")
     ax.set_xlim(-SIDE, SIDE)
     ax.set_ylim(bottom(colours), top())
     ax.set_aspect("equal")
@@ -222,7 +238,7 @@ def draw_reversals(run):
                 extent = [min(extent[0], dr.min()), max(extent[1], dr.max())]
             ax.axvline(0.0, color=style.GREY, linewidth=1.0, zorder=1.5)
             ax.set_xlim(-BEFORE, BEHIND)
-            ax.set_xticks([-15, 0, 15, 30])
+            ax.set_xticks([-10, 0, 10, 20])
         pad = 0.08 * (extent[1] - extent[0])
         for quadrant, ax in enumerate(row):
             ax.set_ylim(extent[0] - pad, extent[1] + pad)
