@@ -23,10 +23,10 @@ double friction_compensation(const FrictionCompensationParams& p, FrictionCompen
   const double before = s.direction;
   s.direction = turned(before, v, p.v_switch);
   if (before * s.direction < 0.0 || (before != 0.0 && s.direction == 0.0)) {
-    s.spike = std::copysign(p.tau_spike, v);
+    s.spike = std::copysign(1.0, v) * p.tau_spike;
   } else if (s.spike != 0.0) {
     s.spike *= std::exp(-p.Tv / p.spike_time - std::abs(v) * p.Tv / p.spike_distance);
-    if (std::abs(s.spike) < kSpent * p.tau_spike) s.spike = 0.0;
+    if (std::abs(s.spike) < kSpent * std::abs(p.tau_spike)) s.spike = 0.0;
   }
   return s.direction * (s.direction > 0.0 ? p.tau_plus : p.tau_minus) + s.spike;
 }

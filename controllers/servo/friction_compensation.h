@@ -11,12 +11,12 @@ struct FrictionCompensationParams {
   double tau_plus = 0.0;         // N m, >= 0, at the motor while moving in +
   double tau_minus = 0.0;        // N m, >= 0, against it while moving in -
   double v_switch = 0.0;         // m/s, >= 0, commanded speed at which the torque has turned over
-  double tau_spike = 0.0;        // N m, on top after a reversal
+  double tau_spike = 0.0;        // N m, on top after a reversal; < 0: less torque at first
   double spike_time = kNoLimit;  // s, the spike falls to 1/e within it
   double spike_distance = kNoLimit;  // m, the same over the way; with tau_spike one of both is set
   double Tv = 0.0;                   // s, velocity period
 
-  bool compensates() const { return tau_plus > 0.0 || tau_minus > 0.0 || tau_spike > 0.0; }
+  bool compensates() const { return tau_plus > 0.0 || tau_minus > 0.0 || tau_spike != 0.0; }
 };
 
 struct FrictionCompensationState {
@@ -42,7 +42,9 @@ struct FrictionCompensationState {
 /// v_path^2 / R: (1) takes v_switch R / v_path^2 to turn over. The axis has to stop, bend the
 /// friction over its presliding way (some um: sigma0 in LuGre) and break away, so that real
 /// controls add a spike for the difference of static and Coulomb friction and for what comes too
-/// late; its best height grows with the acceleration at the reversal and levels off.
+/// late; its best height grows with the acceleration at the reversal and levels off. A negative
+/// spike lets the torque turn over as the bristles do: -(tau_plus + tau_minus) over spike_distance
+/// = (Fc+ + Fc-) / (2 sigma0) is the presliding curve of LuGre friction with Fs = Fc.
 /// @param v  commanded speed, m/s: the fed-forward one with kvf = 1; in lag mode, where the axis
 ///           reverses 1/Kv later, CascadeState::v_cmd
 /// Source: Heidenhain MP2610 ... MP2620 (digital axes: in the speed controller) and MP711/MP712

@@ -116,6 +116,24 @@ TEST(FrictionCompensation, TheSpikeFallsWithTheWayWhateverTheSpeed) {
   }
 }
 
+TEST(FrictionCompensation, ANegativeSpikeTurnsTheTorqueOverAsBristlesDo) {
+  // LuGre friction with Fs = Fc: F(s) = Fc (1 - 2 exp(-s sigma0 / Fc)) behind a reversal
+  FrictionCompensationParams p = two_sided();
+  p.v_switch = 0.0;
+  p.tau_spike = -(p.tau_plus + p.tau_minus);
+  p.spike_distance = 9.0 * um;
+  FrictionCompensationState s;
+  friction_compensation(p, s, 0.1);
+  const double v = 1.0 * mm;
+  for (int k = 0; k < 800; ++k) {
+    const double share = std::exp(-k * v * kTv / p.spike_distance);
+    EXPECT_NEAR(friction_compensation(p, s, -v), -p.tau_minus + share * (p.tau_plus + p.tau_minus),
+                kRounding);
+  }
+  for (int k = 0; k < 800; ++k) friction_compensation(p, s, -v);
+  EXPECT_EQ(s.spike, 0.0) << "spent as a positive one is";
+}
+
 TEST(FrictionCompensation, EachReversalHasOneSpike) {
   FrictionCompensationParams p = two_sided();
   p.tau_spike = 2.0;
