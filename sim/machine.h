@@ -52,6 +52,11 @@ struct AxisFunctions {
   controllers::SupervisionParams supervision;
 };
 
+/// Where the gains of an axis were written, for messages.
+struct GainPlaces {
+  Place Kv, velocity_bandwidth, winding_bandwidth;
+};
+
 struct NcSettings {
   LoopPeriods periods;
   std::array<controllers::CascadeParams, kJoints> cascade;
@@ -62,7 +67,7 @@ struct NcSettings {
   double path_tolerance = 10e-6;   // m, for G64 without P
   double rotary_tolerance = 1e-4;  // rad
   NominalFilter filter;
-  std::array<Place, kJoints> gain_place;  // where Kv or the axis' own was written, for messages
+  std::array<GainPlaces, kJoints> gain_place;
   bool check_stability = true;            // refuse gains with which the linear loop diverges
 };
 

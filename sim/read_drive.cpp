@@ -56,7 +56,8 @@ void read_friction(Reader& axis, const AxisQuantities& q, plant::FrictionKind fa
                       ? table.real("breakaway_negative", q.force, {at_least(0.0)})
                       : f.Fs_positive;
   const bool constant = f.Fs_positive == f.Fc_positive && f.Fs_negative == f.Fc_negative;
-  f.vs = needed_if(table, !constant, "stribeck_velocity", 1.0, q.velocity, {above(0.0)});
+  constexpr double kNoMatter = 1e-6;  // m/s: there is nothing that falls with the speed
+  f.vs = needed_if(table, !constant, "stribeck_velocity", kNoMatter, q.velocity, {above(0.0)});
   f.v0 = needed_if(table, f.kind == Kind::regularised, "regularisation_velocity", 1.0, q.velocity,
                    {above(0.0)});
   f.sigma0 =

@@ -103,7 +103,7 @@ void read_screw(Reader& axis, int joint, MachineSettings& machine) {
     screw.lead = read_length_function(lead);
   }
   plant::ScrewGrowth& growth = screw.growth;
-  growth.alpha = table.real_or("expansion", growth.alpha, kExpansion);
+  growth.alpha = table.real_or("expansion", growth.alpha, kExpansion, {at_least(0.0)});
   growth.x_fixed = table.real_or("fixed_at", 0.0, kLength);
   growth.dT_end = table.real_or("temperature_rise", 0.0, kTemperature);
   growth.tau = table.real_or("warming_time", 0.0, kTime, {at_least(0.0)});

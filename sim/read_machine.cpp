@@ -110,19 +110,36 @@ struct Common {
   std::uint64_t noise_seed = 0;
 };
 
+Place winding_place(Reader& axis) {
+  return axis.has("winding") ? axis.table("winding").place("bandwidth") : Place{};
+}
+
+// An axis begins at rest, with the current that its load needs.
+void refuse_unbearable_load(Reader& axis, const plant::FeedDriveParams& drive,
+                            const controllers::CascadeParams& cascade, bool linear) {
+  const double most = std::min(cascade.i_max * drive.Kt, cascade.tau_max) / drive.r;
+  if (!(std::abs(drive.F_load) > most)) return;
+  axis.fault("constant_load", fmt::format("must be <= {:g} {}, which the current limit can hold",
+                                          most, linear ? "N" : "Nm"));
+}
+
 void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machine) {
   const auto lane = static_cast<std::size_t>(j);
   const bool linear = j < kLinearJoints;
   const std::size_t before_drive = axis.faults();
   machine.drives[lane] = read_drive(axis, linear, common.friction_model);
-  if (axis.faults() == before_drive && machine.integrator == Integrator::exact) {
+  const bool in_sub_steps =
+      machine.integrator == Integrator::exact && !machine.drives[lane].is_linear();
+  if (axis.faults() == before_drive && in_sub_steps) {
     const double base = machine.nc.periods.base;
     for (const std::string& why : plant::unrepresentable(machine.drives[lane], base)) {
       axis.fault(why + "; make it softer, shorten base_period_us or use integrator = \"cvode\"");
     }
   }
   read_servo(axis, common.servo, j, machine);
-  machine.nc.gain_place[lane] = axis.has("Kv") ? axis.place("Kv") : common.Kv_place;
+  machine.nc.gain_place[lane] = {axis.has("Kv") ? axis.place("Kv") : common.Kv_place,
+                                 axis.place("velocity_bandwidth"), winding_place(axis)};
+  refuse_unbearable_load(axis, machine.drives[lane], machine.nc.cascade[lane], linear);
   read_limits(axis, linear, j, machine.nc);
   read_encoders(axis, j, common.noise_seed, machine);
   auto& chain_axis = machine.chain.at(*machine.chain.layout.axis[lane]);

@@ -12,6 +12,7 @@
 #include "controllers/path/travel.h"
 #include "plant/vocabulary/units.h"
 #include "sim/circular_sections.h"
+#include "sim/frequency/frequency_response.h"
 #include "sim/stability.h"
 
 namespace servomill::sim {
@@ -97,6 +98,20 @@ Place place_in(const StrategySpec& spec, const std::string& complaint) {
   return place;
 }
 
+// A displaced scale moves nothing where the motor closes the position loop.
+void refuse_unread_scale(const StrategySpec& spec, const MachineSettings& machine,
+                         const std::string& case_name) {
+  if (spec.entry->name != "feedback") return;
+  for (const int j : machine.joints()) {
+    const auto& feedback = machine.nc.functions[static_cast<std::size_t>(j)].position_feedback;
+    if (j >= kLinearJoints || feedback.kind != controllers::PositionFeedback::motor) continue;
+    throw InputError(
+        spec.place, fmt::format("case {}: strategy feedback: displaces the scale of axis {}, whose "
+                                "position loop reads the motor (position_feedback = \"motor\")",
+                                case_name, machine.chain.layout.letter_of(j)));
+  }
+}
+
 std::unique_ptr<strategies::Strategy> make_strategy(const StrategySpec& spec,
                                                     const Scenario& scenario, const CaseSpec& one,
                                                     const Eigen::Vector3d& tip) {
@@ -120,6 +135,35 @@ std::unique_ptr<strategies::Strategy> make_strategy(const StrategySpec& spec,
   }
 }
 
+// The innermost loop that is unstable by itself: its gain is the one to lower.
+Fault instability(const MachineSettings& machine, int joint, double radius) {
+  const auto j = static_cast<std::size_t>(joint);
+  const GainPlaces& places = machine.nc.gain_place[j];
+  const controllers::CascadeParams& cascade = machine.nc.cascade[j];
+  const controllers::CurrentLoopParams& current = machine.nc.functions[j].current_loop;
+  const plant::FeedDriveParams& drive = machine.drives[j];
+  const char axis = machine.chain.layout.letter_of(joint);
+  const std::string_view watch = "or set nc.check_stability = false to watch it diverge";
+  if (drive.has_winding() && !(current.Kp * current.Ti < 2.0 * drive.L)) {
+    return {places.winding_bandwidth,
+            fmt::format("axis {}: the current loop is unstable with winding.bandwidth = {:.4g} "
+                        "rad/s; must be < {:.4g} rad/s at its period, {}",
+                        axis, current.Kp / drive.L, 2.0 / current.Ti, watch)};
+  }
+  if (velocity_spectral_radius(machine, joint) >= 1.0 + 1e-9) {
+    return {places.velocity_bandwidth,
+            fmt::format("axis {}: the velocity loop is unstable with velocity_bandwidth = {:.4g} "
+                        "rad/s over its current loop and filters; lower it or make those faster, "
+                        "{}",
+                        axis, cascade.Kp / cascade.J, watch)};
+  }
+  return {places.Kv,
+          fmt::format("axis {}: the servo loop is unstable with Kv = {:.4g} 1/s over a stable "
+                      "velocity loop of {:.4g} rad/s (grows by a factor {:.6g} each period); lower "
+                      "Kv or quicken the velocity loop, {}",
+                      axis, cascade.Kv, cascade.Kp / cascade.J, radius, watch)};
+}
+
 void check_stability(const MachineSettings& machine, Tick reading_delay) {
   if (!machine.nc.check_stability) return;
   std::vector<Fault> faults;
@@ -127,16 +171,7 @@ void check_stability(const MachineSettings& machine, Tick reading_delay) {
     if (!machine.chain.layout.has(j)) continue;
     const double radius = spectral_radius(machine, j, reading_delay);
     if (radius < 1.0 + 1e-9) continue;
-    faults.push_back({machine.nc.gain_place[static_cast<std::size_t>(j)],
-                      fmt::format("axis {}: the servo loop is unstable with Kv = {:.4g} 1/s and "
-                                  "velocity_bandwidth = {:.4g} rad/s (grows by a factor {:.6g} "
-                                  "each period); lower one of "
-                                  "them, or set nc.check_stability = false to watch it diverge",
-                                  machine.chain.layout.letter_of(j),
-                                  machine.nc.cascade[static_cast<std::size_t>(j)].Kv,
-                                  machine.nc.cascade[static_cast<std::size_t>(j)].Kp /
-                                      machine.nc.cascade[static_cast<std::size_t>(j)].J,
-                                  radius)});
+    faults.push_back(instability(machine, j, radius));
   }
   if (!faults.empty()) throw InputError(std::move(faults));
 }
@@ -282,6 +317,7 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec)
   // the strategies, each of which may rewrite what the one before left
   const Eigen::Vector3d tip = first_tip(moves, parts.tips);
   for (const StrategySpec& strategy : spec.strategies) {
+    refuse_unread_scale(strategy, machine, spec.name);
     parts.strategies.push_back(make_strategy(strategy, scenario, spec, tip));
     if (!parts.strategies.back()->rewrites()) continue;
     moves = through_text(parts.strategies.back()->rewrite(moves), scenario, spec, parts.program);

@@ -54,24 +54,31 @@ ServoAxes::ServoAxes(const MachineSettings& machine, std::vector<int> joints,
                      const std::vector<Instant>& schedule)
     : machine_(machine),
       joints_(std::move(joints)),
-      drives_(machine.drives, present(joints_), machine.nc.periods.base, steps_of(schedule)) {
+      drives_(machine.drives, present(joints_), machine.nc.periods.base,
+              machine.integrator == Integrator::exact ? steps_of(schedule) : std::vector<Tick>()) {
   if (machine.integrator == Integrator::cvode) {
     cvode_.emplace(machine.drives, present(joints_), machine.nc.periods.base);
   }
 }
 
-void ServoAxes::settle(const Joints& Q_true, const Eigen::Vector3d& displacement) {
-  state_ = drives_.at_rest(Q_true);
+void ServoAxes::settle(const Joints& Q, const Eigen::Vector3d& displacement) {
+  state_ = drives_.at_rest(Q);
   for (const int j : joints_) {
     const plant::FeedDriveParams& drive = machine_.drives[lane(j)];
     const AxisFunctions& functions = machine_.nc.functions[lane(j)];
-    const double i = state_.i[lane(j)], phi = motor_reading(j), u = drive.R * i;
+    const controllers::CascadeParams& cascade = machine_.nc.cascade[lane(j)];
+    const double i = state_.i[lane(j)];
+    const auto current = drive.has_winding()
+                             ? controllers::standing_at(functions.current_loop, i, drive.R * i)
+                             : controllers::StandingCurrent{i, {}};
+    state_.x[lane(j)] -= controllers::standing_error(cascade, current.i_cmd);
+    const double phi = motor_reading(j);
     const double d = j < kLinearJoints ? displacement[j] : 0.0;
     Loop& loop = loops_[lane(j)];
     loop = {};
-    loop.cascade = controllers::standing_at(machine_.nc.cascade[lane(j)], phi, i);
-    loop.current = {u, u};
-    input_.command[lane(j)] = drive.has_winding() ? u : i;
+    loop.cascade = controllers::standing_at(cascade, phi, current.i_cmd);
+    loop.current = current.state;
+    input_.command[lane(j)] = drive.has_winding() ? loop.current.u : i;
     loop.feedback = controllers::standing_at(functions.position_feedback, drive.r * phi,
                                              machine_.scale[lane(j)].read(state_.x[lane(j)]) + d);
     if (const auto& marks = machine_.marks[lane(j)]) {
@@ -126,16 +133,21 @@ void ServoAxes::run_position_loops(const AxisSetPoint& set) {
   for (const int j : joints_) {
     const AxisFunctions& functions = machine_.nc.functions[lane(j)];
     Loop& loop = loops_[lane(j)];
-    double q_cmd = set.Q_cmd[j], v_add = 0.0;
+    double v_add = 0.0;
     if (functions.backlash.width != 0.0) {
       const auto ramp =
           controllers::backlash_compensation(functions.backlash, loop.backlash, set.Q_cmd[j]);
       // only the motor cannot see the gap; the other loops gain the time
       const bool unseen = functions.position_feedback.kind == controllers::PositionFeedback::motor;
-      (unseen ? q_cmd : v_add) += unseen ? ramp.offset : ramp.rate;
+      // counted off its reading, so that the gap is no following error
+      if (unseen) {
+        Q_read_[j] -= ramp.offset;
+      } else {
+        v_add = ramp.rate;
+      }
     }
     loop.dq_ff = set.dQ_ff[j];
-    controllers::position_loop(machine_.nc.cascade[lane(j)], loop.cascade, q_cmd, Q_read_[j],
+    controllers::position_loop(machine_.nc.cascade[lane(j)], loop.cascade, set.Q_cmd[j], Q_read_[j],
                                set.dQ_ff[j], set.ddQ_ff[j], v_add);
   }
 }
@@ -202,6 +214,11 @@ std::optional<std::string> ServoAxes::supervise(int joint, const AxisSetPoint& s
   }
   if (loop.mark_fault) {
     const plant::MarkFault& mark = *loop.mark_fault;
+    if (mark.from == mark.to) {
+      return fmt::format(
+          "counted {} signal periods until the reference mark at {:.3f} {} came again",
+          mark.counted, mark.from / unit, unit_name);
+    }
     return fmt::format(
         "counted {} signal periods instead of {} between the reference marks at {:.3f} and {:.3f} "
         "{}",
@@ -212,7 +229,7 @@ std::optional<std::string> ServoAxes::supervise(int joint, const AxisSetPoint& s
   }
   const plant::Encoder& scale = machine_.scale[lane(joint)];
   const plant::Encoder& motor = machine_.motor[lane(joint)];
-  const double w = state_.v[lane(joint)] / machine_.drives[lane(joint)].r;
+  const double w = motor_speed()[joint];
   if (scale.too_fast(state_.v[lane(joint)]))
     return overspeed("scale", scale, state_.v[lane(joint)]);
   if (motor.too_fast(w)) return overspeed("motor encoder", motor, w);

@@ -48,8 +48,9 @@ class ServoAxes {
   ServoAxes(const MachineSettings& machine, std::vector<int> joints,
             const std::vector<Instant>& schedule);
 
-  /// Stands at Q_true for long, loops in equilibrium; the NC reads Q_true + displacement.
-  void settle(const Joints& Q_true, const Eigen::Vector3d& displacement);
+  /// Has stood for long where the loops hold Q, which the NC reads as Q + displacement: there, or
+  /// below it by what the load needs where no loop has an integral part.
+  void settle(const Joints& Q, const Eigen::Vector3d& displacement);
 
   /// kSample: the reading that the next position period will use.
   /// @param displacement  of the linear joints (3; m), added by a virtual encoder

@@ -9,6 +9,7 @@ namespace servomill::sim {
 
 MachineSettings linearised(const MachineSettings& machine) {
   MachineSettings linear = machine;
+  linear.integrator = Integrator::exact;  // of a linear drive it is
   for (std::size_t j = 0; j < kJoints; ++j) {
     plant::FeedDriveParams& drive = linear.drives[j];
     drive.F_load = 0.0;

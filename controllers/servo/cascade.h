@@ -50,11 +50,17 @@ inline CascadeParams without_limits(CascadeParams p) {
   return p;
 }
 
+/// Following error (m or rad) of an axis that stands and holds `i` (A): none with an integral part,
+/// else what the proportional loops need, r Kt i / (Kp Kv).
+inline double standing_error(const CascadeParams& p, double i) {
+  return p.Ki > 0.0 || i == 0.0 ? 0.0 : p.r * p.Kt * i / (p.Kp * p.Kv);
+}
+
 /// State of a cascade that has held `i` (A) at the motor angle `phi` (rad) for long.
 inline CascadeState standing_at(const CascadeParams& p, double phi, double i) {
-  return {.v_cmd = 0.0,
+  return {.v_cmd = p.Kv * standing_error(p, i),
           .i_ff = 0.0,
-          .integral = i * p.Kt,
+          .integral = p.Ki > 0.0 ? i * p.Kt : 0.0,
           .phi = phi,
           .i_next = i,
           .i_cmd = i,

@@ -19,6 +19,19 @@ struct CurrentLoopState {
   bool limited = false;   // whether u_max cut it
 };
 
+/// Command (A) that holds a current for long, and the state that goes with it.
+struct StandingCurrent {
+  double i_cmd = 0.0;
+  CurrentLoopState state;
+};
+
+/// Holding i (A) under the voltage u = R i: without an integral part the command is ahead by u /
+/// Kp.
+inline StandingCurrent standing_at(const CurrentLoopParams& p, double i, double u) {
+  if (p.Ki > 0.0) return {i, {.integral = u, .u = u}};
+  return {i + u / p.Kp, {.integral = 0.0, .u = u}};
+}
+
 /// PI with a limited voltage: e = i_cmd - i, u = Kp e + I limited to +-u_max; then I gains Ki Ti e
 /// unless the limit holds it (anti-windup). A limit that is reached but does not cut is none.
 /// @param i_cmd  A, from the velocity loop

@@ -71,7 +71,7 @@ DriveBank::DriveBank(const std::array<FeedDriveParams, kJoints>& params,
     }
   }
   for (std::size_t j = 0; j < kJoints; ++j) {
-    if (!present_[j] || params_[j].is_linear()) continue;
+    if (steps.empty() || !present_[j] || params_[j].is_linear()) continue;
     ExactStep exact(params_[j], base_period, longest);
     nonlinear_.push_back({j, exact.gliding(), std::move(exact)});
   }

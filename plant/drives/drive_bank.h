@@ -21,7 +21,8 @@ class DriveBank {
   /// @param params       one entry per joint; joints that the machine lacks stay at zero
   /// @param present      which joints there are
   /// @param base_period  s
-  /// @param steps        step lengths that `advance` will be asked for, in ticks
+  /// @param steps        step lengths that `advance` will be asked for, in ticks; none: it will not
+  ///                     be called, nor anything prepared for it
   DriveBank(const std::array<FeedDriveParams, kJoints>& params,
             const std::array<bool, kJoints>& present, double base_period,
             std::span<const Tick> steps);

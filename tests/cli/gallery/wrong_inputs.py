@@ -182,6 +182,15 @@ AXIS = [
     table_of_axis("an encoder whose signals vanish", '[axis.X.scale]\nperiod = "20 um"\nsine_offset = 1.2\n'),
     table_of_axis("marks on a scale of unknown period", "[axis.X.marks]\nincrement = 1000\n"),
     table_of_axis("marks of an odd increment", '[axis.X.scale]\nperiod = "20 um"\n[axis.X.marks]\nincrement = 999\n'),
+    table_of_axis("a current loop faster than its period",
+                  '[axis.X.winding]\ninductance = "4 mH"\nresistance = "0.6 ohm"\nbandwidth = "30000 rad/s"\n') | {
+        "edit": [("machine.toml", 'velocity_bandwidth = "200 rad/s"', 'current_loop = "pi"\nvelocity_bandwidth = "200 rad/s"'),
+                 ("machine.toml", "[axis.Y]", '[axis.X.winding]\ninductance = "4 mH"\nresistance = "0.6 ohm"\n'
+                  'bandwidth = "30000 rad/s"\n\n[axis.Y]')]},
+    table_of_axis("a filter that the velocity loop cannot bear", '[[axis.X.filter]]\ntype = "low_pass"\nfrequency_Hz = 5\n'),
+    axis("a load that no current can hold", 'constant_load = "30 kN"'),
+    line("feedback of a scale that nobody reads", 'type = "table"', 'type = "feedback"\nmodel = "imposed"\n[[case.strategy]]\ntype = "table"')
+    | {"commands": ["servomill check scenario.toml --set 'machine_override.nc.position_feedback=\"motor\"'"]},
     line("an integrator that there is not", 'name      = "Three-axis mill"',
          'name      = "Three-axis mill"\nintegrator = "cvodes"', "machine.toml"),
 ]
