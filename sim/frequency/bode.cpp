@@ -89,6 +89,8 @@ BodeResult bode(const MachineSettings& machine, int joint, Tick reading_delay,
   const double reach = kDefaultReach * out.nyquist;
   const double to = settings.to.value_or(settings.from < reach ? reach : out.nyquist);
   const std::vector<double> wanted = logarithmic(settings.from, to, settings.points);
+  const std::vector<double> rings =
+      ringing_frequencies(machine, joint, reading_delay, loop, out.nyquist);
   Measurement how;
   how.method = settings.method;
   std::vector<MeasuredPoint> points;
@@ -113,7 +115,7 @@ BodeResult bode(const MachineSettings& machine, int joint, Tick reading_delay,
     BodeCurve& curve = out.curves.emplace_back();
     curve.name = of.name;
     curve.long_name = of.long_name;
-    curve.exact = curve_of(at, logarithmic(settings.from, to, kDrawn));
+    curve.exact = curve_of(at, logarithmic(settings.from, to, kDrawn, rings));
     if (!out.measured) curve.f = wanted;
     for (const MeasuredPoint& point : points) {
       curve.f.push_back(point.f);
@@ -122,7 +124,9 @@ BodeResult bode(const MachineSettings& machine, int joint, Tick reading_delay,
     for (const double f : curve.f) curve.exact_at.push_back(at(f));
 
     // what is read off, over the whole range
-    const auto whole = [&] { return curve_of(at, logarithmic(kLowest, out.nyquist, kDrawn)); };
+    const auto whole = [&] {
+      return curve_of(at, logarithmic(kLowest, out.nyquist, kDrawn, rings));
+    };
     if (curve.name == "position_open" || curve.name == "velocity_open") {
       out.margins = margins_of(whole(), at);
     } else if (curve.name == "position_closed" || curve.name == "velocity_closed") {

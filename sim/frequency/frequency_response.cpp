@@ -101,6 +101,43 @@ Response FrequencyResponse::at(Entry entry, double f) {
   return mean;
 }
 
+double resonance_frequency(const plant::FeedDriveParams& p) {
+  if (p.is_rigid()) return 0.0;
+  return std::sqrt(p.k * (1.0 / p.M + p.r * p.r / p.J)) / (2.0 * std::numbers::pi);
+}
+
+double antiresonance_frequency(const plant::FeedDriveParams& p) {
+  return p.is_rigid() ? 0.0 : std::sqrt(p.k / p.M) / (2.0 * std::numbers::pi);
+}
+
+std::vector<double> ringing_frequencies(const MachineSettings& machine, int joint,
+                                        Tick reading_delay, PositionLoop loop, double to) {
+  const plant::FeedDriveParams& drive = machine.drives[static_cast<std::size_t>(joint)];
+  std::vector<double> out;
+  const auto add = [&](double f) {
+    if (f > 0.0 && f <= to) out.push_back(f);
+  };
+  add(resonance_frequency(drive));
+  add(antiresonance_frequency(drive));
+  std::vector<PositionLoop> loops = {PositionLoop::open};
+  if (loop == PositionLoop::closed) loops.push_back(loop);
+  for (const PositionLoop one : loops) {
+    const FrequencyResponse response(machine, joint, reading_delay, one);
+    const double rate = 1.0 / response.stand().period();
+    for (const Complex z : response.monodromy().eigenvalues()) {
+      if (z.imag() <= 0.0) continue;  // one of each pair
+      const double f = std::arg(z) / (2.0 * std::numbers::pi) * rate;
+      const double a = -std::log(std::abs(z)) / (2.0 * std::numbers::pi) * rate;
+      for (double turns = 0.0; turns <= to + rate; turns += rate) {
+        for (const double image : {turns + f, turns - f}) {
+          if (a < image) add(image);
+        }
+      }
+    }
+  }
+  return out;
+}
+
 double slowest_time_constant(const MachineSettings& machine, int joint, Tick reading_delay,
                              PositionLoop loop) {
   const LoopPeriods& p = machine.nc.periods;

@@ -1,6 +1,7 @@
 #include "sim/frequency/margins.h"
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -11,7 +12,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int kDeepest = 8;            // halvings between two points
+constexpr int kDeepest = 16;           // halvings between two points
 constexpr double kCrossingTol = 1e-9;  // of the frequency
 
 // Adds points between the last one of the curve and (f, response), where the response turns.
@@ -24,6 +25,38 @@ void fill(Curve& curve, const ResponseAt& y, double f, Complex response, int dep
   curve.f.push_back(middle);
   curve.y.push_back(there);
   fill(curve, y, f, response, depth - 1);
+}
+
+// Where `quantity` of the response is least near the point i, which has a larger one on each side.
+template <class Of>
+std::pair<double, Complex> least(const Curve& curve, std::size_t i, const ResponseAt& y,
+                                 const Of& quantity) {
+  constexpr int kBits = 24;  // more would be below what the square of a double resolves
+  const auto at_logarithm = [&](double x) { return quantity(y(std::exp(x))); };
+  const auto found = boost::math::tools::brent_find_minima(at_logarithm, std::log(curve.f[i - 1]),
+                                                           std::log(curve.f[i + 1]), kBits);
+  const double f = std::exp(found.first);
+  return {f, y(f)};
+}
+
+// Adds the points between given ones at which the magnitude is largest or least.
+void add_extrema(Curve& curve, const ResponseAt& y) {
+  Curve more;
+  for (std::size_t i = 1; i + 1 < curve.f.size(); ++i) {
+    const double before = std::abs(curve.y[i - 1]), here = std::abs(curve.y[i]);
+    const double after = std::abs(curve.y[i + 1]);
+    if ((here > before) != (here > after)) continue;
+    const double sign = here > before ? -1.0 : 1.0;
+    const auto [f, there] = least(curve, i, y, [&](Complex L) { return sign * std::abs(L); });
+    more.f.push_back(f);
+    more.y.push_back(there);
+  }
+  for (std::size_t i = 0; i < more.f.size(); ++i) {
+    const auto place = std::lower_bound(curve.f.begin(), curve.f.end(), more.f[i]);
+    if (*place == more.f[i]) continue;
+    curve.y.insert(curve.y.begin() + (place - curve.f.begin()), more.y[i]);
+    curve.f.insert(place, more.f[i]);
+  }
 }
 
 // Between two points of the curve: logarithm of the magnitude and phase are straight lines.
@@ -75,6 +108,16 @@ std::vector<double> logarithmic(double from, double to, std::size_t points) {
   return f;
 }
 
+std::vector<double> logarithmic(double from, double to, std::size_t points,
+                                const std::vector<double>& more) {
+  std::vector<double> f = logarithmic(from, to, points);
+  std::copy_if(more.begin(), more.end(), std::back_inserter(f),
+               [&](double one) { return one > from && one < to; });
+  std::sort(f.begin(), f.end());
+  f.erase(std::unique(f.begin(), f.end()), f.end());
+  return f;
+}
+
 Curve curve_of(const ResponseAt& y, const std::vector<double>& f) {
   Curve curve;
   for (const double one : f) {
@@ -83,6 +126,7 @@ Curve curve_of(const ResponseAt& y, const std::vector<double>& f) {
     curve.f.push_back(one);
     curve.y.push_back(response);
   }
+  add_extrema(curve, y);
   return curve;
 }
 
@@ -90,12 +134,10 @@ Margins margins_of(const Curve& curve, const ResponseAt& at) {
   Margins m;
   const auto imaginary = [](Complex L) { return L.imag(); };
   const auto excess = [](Complex L) { return std::abs(L) - 1.0; };
+  const auto distance = [](Complex L) { return std::abs(1.0 + L); };
+  std::size_t nearest = 0;
   for (std::size_t i = 0; i < curve.f.size(); ++i) {
-    const double S = 1.0 / std::abs(1.0 + curve.y[i]);
-    if (S > m.sensitivity) {
-      m.sensitivity = S;
-      m.sensitivity_frequency = curve.f[i];
-    }
+    if (distance(curve.y[i]) < distance(curve.y[nearest])) nearest = i;
     if (i + 1 == curve.f.size()) break;
     if (crosses(curve, i, imaginary)) {
       const auto [f, L] = crossing(curve, i, at, imaginary);
@@ -110,6 +152,13 @@ Margins margins_of(const Curve& curve, const ResponseAt& at) {
         m.crossover = f;
       }
     }
+  }
+  m.sensitivity = 1.0 / distance(curve.y[nearest]);
+  m.sensitivity_frequency = curve.f[nearest];
+  if (at && nearest > 0 && nearest + 1 < curve.f.size()) {
+    const auto [f, L] = least(curve, nearest, at, distance);
+    m.sensitivity = 1.0 / distance(L);
+    m.sensitivity_frequency = f;
   }
   // at the Nyquist frequency a sampled loop is real
   const Complex last = curve.y.back();

@@ -20,9 +20,14 @@ using ResponseAt = std::function<std::complex<double>(double f)>;
 /// Frequencies from `from` to `to` (Hz), both included, evenly spaced in the logarithm.
 std::vector<double> logarithmic(double from, double to, std::size_t points);
 
+/// The same with further ones between them, those of `more` that lie inside.
+std::vector<double> logarithmic(double from, double to, std::size_t points,
+                                const std::vector<double>& more);
+
 /// With points between the given ones wherever the response changes by more than kLargestTurn from
 /// one to the next (of its logarithm: magnitude by that share, phase by that many rad), so that no
-/// resonance stays unseen whose phase or magnitude the given points notice.
+/// resonance stays unseen whose phase or magnitude the given points notice; and where the magnitude
+/// is largest or least.
 inline constexpr double kLargestTurn = 0.2;
 Curve curve_of(const ResponseAt& y, const std::vector<double>& f);
 
@@ -40,7 +45,7 @@ struct Margins {
 };
 
 /// @param at  the same loop at any frequency; crossings are found to 1e-9 with it, by interpolation
-///            of the curve without it
+///            of the curve without it; the largest sensitivity is among the points without it
 Margins margins_of(const Curve& open_loop, const ResponseAt& at = {});
 
 /// Of a closed loop with the gain 1 at low frequencies.

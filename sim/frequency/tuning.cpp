@@ -40,24 +40,16 @@ ResponseAt open_position(FrequencyResponse& response) {
   };
 }
 
-// With the frequencies at which the drive rings, so that no peak is stepped over.
-std::vector<double> grid(double period, const plant::FeedDriveParams& drive) {
-  std::vector<double> f = logarithmic(kLowest, 0.5 / period, kGrid);
-  for (const double rings : {antiresonance_frequency(drive), resonance_frequency(drive)}) {
-    if (rings <= f.front() || rings >= f.back()) continue;
-    f.insert(std::upper_bound(f.begin(), f.end(), rings), rings);
-  }
-  return f;
-}
-
-const plant::FeedDriveParams& drive_of(const MachineSettings& machine, int joint) {
-  return machine.drives[static_cast<std::size_t>(joint)];
-}
-std::vector<double> position_grid(const MachineSettings& machine, int joint) {
-  return grid(machine.nc.periods.seconds(machine.nc.periods.position), drive_of(machine, joint));
+std::vector<double> position_grid(const MachineSettings& machine, int joint, Tick reading_delay) {
+  const double nyquist = 0.5 / machine.nc.periods.seconds(machine.nc.periods.position);
+  return logarithmic(
+      kLowest, nyquist, kGrid,
+      ringing_frequencies(machine, joint, reading_delay, PositionLoop::closed, nyquist));
 }
 std::vector<double> velocity_grid(const MachineSettings& machine, int joint) {
-  return grid(machine.nc.periods.seconds(machine.nc.periods.velocity), drive_of(machine, joint));
+  const double nyquist = 0.5 / machine.nc.periods.seconds(machine.nc.periods.velocity);
+  return logarithmic(kLowest, nyquist, kGrid,
+                     ringing_frequencies(machine, joint, 0, PositionLoop::open, nyquist));
 }
 
 // Which margin is missed, if any.
@@ -111,6 +103,19 @@ double rounded_up(double value) {
   return std::ceil(value / unit) * unit;
 }
 
+// The gain, rounded down and lowered further as far as needed for what it leads to being kept; 0 if
+// half of it is not enough.
+template <class Kept>
+double kept_at(double gain, const Kept& kept) {
+  constexpr double kFirst = 1e-3, kMost = 0.5;
+  double tried = rounded_down(gain);
+  for (double share = kFirst; share <= kMost; share *= 2.0) {
+    if (kept(tried)) return tried;
+    tried = rounded_down((1.0 - share) * gain);
+  }
+  return 0.0;
+}
+
 Margins velocity_margins(const MachineSettings& machine, int joint) {
   FrequencyResponse response(machine, joint, 0, PositionLoop::open);
   const ResponseAt L = open_velocity(response);
@@ -138,10 +143,10 @@ double step_overshoot(const MachineSettings& linear, int joint, Tick reading_del
 Largest largest_Kv(const MachineSettings& machine, int joint, Tick reading_delay, Gains gains,
                    const TuneSettings& wanted) {
   gains.Kv = 1.0;
-  FrequencyResponse response(with_gains(machine, joint, gains), joint, reading_delay,
-                             PositionLoop::closed);
+  const MachineSettings tried = with_gains(machine, joint, gains);
+  FrequencyResponse response(tried, joint, reading_delay, PositionLoop::closed);
   const double Tp = machine.nc.periods.seconds(machine.nc.periods.position);
-  const Curve one = curve_of(open_position(response), position_grid(machine, joint));
+  const Curve one = curve_of(open_position(response), position_grid(tried, joint, reading_delay));
   return largest_gain(kLeastKv, std::numbers::pi / Tp, [&](double Kv) {
     Curve curve = one;
     for (auto& L : curve.y) L *= Kv;
@@ -177,13 +182,9 @@ MachineSettings with_gains(const MachineSettings& machine, int joint, const Gain
   return out;
 }
 
-double resonance_frequency(const plant::FeedDriveParams& p) {
-  if (p.is_rigid()) return 0.0;
-  return std::sqrt(p.k * (1.0 / p.M + p.r * p.r / p.J)) / (2.0 * std::numbers::pi);
-}
-
-double antiresonance_frequency(const plant::FeedDriveParams& p) {
-  return p.is_rigid() ? 0.0 : std::sqrt(p.k / p.M) / (2.0 * std::numbers::pi);
+bool keeps(const Assessment& a, const TuneSettings& wanted) {
+  return a.stable && !missed(a.velocity, wanted) && !missed(a.position, wanted) &&
+         a.overshoot <= wanted.overshoot;
 }
 
 Assessment assess(const MachineSettings& machine, int joint, Tick reading_delay) {
@@ -196,7 +197,7 @@ Assessment assess(const MachineSettings& machine, int joint, Tick reading_delay)
   const ResponseAt T = [&](double f) {
     return response.at(Entry::set_point, f)[index_of(AxisSignal::position)];
   };
-  const auto f = position_grid(linear, joint);
+  const auto f = position_grid(linear, joint, reading_delay);
   out.position = margins_of(curve_of(L, f), L);
   out.closed = closed_loop_of(curve_of(T, f), T);
   out.stable = velocity_spectral_radius(linear, joint) < 1.0 &&
@@ -233,8 +234,17 @@ Tuning tune(const MachineSettings& machine, int joint, Tick reading_delay,
     }
   }
   out.velocity = wv.limit;
-  Gains gains = gains_for(rounded_down(wv.gain));
-  gains.Tn = rounded_up(gains.Tn);
+  const auto rounded = [&](double one) {
+    Gains gains = gains_for(one);
+    gains.Tn = rounded_up(gains.Tn);
+    return gains;
+  };
+  const double wv_kept = kept_at(wv.gain, [&](double one) {
+    return !missed(velocity_margins(with_gains(linear, joint, rounded(one)), joint), wanted);
+  });
+  if (wv_kept == 0.0) no_gain(machine, joint, "velocity_bandwidth above 20 rad/s", wanted);
+  out.wv_lowered = 1.0 - wv_kept / rounded_down(wv.gain);
+  Gains gains = rounded(wv_kept);
 
   const Largest Kv = largest_Kv(linear, joint, reading_delay, gains, wanted);
   if (Kv.gain == 0.0) no_gain(machine, joint, "Kv above 1 1/s", wanted);
@@ -259,18 +269,22 @@ Tuning tune(const MachineSettings& machine, int joint, Tick reading_delay,
   gains.Kv = out.Kv_limit = calm;
   if (wanted.bandwidth) {
     const double enough = lowered(gains.Kv, *wanted.bandwidth, [&](double one) {
-      FrequencyResponse response(at(one), joint, reading_delay, PositionLoop::closed);
+      const MachineSettings tried = at(one);
+      FrequencyResponse response(tried, joint, reading_delay, PositionLoop::closed);
       const ResponseAt T = [&](double f) {
         return response.at(Entry::set_point, f)[index_of(AxisSignal::position)];
       };
-      return closed_loop_of(curve_of(T, position_grid(linear, joint)), T).bandwidth;
+      return closed_loop_of(curve_of(T, position_grid(tried, joint, reading_delay)), T).bandwidth;
     });
     if (enough < gains.Kv) out.position = {Limit::Kind::bandwidth, *wanted.bandwidth};
     gains.Kv = enough;
   }
-  gains.Kv = rounded_down(gains.Kv);
-  out.after = assess(with_gains(machine, joint, gains), joint, reading_delay);
-  assert(out.after.stable);
+  const double Kv_kept = kept_at(gains.Kv, [&](double one) {
+    out.after = assess(at(one), joint, reading_delay);
+    return keeps(out.after, wanted);
+  });
+  if (Kv_kept == 0.0) no_gain(machine, joint, "Kv above 1 1/s", wanted);
+  out.Kv_lowered = 1.0 - Kv_kept / rounded_down(gains.Kv);
   return out;
 }
 

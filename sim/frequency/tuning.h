@@ -45,12 +45,17 @@ struct Assessment {
   double overshoot = 0.0;  // of a step of the set point
   double load_peak = 0.0;  // m/N: peak deviation after a load step
 };
+/// Stable, with all margins and no more overshoot than wanted.
+bool keeps(const Assessment& assessment, const TuneSettings& wanted);
 Assessment assess(const MachineSettings& machine, int joint, Tick reading_delay);
 
 struct Tuning {
   Assessment before, after;
   Limit velocity, position;  // what binds
   double Kv_limit = 0.0;     // 1/s, largest Kv that keeps margins and overshoot
+  // share by which velocity bandwidth and Kv were lowered once more, because the curve of the
+  // result, looked at closely, missed a margin by a little
+  double wv_lowered = 0.0, Kv_lowered = 0.0;
   // a lower velocity bandwidth whose margins of the position loop allow a higher Kv; 0: none found
   double calmer_wv = 0.0, calmer_Kv = 0.0;  // rad/s, 1/s
 };
@@ -58,7 +63,8 @@ struct Tuning {
 /// First the largest velocity bandwidth, Tn going along with it, for which every smaller one down
 /// to the first that has the margins has them, too; then the largest Kv in the same way, lowered
 /// until a step overshoots no more than wanted, or to the wanted bandwidth. Gains are rounded down
-/// to four digits and assessed as rounded.
+/// to four digits, assessed as rounded, and lowered further as long as the assessment misses a
+/// margin.
 /// @throws InputError that names the margin if no gain has it
 Tuning tune(const MachineSettings& machine, int joint, Tick reading_delay,
             const TuneSettings& settings);
@@ -67,10 +73,5 @@ Tuning tune(const MachineSettings& machine, int joint, Tick reading_delay,
 /// ones).
 Tuning with_common_Kv(const MachineSettings& machine, int joint, Tick reading_delay, Tuning tuning,
                       double Kv);
-
-/// Frequency at which motor and load oscillate against one another (Hz); 0 for a rigid drive.
-double resonance_frequency(const plant::FeedDriveParams& drive);
-/// Frequency at which the load alone would oscillate on a motor held still (Hz); 0 for a rigid one.
-double antiresonance_frequency(const plant::FeedDriveParams& drive);
 
 }  // namespace servomill::sim

@@ -226,6 +226,11 @@ int tune_command(const Arguments& arguments) {
                t.after.gains.Tn / ms, wanted.reset_ratio,
                std::atan(1.0 / wanted.reset_ratio) / deg);
     fmt::print("  Kv = {:.4g} 1/s: {} rules\n", own, reason(t.position, wanted, drive, "position"));
+    if (t.wv_lowered > 0.0 || t.Kv_lowered > 0.0) {
+      fmt::print(
+          "  Both are {:.2g} % and {:.2g} % lower than found first, to keep what is asked for\n",
+          100.0 * t.wv_lowered, 100.0 * t.Kv_lowered);
+    }
     if (t.calmer_wv > 0.0) {
       fmt::print(
           "  Less would be more: at wv = {:.3g} rad/s the margins of the position loop allow "
@@ -238,6 +243,9 @@ int tune_command(const Arguments& arguments) {
     if (own > common) {
       fmt::print("  Kv = {:.4g} 1/s, equal for interpolating axes: axis {} rules\n", common,
                  ruling);
+    }
+    if (!sim::keeps(t.after, wanted)) {
+      fmt::print("  With the common Kv the axis does NOT keep what is asked for: see the table.\n");
     }
     fmt::print("\n");
     print_table(t, joint);

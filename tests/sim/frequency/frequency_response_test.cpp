@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/frequency/bode.h"
 #include "sim/frequency/margins.h"
 #include "sim/scenario.h"
 #include "sim/stability.h"
@@ -262,6 +263,56 @@ TEST(Margins, OfAKnownLoop) {
     EXPECT_NEAR(m.crossover * 2.0 * std::numbers::pi, w, tol);
     EXPECT_NEAR(m.phase, std::numbers::pi / 2.0 - 2.0 * std::atan(w), tol);
     EXPECT_EQ(m.reduction, Margins::kNone);
+  }
+}
+
+// The resonance of C, hardly damped, is narrower than the distance of the points for drawing; the
+// largest values are against a search that is fine enough to see it at every tenth of its width.
+TEST(Margins, SeeANarrowResonance) {
+  constexpr int kC = 4;
+  constexpr double kPeakTol = 2e-4;        // of a peak between two points of the search
+  constexpr double kPhaseTol = 0.2 * deg;  // over one step of the search
+  constexpr double kRingTol = 1e-3;        // of a frequency: much less than the width
+  constexpr double kSearchFrom = 331.8, kSearchTo = 333.2;  // Hz, with the peak within
+  struct Loop {
+    double damping, wv;  // N m s/rad, rad/s
+  };
+  for (const Loop& loop : {Loop{1.0, 40.0}, {0.3, 20.0}, {0.03, 20.0}}) {
+    MachineSettings machine = hsm600u();
+    machine.drives[kC].c = loop.damping;
+    controllers::CascadeParams& cascade = machine.nc.cascade[kC];
+    cascade.Ki *= loop.wv * cascade.J / cascade.Kp;
+    cascade.Kp = loop.wv * cascade.J;
+    BodeSettings settings;
+    settings.loop = BodeLoop::velocity;
+    settings.measure = false;
+    const BodeResult result = bode(machine, kC, 0, settings);
+    ASSERT_TRUE(result.stable);
+
+    FrequencyResponse response(machine, kC, 0, PositionLoop::open);
+    const ResponseAt L = open_velocity_loop(response);
+    double sensitivity = 0.0, peak = 0.0, margin = Margins::kNone;
+    Complex last = 0.0;
+    for (const double f : logarithmic(kSearchFrom, kSearchTo, 3000)) {
+      const Complex here = L(f);
+      sensitivity = std::max(sensitivity, 1.0 / std::abs(1.0 + here));
+      if (last != 0.0 && (std::abs(last) > 1.0) != (std::abs(here) > 1.0)) {
+        margin = std::min(margin, std::abs(std::arg(-here)));
+      }
+      peak = std::max(peak, std::abs(response.at(Entry::velocity_command,
+                                                 f)[index_of(AxisSignal::motor_speed)]) *
+                                machine.drives[kC].r);
+      last = here;
+    }
+    EXPECT_NEAR(result.margins.sensitivity / sensitivity, 1.0, kPeakTol) << loop.damping;
+    EXPECT_NEAR(std::abs(result.margins.phase), margin, kPhaseTol) << loop.damping;
+    EXPECT_NEAR(result.closed.peak / peak, 1.0, kPeakTol) << loop.damping;
+
+    const auto rings = ringing_frequencies(machine, kC, 0, PositionLoop::open, result.nyquist);
+    const auto rings_there = [&](double f) {
+      return std::abs(f / result.closed.peak_frequency - 1.0) < kRingTol;
+    };
+    EXPECT_TRUE(std::any_of(rings.begin(), rings.end(), rings_there)) << loop.damping;
   }
 }
 

@@ -20,6 +20,12 @@ MachineSettings hsm600u() {
   return read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
 }
 
+void use_CC422(MachineSettings& machine) {
+  machine.nc.periods.position = 180;
+  machine.nc.periods.velocity = 60;
+  for (auto& cascade : machine.nc.cascade) cascade.Tv = 0.6e-3;
+}
+
 // Of Y with the margins that are the default, shared by the tests.
 const Tuning& tuned_Y() {
   static const Tuning tuning = tune(hsm600u(), kY, 0, {});
@@ -29,10 +35,10 @@ const Tuning& tuned_Y() {
 void expect_kept(const Assessment& a, const TuneSettings& wanted) {
   EXPECT_TRUE(a.stable);
   for (const Margins& m : {a.velocity, a.position}) {
-    EXPECT_GE(m.gain, wanted.gain_margin * (1.0 - kRounding));
-    EXPECT_GE(m.phase, wanted.phase_margin * (1.0 - kRounding));
+    EXPECT_GE(m.gain, wanted.gain_margin);
+    EXPECT_GE(m.phase, wanted.phase_margin);
   }
-  EXPECT_LE(a.overshoot, wanted.overshoot + kRounding);
+  EXPECT_LE(a.overshoot, wanted.overshoot);
 }
 
 TEST(Tune, KeepsTheMarginsAndLeavesNothingOver) {
@@ -70,6 +76,34 @@ TEST(Tune, KeepsTheMarginsAtASharpResonance) {
                             AxisSignal::speed_error);
     if (std::abs(L) < 1.0) continue;
     EXPECT_GT(std::abs(std::arg(-L)), TuneSettings{}.phase_margin * (1.0 - kRounding)) << f;
+  }
+}
+
+// Not nearly: what is demanded is what an assessment of the result finds, for axes of each kind,
+// little damping, and the periods of either control unit.
+TEST(Tune, KeepsAllThatIsDemanded) {
+  struct Demand {
+    int joint;
+    double damping, phase;  // N s/m or N m s/rad, deg
+    bool slow;              // CC422
+  };
+  constexpr int kX = 0, kZ = 2, kB = 3, kC = 4;
+  for (const Demand& demand : {Demand{kX, 2e3, 45.0, false},
+                               {kZ, 8e3, 30.0, false},
+                               {kB, 20.0, 30.0, false},
+                               {kC, 60.0, 45.0, true}}) {
+    MachineSettings machine = hsm600u();
+    machine.drives[static_cast<std::size_t>(demand.joint)].c = demand.damping;
+    if (demand.slow) use_CC422(machine);
+    TuneSettings wanted;
+    wanted.phase_margin = demand.phase * deg;
+    const Tuning t = tune(machine, demand.joint, 0, wanted);
+    SCOPED_TRACE(fmt::format("joint {} damping {}", demand.joint, demand.damping));
+    expect_kept(t.after, wanted);
+    EXPECT_TRUE(keeps(t.after, wanted));
+    constexpr double kLittle = 0.01;  // lowered after the search
+    EXPECT_LT(t.wv_lowered, kLittle);
+    EXPECT_LT(t.Kv_lowered, kLittle);
   }
 }
 
