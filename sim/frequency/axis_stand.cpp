@@ -1,6 +1,7 @@
 #include "sim/frequency/axis_stand.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace servomill::sim {
 namespace {
@@ -15,20 +16,32 @@ std::vector<Rate> stand_rates(const LoopPeriods& periods, Tick reading_delay, Po
   return rates;
 }
 
+// A set point that jumps is no following error.
+MachineSettings without_supervision(MachineSettings machine) {
+  for (AxisFunctions& functions : machine.nc.functions) functions.supervision = {};
+  return machine;
+}
+
+double current_limit_of(const controllers::CascadeParams& c) {
+  return std::min(c.i_max, c.tau_max / c.Kt);
+}
+
 }  // namespace
 
 AxisStand::AxisStand(const MachineSettings& machine, int joint, Tick reading_delay,
                      PositionLoop loop)
-    : machine_(machine),
+    : machine_(without_supervision(machine)),
       joint_(joint),
       schedule_(make_schedule(stand_rates(machine_.nc.periods, reading_delay, loop))),
-      axes_(machine_, {joint}, schedule_) {
+      axes_(machine_, {joint}, schedule_),
+      current_limit_(current_limit_of(machine_.nc.cascade[static_cast<std::size_t>(joint)])) {
   settle(0.0);
   axes_.each_state(joint_, [&](double&) { ++states_; });
 }
 
 void AxisStand::settle(double position) {
   set_ = {};
+  fault_.reset();
   Joints Q = Joints::Zero();
   Q[joint_] = position;
   axes_.inject(joint_, {});
@@ -45,6 +58,14 @@ Eigen::VectorXd AxisStand::get_states() {
   Eigen::Index k = 0;
   axes_.each_state(joint_, [&](double& state) { x[k++] = state; });
   return x;
+}
+
+bool AxisStand::at_current_limit() {
+  // the command is clamped to exactly that value, and nothing else that moves is
+  bool limited = false;
+  axes_.each_state(joint_,
+                   [&](double& state) { limited = limited || std::abs(state) == current_limit_; });
+  return limited;
 }
 
 void AxisStand::run_loops(std::uint8_t due, const StandInput& in) {

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -63,6 +65,12 @@ class AxisStand {
   /// Stands at a position for long, nothing is injected.
   void settle(double position);
 
+  /// Why a run would stop here, in the NC's words, since the axis was settled ("friction too stiff
+  /// for the exact step; ..."); following errors and differences of encoders are not supervised.
+  const std::optional<std::string>& fault() const { return fault_; }
+  /// Whether the current command is on its limit, that of the torque included.
+  bool at_current_limit();
+
   int states() const { return states_; }
   void set_states(const Eigen::VectorXd& x);
   Eigen::VectorXd get_states();
@@ -84,6 +92,8 @@ class AxisStand {
   std::vector<Instant> schedule_;
   ServoAxes axes_;
   AxisSetPoint set_;
+  std::optional<std::string> fault_;
+  double current_limit_;  // A
   int states_ = 0;
 };
 
@@ -96,6 +106,7 @@ void AxisStand::run(Tick begin, const Input& input, const Look& look) {
     axes_.advance(instant.step);
     ++n;
   }
+  if (!fault_) fault_ = axes_.supervise(joint_, set_);
 }
 
 }  // namespace servomill::sim

@@ -105,7 +105,14 @@ BodeResult bode(const MachineSettings& machine, int joint, Tick reading_delay,
         how.max_acceleration = fed_forward_acceleration(machine, joint);
       }
       const MeasuredResponse measured = measure(machine, joint, reading_delay, loop, how, wanted);
-      points = measured.points;
+      if (measured.fault) {
+        out.fault = measured.fault;
+        out.measured = false;
+        points.clear();
+      } else {
+        points = measured.points;
+      }
+      out.current_limited = out.current_limited || measured.current_limited;
       out.amplitude = how.amplitude;
       out.velocity = how.velocity;
       out.crest_factor = measured.crest_factor;
@@ -140,6 +147,9 @@ BodeResult bode(const MachineSettings& machine, int joint, Tick reading_delay,
         out.closed.peak_frequency = all.f[i];
       }
     }
+  }
+  if (out.fault) {
+    for (BodeCurve& curve : out.curves) curve.measured.clear();
   }
   return out;
 }

@@ -36,6 +36,8 @@ struct BodeResult {
   double amplitude = 0.0, velocity = 0.0;         // SI of what is fed in; m/s
   double crest_factor = 0.0, peak_current = 0.0;  // -, A
   double simulated_time = 0.0;                    // s
+  bool current_limited = false;      // the limit of the current was reached: not linear
+  std::optional<std::string> fault;  // why a run would have stopped: nothing is kept as measured
 };
 
 /// Below it the simulation of two periods takes too long.

@@ -141,6 +141,7 @@ void measure_window(AxisStand& stand, PositionLoop loop, const Measurement& how,
     const double moved = how.position + how.velocity * h * static_cast<double>(n);
     y[index_of(AxisSignal::position)] -= moved;
     y[index_of(AxisSignal::reading)] -= moved;
+    if (due & kVelocityLoop) out.current_limited = out.current_limited || stand.at_current_limit();
     out.peak_current = std::max(out.peak_current, std::abs(y[index_of(AxisSignal::current)]));
     for (std::size_t k = 0; k < sums.size(); ++k) {
       sums[k].add(due, y, std::conj(excitation.turn(k, n)));
@@ -155,6 +156,7 @@ void measure_window(AxisStand& stand, PositionLoop loop, const Measurement& how,
   }
   for (Tick p = first; p < first + window.hyperperiods; ++p) stand.run(p * H, feed, add);
 
+  if (!out.fault) out.fault = stand.fault();
   out.crest_factor = excitation.crest_factor();
   out.simulated_time += static_cast<double>(first + window.hyperperiods) * stand.period();
   for (std::size_t k = 0; k < sums.size(); ++k) {

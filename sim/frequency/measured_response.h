@@ -3,6 +3,8 @@
 #pragma once
 
 #include <limits>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "sim/frequency/frequency_response.h"
@@ -31,9 +33,11 @@ struct MeasuredPoint {
 
 struct MeasuredResponse {
   std::vector<MeasuredPoint> points;
-  double crest_factor = 0.0;    // peak over effective value of what is fed in
-  double peak_current = 0.0;    // A, after the transient
-  double simulated_time = 0.0;  // s
+  double crest_factor = 0.0;         // peak over effective value of what is fed in
+  double peak_current = 0.0;         // A, after the transient
+  double simulated_time = 0.0;       // s
+  bool current_limited = false;      // the limit of the current was reached: not linear
+  std::optional<std::string> fault;  // why a run would have stopped: the values are wrong
 };
 
 /// Waits until the slowest transient has decayed to 1e-9, then takes fundamentals. Frequencies are

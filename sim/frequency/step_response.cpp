@@ -93,6 +93,7 @@ StepResponse step_response(const MachineSettings& machine, int joint, Tick readi
     stand.run(
         p * stand.hyperperiod(), [&](Tick) { return in; }, record);
   }
+  out.fault = stand.fault();
 
   const double r = machine.drives[static_cast<std::size_t>(joint)].r;
   std::vector<double> y;

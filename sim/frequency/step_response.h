@@ -1,6 +1,8 @@
 /// What one axis does after a step: of its set point, of its velocity command, of a force.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "sim/frequency/axis_stand.h"
@@ -36,7 +38,8 @@ struct StepResponse {
   std::vector<double> time;          // s, from the step on
   std::vector<AxisSignals> signals;  // position counted from where the axis stood
   StepFigures figures;
-  double peak_current = 0.0;  // A
+  double peak_current = 0.0;         // A
+  std::optional<std::string> fault;  // why a run would have stopped: the values are wrong
 };
 
 /// The step comes at t = 0, at an instant of all loops; the axis has stood for long.

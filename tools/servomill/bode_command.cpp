@@ -70,7 +70,8 @@ std::string in_words(sim::BodeLoop loop, int joint, double si) {
   return sim::in_unit(si, linear ? "N" : "Nm");
 }
 
-sim::BodeSettings settings_of(const Options& options, sim::BodeLoop loop, int joint) {
+sim::BodeSettings settings_of(const Options& options, const sim::MachineSettings& machine,
+                              sim::BodeLoop loop, int joint) {
   sim::BodeSettings settings;
   settings.loop = loop;
   settings.from = positive_number(options, "from");
@@ -86,6 +87,14 @@ sim::BodeSettings settings_of(const Options& options, sim::BodeLoop loop, int jo
   settings.amplitude = positive_option(options, "amplitude", quantity_of(loop, joint));
   settings.velocity = quantity_option(
       options, "velocity", joint < kLinearJoints ? sim::kVelocity : sim::kAngularVelocity);
+  const double v_max = machine.nc.v_max[joint];
+  if (settings.velocity && v_max > 0.0 && std::abs(*settings.velocity) > v_max) {
+    throw InputError(
+        {"--velocity"},
+        fmt::format("'{}' must be no faster than axis {}, which reaches {}",
+                    options.get<std::string>("velocity"), machine.chain.layout.letter_of(joint),
+                    in_words(sim::BodeLoop::velocity, joint, v_max)));
+  }
   return settings;
 }
 
@@ -154,7 +163,7 @@ void print_margins(const sim::BodeResult& result) {
                  : "none");
 }
 
-void print_summary(const sim::BodeResult& result, int joint) {
+void print_summary(const sim::BodeResult& result, int joint, double i_max) {
   const sim::ClosedLoop& c = result.closed;
   fmt::print("\n{}: {}\n",
              result.loop == sim::BodeLoop::compliance ? "compliance, position loop"
@@ -178,6 +187,10 @@ void print_summary(const sim::BodeResult& result, int joint) {
           ? fmt::format(" at {}", in_words(sim::BodeLoop::velocity, joint, result.velocity))
           : "",
       result.crest_factor, result.peak_current, result.simulated_time);
+  if (result.current_limited) {
+    fmt::print("  the current limit of {:g} A was reached: measured values are not linear\n",
+               i_max);
+  }
 }
 
 void print_json(const sim::BodeResult& result, char axis) {
@@ -257,7 +270,7 @@ int bode_command(const Arguments& arguments) {
   }
   for (const int joint : joints) {
     for (const sim::BodeLoop loop : loops) {
-      check_range(settings_of(options, loop, joint), machine.nc.periods);
+      check_range(settings_of(options, machine, loop, joint), machine.nc.periods);
     }
   }
   std::optional<sim::BodeStore> store;
@@ -272,13 +285,17 @@ int bode_command(const Arguments& arguments) {
     if (!silent && !json) fmt::print("{}\n", axis_headline(machine, joint, delay));
     for (const sim::BodeLoop loop : loops) {
       const sim::BodeResult result =
-          sim::bode(machine, joint, delay, settings_of(options, loop, joint));
-      stable &= result.stable;
+          sim::bode(machine, joint, delay, settings_of(options, machine, loop, joint));
+      stable &= result.stable && !result.fault;
+      if (result.fault) {
+        fmt::print(stderr, "axis {}, {} loop: {}; nothing is measured\n", axis, name_of(loop),
+                   *result.fault);
+      }
       if (store) store->add(axis, result);
       if (json && !silent) print_json(result, axis);
       if (json || silent) continue;
       for (const sim::BodeCurve& curve : result.curves) print_curve(result, curve, joint);
-      print_summary(result, joint);
+      print_summary(result, joint, machine.nc.cascade[static_cast<std::size_t>(joint)].i_max);
     }
   }
   if (store) {

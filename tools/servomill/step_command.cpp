@@ -184,6 +184,11 @@ int step_command(const Arguments& arguments) {
       const auto ticks = static_cast<Tick>(settings.duration / machine.nc.periods.base);
       const sim::StepResponse response =
           sim::step_response(machine, joint, delay, settings, std::max<Tick>(1, ticks / kMostRows));
+      if (response.fault) {
+        fmt::print(stderr, "axis {}, {} step: {}\n", axis, name_of(kind), *response.fault);
+        stable = false;
+        continue;
+      }
       if (store) store->add(axis, settings, response);
       if (silent) continue;
       if (json) {

@@ -107,7 +107,8 @@ void print_table(const sim::Tuning& t, int joint) {
 }
 
 // The margins as the whole axis shows them in the simulation, one sinusoid at each crossover.
-void confirm(const sim::MachineSettings& machine, int joint, Tick delay, const sim::Assessment& a) {
+// Says why not and returns false if the simulation cannot be trusted.
+bool confirm(const sim::MachineSettings& machine, int joint, Tick delay, const sim::Assessment& a) {
   struct Loop {
     const char* name;
     sim::PositionLoop loop;
@@ -129,13 +130,23 @@ void confirm(const sim::MachineSettings& machine, int joint, Tick delay, const s
     how.velocity = sim::default_velocity(machine, joint, one.entry, how.amplitude);
     const auto measured =
         sim::measure(machine, joint, delay, one.loop, how, {one.margins.crossover});
+    if (measured.fault) {
+      fmt::print(stderr, "axis {}, {} loop: {}; nothing is measured\n",
+                 machine.chain.layout.letter_of(joint), one.name, *measured.fault);
+      return false;
+    }
     const sim::Complex L = sim::ratio(measured.points.front().response, one.output, one.input);
     fmt::print(
         "  measured in the simulation: {} loop at {:.4g} Hz has |L| = {:.3f} and a phase "
         "margin of {:.1f} deg\n",
         one.name, measured.points.front().f, std::abs(L),
         std::remainder(std::arg(L) / deg + 180.0, 360.0));
+    if (measured.current_limited) {
+      fmt::print("  the current limit of {:g} A was reached: measured values are not linear\n",
+                 machine.nc.cascade[static_cast<std::size_t>(joint)].i_max);
+    }
   }
+  return true;
 }
 
 void print_toml(char axis, const sim::Gains& gains) {
@@ -205,6 +216,7 @@ int tune_command(const Arguments& arguments) {
   const char ruling =
       machine.chain.layout.letter_of(joints[static_cast<std::size_t>(slowest - tunings.begin())]);
 
+  bool confirmed = true;
   for (std::size_t k = 0; k < joints.size(); ++k) {
     const int joint = joints[k];
     const char axis = machine.chain.layout.letter_of(joint);
@@ -250,7 +262,7 @@ int tune_command(const Arguments& arguments) {
     fmt::print("\n");
     print_table(t, joint);
     fmt::print("\n");
-    confirm(sim::with_gains(machine, joint, t.after.gains), joint, delay, t.after);
+    confirmed &= confirm(sim::with_gains(machine, joint, t.after.gains), joint, delay, t.after);
   }
   if (options.has("json")) return kDone;
   for (std::size_t k = 0; k < joints.size(); ++k) {
@@ -259,7 +271,7 @@ int tune_command(const Arguments& arguments) {
   if (joints.size() == 1) {
     fmt::print("\nInterpolating axes need equal Kv: --axis all finds the common one.\n");
   }
-  return kDone;
+  return confirmed ? kDone : kMachineStopped;
 }
 
 }  // namespace servomill::tools

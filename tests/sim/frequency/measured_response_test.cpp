@@ -8,6 +8,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/margins.h"
+#include "sim/frequency/step_response.h"
 #include "sim/scenario.h"
 #include "sim/stability.h"
 
@@ -133,6 +134,50 @@ TEST(MeasuredResponse, OfAnAxisWithFrictionIsTheLinearOneWhileItMoves) {
   EXPECT_LT(moving.dB, kMagnitudeTol);
   EXPECT_LT(moving.deg, kPhaseTol);
   EXPECT_GT(standing.dB, 10.0 * kMagnitudeTol);
+}
+
+// What a run refuses is not measured either.
+TEST(MeasuredResponse, SaysWhenTheStepDoesNotResolveTheFriction) {
+  constexpr int kX = 0;
+  MachineSettings machine = hsm600u();
+  machine.drives[kX].friction = {};
+  machine.drives[kX].friction.kind = plant::FrictionKind::set_valued;
+  machine.drives[kX].friction.Fs_positive = machine.drives[kX].friction.Fs_negative = 450.0;
+  machine.drives[kX].friction.vs = 1e-9;
+  Measurement how{.entry = Entry::set_point};
+  how.amplitude = default_amplitude(machine, kX, how.entry);  // reverses, so that it sticks
+  const auto measured = [&] {
+    return measure(machine, kX, 0, PositionLoop::closed, how, {5.0}).fault;
+  };
+  const auto stepped = [&] {
+    StepSettings step;
+    step.height = 1e-4;
+    step.duration = 0.05;
+    return step_response(machine, kX, 0, step).fault;
+  };
+  constexpr auto kWhy = "friction too stiff for the exact step; use integrator = \"cvode\"";
+  EXPECT_EQ(measured(), kWhy);
+  EXPECT_EQ(stepped(), kWhy);
+  machine.drives[kX].friction.vs = 1e-3;
+  EXPECT_EQ(measured(), std::nullopt);
+  EXPECT_EQ(stepped(), std::nullopt);
+}
+
+TEST(MeasuredResponse, SaysWhenTheCurrentIsLimited) {
+  constexpr int kY = 1;
+  MachineSettings machine = linearised(hsm600u());
+  const double most = machine.nc.cascade[kY].i_max = hsm600u().nc.cascade[kY].i_max;
+  const auto run = [&](double amplitude) {
+    const Measurement how{.entry = Entry::velocity_command, .amplitude = amplitude};
+    return measure(machine, kY, 0, PositionLoop::open, how, {300.0});
+  };
+  const double small = default_amplitude(machine, kY, Entry::velocity_command);
+  const MeasuredResponse calm = run(small);
+  EXPECT_FALSE(calm.current_limited);
+  // the drive lags, so that its current stays below the limit on which the command is
+  const MeasuredResponse loud = run(small / 0.02 * 1.5);
+  EXPECT_TRUE(loud.current_limited);
+  EXPECT_LT(loud.peak_current, most);
 }
 
 }  // namespace
