@@ -68,7 +68,7 @@ struct NcSettings {
   double rotary_tolerance = 1e-4;  // rad
   NominalFilter filter;
   std::array<GainPlaces, kJoints> gain_place;
-  bool check_stability = true;            // refuse gains with which the linear loop diverges
+  bool check_stability = true;  // refuse gains with which the linear loop diverges
 };
 
 /// What moves the drives between two instants.

@@ -229,8 +229,8 @@ TEST(Circle, KeepsRadiusFeedAndCentripetalAcceleration) {
   }
 }
 
-// Two half circles behave as the whole one: nothing is cut off at their joint, no speed is lost. With
-// a joint like any other they missed the circle by 5 um and slowed down.
+// Two half circles behave as the whole one: nothing is cut off at their joint, no speed is lost.
+// With a joint like any other they missed the circle by 5 um and slowed down.
 TEST(Circle, OfTwoArcsIsOneCircle) {
   constexpr double kRadiusTol = 10 * nm;
   const double R = 50 * mm, v = 8 * m_per_min;
