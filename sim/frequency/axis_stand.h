@@ -71,6 +71,9 @@ class AxisStand {
   /// Whether the current command is on its limit, that of the torque included.
   bool at_current_limit();
 
+  /// What the position encoder adds to the position at this moment (m, rad).
+  double scale_error() const { return axes_.scale_reading()[joint_] - axes_.Q_true()[joint_]; }
+
   int states() const { return states_; }
   void set_states(const Eigen::VectorXd& x);
   Eigen::VectorXd get_states();

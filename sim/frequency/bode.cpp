@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 
@@ -126,7 +127,9 @@ BodeResult bode(const MachineSettings& machine, int joint, Tick reading_delay,
     if (!out.measured) curve.f = wanted;
     for (const MeasuredPoint& point : points) {
       curve.f.push_back(point.f);
-      curve.measured.push_back(taken(of, point.response, r));
+      constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+      const bool known = !of.input || resolved(point, of.output, *of.input);
+      curve.measured.push_back(known ? taken(of, point.response, r) : Complex(kUnknown, kUnknown));
     }
     for (const double f : curve.f) curve.exact_at.push_back(at(f));
 

@@ -18,7 +18,8 @@ struct BodeCurve {
   std::string long_name;                    // "open position loop"
   Curve exact;                              // dimensionless, or m/N
   std::vector<double> f;                    // Hz, of the table
-  std::vector<Complex> exact_at, measured;  // at f; measured is empty if nothing was measured
+  std::vector<Complex> exact_at, measured;  // at f; measured is empty if nothing was measured, NaN
+                                            // where the encoders do not resolve it
 };
 
 /// One loop with what is read off its curves.

@@ -136,15 +136,37 @@ void measure_window(AxisStand& stand, PositionLoop loop, const Measurement& how,
     if (loop == PositionLoop::open) in.added.velocity += how.velocity;
     return in;
   };
-  std::vector<Fundamental> sums(excitation.lines());
+  std::vector<Fundamental> sums(excitation.lines()), added(excitation.lines());
+  const double Tv = stand.machine().nc.cascade[static_cast<std::size_t>(stand.joint())].Tv;
+  std::optional<double> last_speed;
+  double turned = 0.0;        // rad, true, since the last instant of the velocity loop
+  bool whole_period = false;  // it has been seen
+  const auto encoder_errors = [&](std::uint8_t due, const AxisSignals& y) {
+    AxisSignals errors{};
+    const double speed = y[index_of(AxisSignal::motor_speed)];
+    if (last_speed) turned += 0.5 * h * (*last_speed + speed);
+    last_speed = speed;
+    errors[index_of(AxisSignal::reading)] = errors[index_of(AxisSignal::position_error)] =
+        stand.scale_error();
+    if (!(due & kVelocityLoop)) return errors;
+    if (whole_period) {
+      errors[index_of(AxisSignal::measured_speed)] = errors[index_of(AxisSignal::speed_error)] =
+          y[index_of(AxisSignal::measured_speed)] - turned / Tv;
+    }
+    turned = 0.0;
+    whole_period = true;
+    return errors;
+  };
   const auto add = [&](Tick n, std::uint8_t due, AxisSignals y) {
     const double moved = how.position + how.velocity * h * static_cast<double>(n);
     y[index_of(AxisSignal::position)] -= moved;
     y[index_of(AxisSignal::reading)] -= moved;
     if (due & kVelocityLoop) out.current_limited = out.current_limited || stand.at_current_limit();
     out.peak_current = std::max(out.peak_current, std::abs(y[index_of(AxisSignal::current)]));
+    const AxisSignals errors = encoder_errors(due, y);
     for (std::size_t k = 0; k < sums.size(); ++k) {
       sums[k].add(due, y, std::conj(excitation.turn(k, n)));
+      added[k].add(due, errors, std::conj(excitation.turn(k, n)));
     }
   };
 
@@ -165,11 +187,20 @@ void measure_window(AxisStand& stand, PositionLoop loop, const Measurement& how,
     // of a real sinusoid half the amplitude turns forward
     for (std::size_t s = 0; s < kAxisSignals; ++s) {
       point.response[s] = 2.0 * sums[k].mean()[s] / excitation.amplitude(k);
+      point.added[s] = 2.0 * added[k].mean()[s] / excitation.amplitude(k);
     }
   }
 }
 
 }  // namespace
+
+bool resolved(const MeasuredPoint& point, AxisSignal output, AxisSignal input) {
+  const auto small = [&](AxisSignal signal) {
+    const std::size_t s = index_of(signal);
+    return std::abs(point.added[s]) <= kMostAdded * std::abs(point.response[s]);
+  };
+  return point.response[index_of(output)] != 0.0 && small(output) && small(input);
+}
 
 MeasuredResponse measure(const MachineSettings& machine, int joint, Tick reading_delay,
                          PositionLoop loop, const Measurement& how,

@@ -29,7 +29,15 @@ struct Measurement {
 struct MeasuredPoint {
   double f = 0.0;     // Hz
   Response response;  // for the amplitude 1
+  // what the encoders add to it: reading less position, measured speed less the mean of the true
+  // one over the velocity period; 0 for signals that no encoder reads
+  Response added = {};
 };
+
+/// Whether so little of output over input is added by the encoders that the ratio is a measurement:
+/// less than this share of either.
+inline constexpr double kMostAdded = 0.1;
+bool resolved(const MeasuredPoint& point, AxisSignal output, AxisSignal input);
 
 struct MeasuredResponse {
   std::vector<MeasuredPoint> points;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
@@ -27,12 +28,11 @@ std::vector<double> magnitudes(const std::vector<Complex>& y, double unit) {
 // Continuous along the frequency.
 std::vector<double> phases(const std::vector<Complex>& y) {
   std::vector<double> out;
+  double last = std::numeric_limits<double>::quiet_NaN();
   for (const Complex& one : y) {
     double phase = std::arg(one);
-    if (!out.empty()) {
-      const double last = out.back() * deg;
-      phase = last + std::remainder(phase - last, 2.0 * std::numbers::pi);
-    }
+    if (std::isfinite(last)) phase = last + std::remainder(phase - last, 2.0 * std::numbers::pi);
+    if (std::isfinite(phase)) last = phase;
     out.push_back(phase / deg);
   }
   return out;

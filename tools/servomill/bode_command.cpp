@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -102,6 +103,8 @@ double shown(sim::BodeLoop loop, double magnitude) {
   return loop == sim::BodeLoop::compliance ? magnitude / um : decibel(magnitude);
 }
 
+bool is_known(sim::Complex measured) { return std::isfinite(measured.real()); }
+
 // Without a sign where it rounds to zero.
 double rounded(double value, double unit) { return std::round(value / unit) * unit + 0.0; }
 
@@ -120,14 +123,17 @@ void print_curve(const sim::BodeResult& result, const sim::BodeCurve& curve, int
                          std::arg(y) / deg);
     };
     fmt::print("{:10.3f}  {}", curve.f[i], number(curve.exact_at[i]));
-    if (!curve.measured.empty() && curve.measured[i] == 0.0) {
-      fmt::print("  {:>12} {:>9}", "-", "-");  // below the measuring step of the encoder
+    if (!curve.measured.empty() && !is_known(curve.measured[i])) {
+      fmt::print("  {:>12} {:>9}", "-", "-");
     } else if (!curve.measured.empty()) {
       const sim::Complex q = curve.measured[i] / curve.exact_at[i];
       fmt::print("  {}  {:8.3f} {:8.2f}", number(curve.measured[i]),
                  rounded(decibel(std::abs(q)), 1e-3), rounded(std::arg(q) / deg, 1e-2));
     }
     fmt::print("\n");
+  }
+  if (!std::all_of(curve.measured.begin(), curve.measured.end(), is_known)) {
+    fmt::print("-: below what the encoders resolve; raise --amplitude\n");
   }
 }
 
@@ -204,7 +210,8 @@ void print_json(const sim::BodeResult& result, char axis) {
           "{{\"axis\": \"{}\", \"curve\": \"{}\", \"frequency_Hz\": {}, \"exact\": {}, "
           "\"measured\": {}}}\n",
           axis, curve.name, json_number(curve.f[i]), number(curve.exact_at[i]),
-          curve.measured.empty() ? "null" : number(curve.measured[i]));
+          curve.measured.empty() || !is_known(curve.measured[i]) ? "null"
+                                                                 : number(curve.measured[i]));
     }
   }
   const sim::Margins& m = result.margins;

@@ -180,5 +180,34 @@ TEST(MeasuredResponse, SaysWhenTheCurrentIsLimited) {
   EXPECT_LT(loud.peak_current, most);
 }
 
+// What counts as a measurement is one, to a little more than the share that the encoders may add to
+// output and input; high frequencies of C move less than a step of its encoder.
+TEST(MeasuredResponse, TellsWhatTheEncodersDoNotResolve) {
+  constexpr int kC = 4;
+  constexpr double kTol = 2.5 * kMostAdded;
+  const MachineSettings machine = hsm600u();
+  const std::vector<double> wanted = {30.0, 300.0, 1000.0, 2000.0};
+  const auto count = [&](const Of& of, double share) {
+    const auto input = static_cast<AxisSignal>(of.input);
+    const Measurement how{.entry = of.entry,
+                          .amplitude = share * default_amplitude(machine, kC, of.entry)};
+    FrequencyResponse exact(machine, kC, 0, of.loop);
+    int known = 0;
+    for (const MeasuredPoint& point : measure(machine, kC, 0, of.loop, how, wanted).points) {
+      if (!resolved(point, of.output, input)) continue;
+      ++known;
+      const Complex q = taken(of, point.response) / taken(of, exact.at(of.entry, point.f));
+      EXPECT_LT(std::abs(q - 1.0), kTol) << of.name << " at " << point.f;
+    }
+    return known;
+  };
+  for (const Of& of : {kAll[1], kAll[4]}) {
+    const int fewer = count(of, 0.02), few = count(of, 1.0);
+    EXPECT_LT(few, static_cast<int>(wanted.size())) << of.name;
+    EXPECT_GT(few, 0) << of.name;
+    EXPECT_LT(fewer, few) << of.name;
+  }
+}
+
 }  // namespace
 }  // namespace servomill::sim
