@@ -12,6 +12,7 @@ import unittest
 HERE = os.path.dirname(os.path.abspath(__file__))
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 SCENARIO = os.path.join(HERE, "gallery", "scenario.toml")
+MACHINE = os.path.join(HERE, "..", "..", "scenarios", "guevel2025", "experiment1.toml")
 LONG = ["--set", "program.feed_override=0.005"]  # minutes of motion, seconds of simulation a case
 PATIENCE = 60  # s, until something is on the disk; far more than it takes
 
@@ -135,6 +136,23 @@ class Ends(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"^case table stopped: axis [XYZ]: following error beyond 0\.5 mm at \d+\.\d{4} s\n$")
         self.assertTrue(os.path.exists(self.out))
+
+    def test_friction_that_the_step_does_not_resolve_is_no_response(self):
+        stiff = ('machine_override.axis.X.friction={model="set_valued", coulomb=0, breakaway=450, '
+                 'stribeck_velocity=1e-9}')
+        why = 'friction too stiff for the exact step; use integrator = "cvode"'
+        stepped = servomill("step", MACHINE, "--axis", "X", "--kind", "position", "--set", stiff)
+        self.assertEqual((stepped.returncode, stepped.stderr), (1, f"axis X, position step: {why}\n"))
+        measured = servomill("bode", MACHINE, "--axis", "X", "--points", "2", "--to", "20", "--velocity", "0 m/s",
+                             "--set", stiff)
+        self.assertEqual((measured.returncode, measured.stderr),
+                         (1, f"axis X, position loop: {why}; nothing is measured\n"))
+
+    def test_no_axis_is_measured_beyond_its_velocity(self):
+        result = servomill("bode", MACHINE, "--axis", "X", "--velocity", "1000 m/s")
+        self.assertEqual(result.returncode, 2)
+        self.assertRegex(result.stderr,
+                         r"^--velocity: error: '1000 m/s' must be no faster than axis X, which reaches [\d.]+ mm/s\n$")
 
 
 if __name__ == "__main__":
