@@ -187,12 +187,14 @@ void ServoAxes::run_velocity_loops() {
   }
 }
 
+double ServoAxes::motor_speed(int joint) const {
+  const plant::FeedDriveParams& drive = machine_.drives[lane(joint)];
+  return drive.is_rigid() ? state_.v[lane(joint)] / drive.r : state_.w[lane(joint)];
+}
+
 Joints ServoAxes::motor_speed() const {
   Joints w = Joints::Zero();
-  for (const int j : joints_) {
-    const plant::FeedDriveParams& drive = machine_.drives[lane(j)];
-    w[j] = drive.is_rigid() ? state_.v[lane(j)] / drive.r : state_.w[lane(j)];
-  }
+  for (const int j : joints_) w[j] = motor_speed(j);
   return w;
 }
 
@@ -229,7 +231,7 @@ std::optional<std::string> ServoAxes::supervise(int joint, const AxisSetPoint& s
   }
   const plant::Encoder& scale = machine_.scale[lane(joint)];
   const plant::Encoder& motor = machine_.motor[lane(joint)];
-  const double w = motor_speed()[joint];
+  const double w = motor_speed(joint);
   if (scale.too_fast(state_.v[lane(joint)]))
     return overspeed("scale", scale, state_.v[lane(joint)]);
   if (motor.too_fast(w)) return overspeed("motor encoder", motor, w);

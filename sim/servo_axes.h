@@ -117,6 +117,7 @@ class ServoAxes {
   };
 
   double motor_reading(int joint) const;
+  double motor_speed(int joint) const;
   double scale_reading(int joint) const;
   void take_reading(int joint, double displacement);
 
