@@ -1,0 +1,166 @@
+/// Arithmetic of eight lanes on one instruction set. Only kernels include this: sources that CMake
+/// compiles once for each instruction set (servomill_kernel), with SERVOMILL_ARCH as its name for
+/// xsimd and SERVOMILL_LEVEL as ours:
+///
+///   template <>
+///   DriveKernel make_drive_kernel<SERVOMILL_LEVEL>() { return {&advance<SERVOMILL_ARCH>}; }
+///
+/// A kernel must not leave inline functions behind that other sources share: compiled for a newer
+/// processor, the linker might give them to all. So no Eigen, no containers here; templates over
+/// the architecture, and what is in an anonymous namespace. tests/laws/simd_objects.py looks.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <xsimd/xsimd.hpp>
+
+#include "plant/vocabulary/lanes.h"
+#include "plant/vocabulary/simd.h"
+
+namespace servomill {
+
+/// Eight truths.
+template <class Arch>
+struct PackMask {
+  using Batch = xsimd::batch_bool<double, Arch>;
+  static constexpr std::size_t kRegisters = kLaneWidth / xsimd::batch<double, Arch>::size;
+  Batch r[kRegisters];
+
+  friend PackMask operator&(const PackMask& a, const PackMask& b) {
+    PackMask c;
+#pragma GCC unroll 4
+    for (std::size_t n = 0; n < kRegisters; ++n) c.r[n] = a.r[n] & b.r[n];
+    return c;
+  }
+  friend PackMask operator|(const PackMask& a, const PackMask& b) {
+    PackMask c;
+#pragma GCC unroll 4
+    for (std::size_t n = 0; n < kRegisters; ++n) c.r[n] = a.r[n] | b.r[n];
+    return c;
+  }
+  friend PackMask operator!(const PackMask& a) {
+    PackMask c;
+#pragma GCC unroll 4
+    for (std::size_t n = 0; n < kRegisters; ++n) c.r[n] = !a.r[n];
+    return c;
+  }
+  bool any() const {
+    bool result = false;
+#pragma GCC unroll 4
+    for (std::size_t n = 0; n < kRegisters; ++n) result |= xsimd::any(r[n]);
+    return result;
+  }
+  bool all() const { return !(!*this).any(); }
+};
+
+/// Eight doubles.
+template <class Arch>
+struct Pack {
+  using Batch = xsimd::batch<double, Arch>;
+  using Mask = PackMask<Arch>;
+  static constexpr std::size_t kRegisters = kLaneWidth / Batch::size;
+  Batch r[kRegisters];
+
+  Pack() = default;
+  Pack(double value) {  // NOLINT: a number stands for eight of it in formulas
+#pragma GCC unroll 4
+    for (std::size_t n = 0; n < kRegisters; ++n) r[n] = Batch(value);
+  }
+  explicit Pack(const LaneArray& from) {
+#pragma GCC unroll 4
+    for (std::size_t n = 0; n < kRegisters; ++n) {
+      r[n] = Batch::load_aligned(&from[0] + n * Batch::size);
+    }
+  }
+  void store(LaneArray& to) const {
+#pragma GCC unroll 4
+    for (std::size_t n = 0; n < kRegisters; ++n) r[n].store_aligned(&to[0] + n * Batch::size);
+  }
+
+  template <class F>
+  static Pack each(F f) {
+    Pack c;
+#pragma GCC unroll 4
+    for (std::size_t n = 0; n < kRegisters; ++n) c.r[n] = f(n);
+    return c;
+  }
+  template <class F>
+  static Mask test(F f) {
+    Mask c;
+#pragma GCC unroll 4
+    for (std::size_t n = 0; n < kRegisters; ++n) c.r[n] = f(n);
+    return c;
+  }
+
+  friend Pack operator+(const Pack& a, const Pack& b) {
+    return each([&](std::size_t n) { return a.r[n] + b.r[n]; });
+  }
+  friend Pack operator-(const Pack& a, const Pack& b) {
+    return each([&](std::size_t n) { return a.r[n] - b.r[n]; });
+  }
+  friend Pack operator*(const Pack& a, const Pack& b) {
+    return each([&](std::size_t n) { return a.r[n] * b.r[n]; });
+  }
+  friend Pack operator/(const Pack& a, const Pack& b) {
+    return each([&](std::size_t n) { return a.r[n] / b.r[n]; });
+  }
+  friend Pack operator-(const Pack& a) {
+    return each([&](std::size_t n) { return -a.r[n]; });
+  }
+  Pack& operator+=(const Pack& b) { return *this = *this + b; }
+  Pack& operator-=(const Pack& b) { return *this = *this - b; }
+  Pack& operator*=(const Pack& b) { return *this = *this * b; }
+
+  friend Mask operator<(const Pack& a, const Pack& b) {
+    return test([&](std::size_t n) { return a.r[n] < b.r[n]; });
+  }
+  friend Mask operator<=(const Pack& a, const Pack& b) {
+    return test([&](std::size_t n) { return a.r[n] <= b.r[n]; });
+  }
+  friend Mask operator>(const Pack& a, const Pack& b) { return b < a; }
+  friend Mask operator>=(const Pack& a, const Pack& b) { return b <= a; }
+  friend Mask operator==(const Pack& a, const Pack& b) {
+    return test([&](std::size_t n) { return a.r[n] == b.r[n]; });
+  }
+  friend Mask operator!=(const Pack& a, const Pack& b) {
+    return test([&](std::size_t n) { return a.r[n] != b.r[n]; });
+  }
+
+  /// a b + c, rounded once where the machine can.
+  friend Pack fma(const Pack& a, const Pack& b, const Pack& c) {
+    return each([&](std::size_t n) { return xsimd::fma(a.r[n], b.r[n], c.r[n]); });
+  }
+  friend Pack select(const Mask& mask, const Pack& yes, const Pack& no) {
+    return each([&](std::size_t n) { return xsimd::select(mask.r[n], yes.r[n], no.r[n]); });
+  }
+  friend Pack min(const Pack& a, const Pack& b) {
+    return each([&](std::size_t n) { return xsimd::min(a.r[n], b.r[n]); });
+  }
+  friend Pack max(const Pack& a, const Pack& b) {
+    return each([&](std::size_t n) { return xsimd::max(a.r[n], b.r[n]); });
+  }
+  friend Pack abs(const Pack& a) {
+    return each([&](std::size_t n) { return xsimd::abs(a.r[n]); });
+  }
+  friend Pack sqrt(const Pack& a) {
+    return each([&](std::size_t n) { return xsimd::sqrt(a.r[n]); });
+  }
+  friend Pack exp(const Pack& a) {
+    return each([&](std::size_t n) { return xsimd::exp(a.r[n]); });
+  }
+  friend Pack tanh(const Pack& a) {
+    return each([&](std::size_t n) { return xsimd::tanh(a.r[n]); });
+  }
+  /// The next whole number, ties to even.
+  friend Pack nearbyint(const Pack& a) {
+    return each([&](std::size_t n) { return xsimd::nearbyint(a.r[n]); });
+  }
+};
+
+/// The same words for one number, so that a formula is written once.
+inline double fma(double a, double b, double c) { return a * b + c; }
+inline double select(bool mask, double yes, double no) { return mask ? yes : no; }
+inline double min(double a, double b) { return b < a ? b : a; }
+inline double max(double a, double b) { return a < b ? b : a; }
+
+}  // namespace servomill
