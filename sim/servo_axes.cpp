@@ -9,10 +9,11 @@
 namespace servomill::sim {
 namespace {
 
-std::array<bool, kJoints> present(const std::vector<int>& joints) {
-  std::array<bool, kJoints> out{};
-  for (const int j : joints) out[static_cast<std::size_t>(j)] = true;
-  return out;
+std::vector<plant::FeedDriveParams> drives_of(const MachineSettings& machine,
+                                              const std::vector<int>& joints) {
+  std::vector<plant::FeedDriveParams> drives;
+  for (const int j : joints) drives.push_back(machine.drives[static_cast<std::size_t>(j)]);
+  return drives;
 }
 
 std::string_view name_of(controllers::AxisFaultKind fault) {
@@ -54,36 +55,42 @@ ServoAxes::ServoAxes(const MachineSettings& machine, std::vector<int> joints,
                      const std::vector<Instant>& schedule)
     : machine_(machine),
       joints_(std::move(joints)),
-      drives_(machine.drives, present(joints_), machine.nc.periods.base,
-              machine.integrator == Integrator::exact ? steps_of(schedule) : std::vector<Tick>()) {
+      drives_(drives_of(machine, joints_), machine.nc.periods.base,
+              machine.integrator == Integrator::exact ? steps_of(schedule) : std::vector<Tick>()),
+      state_(joints_.size()),
+      input_(joints_.size()) {
+  for (std::size_t n = 0; n < joints_.size(); ++n) drive_lane_[lane(joints_[n])] = n;
   if (machine.integrator == Integrator::cvode) {
-    cvode_.emplace(machine.drives, present(joints_), machine.nc.periods.base);
+    cvode_.emplace(drives_of(machine, joints_), machine.nc.periods.base);
   }
 }
 
 void ServoAxes::settle(const Joints& Q, const Eigen::Vector3d& displacement) {
-  state_ = drives_.at_rest(Q);
+  std::vector<double> x;
+  for (const int j : joints_) x.push_back(Q[j]);
+  state_ = drives_.at_rest(x);
   for (const int j : joints_) {
-    const plant::FeedDriveParams& drive = machine_.drives[lane(j)];
+    const plant::FeedDriveParams& params = machine_.drives[lane(j)];
     const AxisFunctions& functions = machine_.nc.functions[lane(j)];
     const controllers::CascadeParams& cascade = machine_.nc.cascade[lane(j)];
-    const double i = state_.i[lane(j)];
-    const auto current = drive.has_winding()
-                             ? controllers::standing_at(functions.current_loop, i, drive.R * i)
+    const double i = drive().i[drive_lane(j)];
+    const auto current = params.has_winding()
+                             ? controllers::standing_at(functions.current_loop, i, params.R * i)
                              : controllers::StandingCurrent{i, {}};
-    state_.x[lane(j)] -= controllers::standing_error(cascade, current.i_cmd);
+    drive().x[drive_lane(j)] -= controllers::standing_error(cascade, current.i_cmd);
     const double phi = motor_reading(j);
     const double d = j < kLinearJoints ? displacement[j] : 0.0;
     Loop& loop = loops_[lane(j)];
     loop = {};
     loop.cascade = controllers::standing_at(cascade, phi, current.i_cmd);
     loop.current = current.state;
-    input_.command[lane(j)] = drive.has_winding() ? loop.current.u : i;
-    loop.feedback = controllers::standing_at(functions.position_feedback, drive.r * phi,
-                                             machine_.scale[lane(j)].read(state_.x[lane(j)]) + d);
+    input_.blocks.front().command[drive_lane(j)] = params.has_winding() ? loop.current.u : i;
+    loop.feedback =
+        controllers::standing_at(functions.position_feedback, params.r * phi,
+                                 machine_.scale[lane(j)].read(drive().x[drive_lane(j)]) + d);
     if (const auto& marks = machine_.marks[lane(j)]) {
       loop.marks.emplace(plant::ReferenceMarks(marks->params), marks->allowed);
-      loop.marks->start(state_.x[lane(j)], state_.x[lane(j)] + d);
+      loop.marks->start(drive().x[drive_lane(j)], drive().x[drive_lane(j)] + d);
     }
     take_reading(j, d);
     loop.backlash = controllers::standing_at(functions.backlash, Q_read_[j]);
@@ -94,16 +101,17 @@ void ServoAxes::settle(const Joints& Q, const Eigen::Vector3d& displacement) {
 
 double ServoAxes::motor_reading(int joint) const {
   const plant::ScrewError& screw = machine_.screw[lane(joint)];
-  const double phi = screw.is_zero()
-                         ? drives_.motor_angle(state_, lane(joint))
-                         : plant::motor_angle(screw, machine_.drives[lane(joint)].r,
-                                              state_.delta[lane(joint)] + state_.x[lane(joint)],
-                                              machine_.nc.periods.seconds(now_));
+  const double phi =
+      screw.is_zero()
+          ? drives_.motor_angle(state_, drive_lane(joint))
+          : plant::motor_angle(screw, machine_.drives[lane(joint)].r,
+                               drive().delta[drive_lane(joint)] + drive().x[drive_lane(joint)],
+                               machine_.nc.periods.seconds(now_));
   return machine_.motor[lane(joint)].read(phi, now_);
 }
 
 double ServoAxes::scale_reading(int joint) const {
-  return machine_.scale[lane(joint)].read(state_.x[lane(joint)], now_);
+  return machine_.scale[lane(joint)].read(drive().x[drive_lane(joint)], now_);
 }
 
 Joints ServoAxes::scale_reading() const {
@@ -117,7 +125,7 @@ void ServoAxes::take_reading(int joint, double displacement) {
   loop.y_scale = scale_reading(joint) + displacement + injected_[lane(joint)].reading;
   loop.y_motor = machine_.drives[lane(joint)].r * motor_reading(joint);
   if (loop.marks && !loop.mark_fault) {
-    const double x = state_.x[lane(joint)];
+    const double x = drive().x[drive_lane(joint)];
     loop.mark_fault = loop.marks->advance(x, x + displacement);
   }
   Q_read_[joint] =
@@ -159,10 +167,10 @@ void ServoAxes::run_current_loops() {
     const double i_cmd = loop.cascade.i_cmd + injected_[lane(j)].current;
     if (machine_.drives[lane(j)].has_winding()) {
       controllers::current_loop(machine_.nc.functions[lane(j)].current_loop, loop.current, i_cmd,
-                                state_.i[lane(j)]);
-      input_.command[lane(j)] = loop.current.u;
+                                drive().i[drive_lane(j)]);
+      input_.blocks.front().command[drive_lane(j)] = loop.current.u;
     } else {
-      input_.command[lane(j)] = i_cmd;
+      input_.blocks.front().command[drive_lane(j)] = i_cmd;
     }
   }
 }
@@ -188,8 +196,8 @@ void ServoAxes::run_velocity_loops() {
 }
 
 double ServoAxes::motor_speed(int joint) const {
-  const plant::FeedDriveParams& drive = machine_.drives[lane(joint)];
-  return drive.is_rigid() ? state_.v[lane(joint)] / drive.r : state_.w[lane(joint)];
+  const plant::FeedDriveParams& params = machine_.drives[lane(joint)];
+  return params.is_rigid() ? drive().v[drive_lane(joint)] / params.r : drive().w[drive_lane(joint)];
 }
 
 Joints ServoAxes::motor_speed() const {
@@ -200,7 +208,7 @@ Joints ServoAxes::motor_speed() const {
 
 void ServoAxes::inject(int joint, const Injection& injection) {
   injected_[lane(joint)] = injection;
-  input_.F[lane(joint)] = -injection.force;
+  input_.blocks.front().F[drive_lane(joint)] = -injection.force;
 }
 
 std::optional<std::string> ServoAxes::supervise(int joint, const AxisSetPoint& set) {
@@ -226,14 +234,14 @@ std::optional<std::string> ServoAxes::supervise(int joint, const AxisSetPoint& s
         "{}",
         mark.counted, mark.expected, mark.from / unit, mark.to / unit, unit_name);
   }
-  if (plant::DriveBank::unresolved(state_, lane(joint)) > 0) {
+  if (plant::DriveBank::unresolved(state_, drive_lane(joint)) > 0) {
     return "friction too stiff for the exact step; use integrator = \"cvode\"";
   }
   const plant::Encoder& scale = machine_.scale[lane(joint)];
   const plant::Encoder& motor = machine_.motor[lane(joint)];
   const double w = motor_speed(joint);
-  if (scale.too_fast(state_.v[lane(joint)]))
-    return overspeed("scale", scale, state_.v[lane(joint)]);
+  if (scale.too_fast(drive().v[drive_lane(joint)]))
+    return overspeed("scale", scale, drive().v[drive_lane(joint)]);
   if (motor.too_fast(w)) return overspeed("motor encoder", motor, w);
   return std::nullopt;
 }

@@ -75,9 +75,9 @@ class ServoAxes {
   Joints scale_reading() const;
   /// What the position loops read last.
   const Joints& Q_read() const { return Q_read_; }
-  Joints Q_true() const { return lanes(state_.x); }
-  Joints dQ_true() const { return lanes(state_.v); }
-  Joints current() const { return lanes(state_.i); }
+  Joints Q_true() const { return joints_of(drive().x); }
+  Joints dQ_true() const { return joints_of(drive().v); }
+  Joints current() const { return joints_of(drive().i); }
   const std::vector<int>& joints() const { return joints_; }
 
   /// Why the NC stops the machine for this joint in this position period, as it would say it
@@ -99,8 +99,14 @@ class ServoAxes {
 
  private:
   static std::size_t lane(int joint) { return static_cast<std::size_t>(joint); }
-  static Joints lanes(const plant::DriveState::Lanes& values) {
-    return Eigen::Map<const Joints>(values.data());
+  // The drives of all joints that take part lie in one block.
+  plant::DriveBlock& drive() { return state_.blocks.front(); }
+  const plant::DriveBlock& drive() const { return state_.blocks.front(); }
+  std::size_t drive_lane(int joint) const { return drive_lane_[lane(joint)]; }
+  Joints joints_of(const LaneArray& values) const {
+    Joints Q = Joints::Zero();
+    for (const int j : joints_) Q[j] = values[drive_lane(j)];
+    return Q;
   }
   // State of the NC's functions of one axis.
   struct Loop {
@@ -123,6 +129,7 @@ class ServoAxes {
 
   const MachineSettings& machine_;
   std::vector<int> joints_;
+  std::array<std::size_t, kJoints> drive_lane_{};
   plant::DriveBank drives_;
   std::optional<plant::CvodeBank> cvode_;  // moves the drives instead, if asked for
   plant::DriveState state_;
@@ -137,26 +144,26 @@ class ServoAxes {
 template <class Visit>
 void ServoAxes::each_state(int joint, Visit visit) {
   const std::size_t j = lane(joint);
-  const plant::FeedDriveParams& drive = machine_.drives[j];
+  const plant::FeedDriveParams& params = machine_.drives[j];
   const controllers::CascadeParams& cascade = machine_.nc.cascade[j];
   const AxisFunctions& functions = machine_.nc.functions[j];
   Loop& loop = loops_[j];
   // the drive
-  if (drive.has_winding() || drive.T_i > 0.0) visit(state_.i[j]);
-  if (!drive.is_rigid()) {
-    visit(state_.w[j]);
-    visit(state_.delta[j]);
+  if (params.has_winding() || params.T_i > 0.0) visit(drive().i[drive_lane(joint)]);
+  if (!params.is_rigid()) {
+    visit(drive().w[drive_lane(joint)]);
+    visit(drive().delta[drive_lane(joint)]);
   }
-  visit(state_.v[j]);
-  visit(state_.x[j]);
-  visit(input_.command[j]);
+  visit(drive().v[drive_lane(joint)]);
+  visit(drive().x[drive_lane(joint)]);
+  visit(input_.blocks.front().command[drive_lane(joint)]);
   // the loops
   visit(loop.cascade.v_cmd);
   if (cascade.Ki > 0.0) visit(loop.cascade.integral);
   visit(loop.cascade.phi);
   visit(loop.cascade.i_next);
   for (std::size_t n = 0; n < 2 * cascade.filters.count; ++n) visit(loop.cascade.filters.z[n]);
-  if (drive.has_winding() && functions.current_loop.Ki > 0.0) visit(loop.current.integral);
+  if (params.has_winding() && functions.current_loop.Ki > 0.0) visit(loop.current.integral);
   if (functions.position_feedback.kind == controllers::PositionFeedback::crossover) {
     visit(loop.feedback.difference);
   }

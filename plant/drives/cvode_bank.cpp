@@ -1,22 +1,25 @@
 #include "plant/drives/cvode_bank.h"
 
+#include <cassert>
+
 namespace servomill::plant {
 
-CvodeBank::CvodeBank(const std::array<FeedDriveParams, kJoints>& params,
-                     const std::array<bool, kJoints>& present, double base_period)
+CvodeBank::CvodeBank(std::span<const FeedDriveParams> lanes, double base_period)
     : base_period_(base_period) {
-  for (std::size_t j = 0; j < kJoints; ++j) {
-    if (present[j]) drives_[j].emplace(params[j]);
-  }
+  drives_.reserve(lanes.size());
+  for (const FeedDriveParams& params : lanes) drives_.emplace_back(params);
 }
 
 void CvodeBank::advance(DriveState& state, const DriveInput& input, Tick step) {
-  for (std::size_t j = 0; j < kJoints; ++j) {
-    if (!drives_[j]) continue;
-    LaneState lane = state.lane(j);
-    drives_[j]->advance(lane, input.command[j], input.F[j],
-                        static_cast<double>(step) * base_period_);
-    state.set_lane(j, lane);
+  assert(input.blocks.size() == blocks_of(drives_.size()));
+  const double duration = static_cast<double>(step) * base_period_;
+  for (std::size_t l = 0; l < drives_.size(); ++l) {
+    const DriveInputBlock& in = input.blocks[l / kLaneWidth];
+    const std::size_t j = l % kLaneWidth;
+    if (!in.active[j]) continue;
+    LaneState lane = state.lane(l);
+    drives_[l].advance(lane, in.command[j], in.F[j], duration);
+    state.set_lane(l, lane);
   }
 }
 

@@ -1,142 +1,91 @@
 #include "plant/drives/drive_bank.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
-#include <cmath>
-#include <unsupported/Eigen/MatrixFunctions>
-#include <utility>
 
 namespace servomill::plant {
-namespace {
 
-enum Row : int { kCurrent = 0, kVelocity = 3, kCommand = 5 };
-
-using Matrix7l = Eigen::Matrix<long double, 7, 7>;
-
-// [A B; 0 0] h -> exp: the first rows hold exp(A h) and the integral that multiplies the input.
-// Computed in variables of equal size (all m/s or m/s^2) and in long double: in SI the entries span
-// eight decades, and a slide at rest under load would creep by what the exponential loses.
-Eigen::Matrix<double, 5, 7> hold_matrix(const FeedDriveParams& p, double h) {
-  const double stiffness = p.is_rigid() ? 0.0 : p.k;
-  const double omega = std::sqrt(stiffness / p.M) + 1.0;
-  Eigen::Matrix<double, 7, 1> scale;
-  scale << 1.0, 1.0 / p.r, 1.0 / omega, 1.0, 1.0 / omega, 1.0, p.M;
-  Matrix7l generator = Matrix7l::Zero();
-  generator.topRows<5>() = drive_equations(p).cast<long double>() * static_cast<long double>(h);
-  const Eigen::Matrix<long double, 7, 1> S = scale.cast<long double>();
-  const Matrix7l scaled = S.cwiseInverse().asDiagonal() * generator * S.asDiagonal();
-  Matrix7l E = S.asDiagonal() * Matrix7l(scaled.exp()) * S.cwiseInverse().asDiagonal();
-  if (p.current_is_command()) {
-    E.row(kCurrent).setZero();
-    E(kCurrent, kCommand) = 1.0L;
+DriveBank::DriveBank(std::span<const FeedDriveParams> lanes, double base_period,
+                     std::span<const Tick> steps, PreparedDrives* kept)
+    : kernel_(at_simd_level(simd_level(),
+                            []<SimdLevel level>() { return make_drive_kernel<level>(); })) {
+  std::vector<Tick> distinct(steps.begin(), steps.end());
+  std::sort(distinct.begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  assert(distinct.empty() || distinct.front() > 0);
+  for (const Tick& step : distinct) {
+    index_of_step_.resize(static_cast<std::size_t>(step) + 1, -1);
+    index_of_step_.back() = static_cast<int>(&step - distinct.data());
   }
-  return E.topRows<5>().cast<double>();
+  PreparedDrives own(lanes.size());
+  for (const FeedDriveParams& params : lanes) {
+    drives_.push_back((kept != nullptr ? *kept : own).get(params, base_period, distinct));
+    inverse_r_.push_back(1.0 / params.r);
+  }
+  constants_.resize(blocks_of(lanes.size()));
+  holds_.resize(distinct.size() * constants_.size());
+  for (std::size_t block = 0; block < constants_.size(); ++block) prepare_block(block);
 }
 
-}  // namespace
-
-DriveBank::DriveBank(const std::array<FeedDriveParams, kJoints>& params,
-                     const std::array<bool, kJoints>& present, double base_period,
-                     std::span<const Tick> steps)
-    : params_(params), present_(present) {
-  for (std::size_t j = 0; j < kJoints; ++j) {
-    if (!present_[j]) continue;
-    inverse_r_[j] = 1.0 / params_[j].r;
-    F_load_[j] = params_[j].F_load;
-  }
-  Tick longest = 1;
-  for (const Tick step : steps) {
-    assert(step > 0);
-    longest = std::max(longest, step);
-    const auto index = static_cast<std::size_t>(step);
-    if (index >= matrix_of_step_.size()) matrix_of_step_.resize(index + 1, -1);
-    if (matrix_of_step_[index] >= 0) continue;
-    matrix_of_step_[index] = static_cast<int>(matrices_.size());
-    StepMatrix& matrix = matrices_.emplace_back();
-    for (std::size_t j = 0; j < kJoints; ++j) {
-      if (!present_[j]) continue;
-      const double h = static_cast<double>(step) * base_period;
-      const auto E = hold_matrix(params_[j], h);
-      for (std::size_t row = 0; row < kStates; ++row) {
-        for (std::size_t col = 0; col < kColumns; ++col) {
-          matrix.coefficient[row * kColumns + col][j] =
-              E(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(col));
-        }
+void DriveBank::prepare_block(std::size_t block) {
+  DriveConstants& c = constants_[block];
+  c.glide_speed.fill(-1.0);  // linear, as are the lanes that fill the last block: all zero
+  const std::size_t first = block * kLaneWidth;
+  for (std::size_t j = 0; j < std::min(kLaneWidth, lanes() - first); ++j) {
+    const PreparedDrive& drive = *drives_[first + j];
+    c.F_load[j] = drive.params.F_load;
+    if (drive.exact) {
+      const Gliding& gliding = drive.exact->gliding();
+      c.glide_speed[j] = gliding.speed;
+      c.Fc_positive[j] = gliding.Fc_positive;
+      c.Fc_negative[j] = gliding.Fc_negative;
+      c.sigma0[j] = gliding.sigma0;
+      c.has_bristles |= gliding.sigma0 != 0.0;
+      if (drive.params.friction.kind == FrictionKind::set_valued) {
+        c.has_slide_mode |= static_cast<LaneBits>(1U << j);
       }
-      if (params_[j].is_linear()) continue;
-      const auto middle = hold_matrix(params_[j], 0.5 * h);
-      for (std::size_t col = 0; col < kColumns; ++col) {
-        matrix.middle[col][j] = middle(kVelocity, static_cast<Eigen::Index>(col));
+    }
+    for (std::size_t step = 0; step < drive.steps.size(); ++step) {
+      HoldBlock& hold = holds_[step * constants_.size() + block];
+      const PreparedDrive::Hold& from = drive.hold[step];
+      // without the position, which nothing depends on and which is counted from where it was
+      constexpr Eigen::Index kColumn[] = {0, 1, 2, 3, 5, 6};
+      for (std::size_t column = 0; column < HoldBlock::kColumns; ++column) {
+        for (std::size_t row = 0; row < HoldBlock::kRows; ++row) {
+          hold.end[row * HoldBlock::kColumns + column][j] =
+              from.end(static_cast<Eigen::Index>(row), kColumn[column]);
+        }
+        hold.middle[column][j] = from.middle(kColumn[column]);
       }
     }
   }
-  for (std::size_t j = 0; j < kJoints; ++j) {
-    if (steps.empty() || !present_[j] || params_[j].is_linear()) continue;
-    ExactStep exact(params_[j], base_period, longest);
-    nonlinear_.push_back({j, exact.gliding(), std::move(exact)});
-  }
-}
-
-DriveState::Lanes DriveBank::product(const DriveState::Lanes* row, const Columns& in) {
-  DriveState::Lanes sum{};
-  for (std::size_t col = 0; col < kColumns; ++col) {
-    const DriveState::Lanes& a = row[col];
-    const DriveState::Lanes& u = *in[col];
-    for (std::size_t j = 0; j < kJoints; ++j) sum[j] += a[j] * u[j];
-  }
-  return sum;
 }
 
 void DriveBank::advance(DriveState& s, const DriveInput& input, Tick step) const {
-  assert(static_cast<std::size_t>(step) < matrix_of_step_.size());
-  const int index = matrix_of_step_[static_cast<std::size_t>(step)];
+  assert(static_cast<std::size_t>(step) < index_of_step_.size());
+  assert(s.blocks.size() == constants_.size() && input.blocks.size() == constants_.size());
+  const int index = index_of_step_[static_cast<std::size_t>(step)];
   assert(index >= 0);
-  const StepMatrix& matrix = matrices_[static_cast<std::size_t>(index)];
-  DriveState::Lanes force;
-  for (std::size_t j = 0; j < kJoints; ++j) force[j] = input.F[j] + F_load_[j];
-  std::array<bool, kJoints> glides{};
-  for (const auto& [j, gliding, exact] : nonlinear_) {
-    glides[j] = gliding.holds(s.v[j], s.z[j]);
-    if (glides[j]) force[j] += gliding.force(s.v[j]);
-  }
-
-  const Columns in = {&s.i, &s.w, &s.delta, &s.v, &s.x, &input.command, &force};
-  std::array<DriveState::Lanes, kStates> out;
-  for (std::size_t row = 0; row < kStates; ++row) {
-    out[row] = product(&matrix.coefficient[row * kColumns], in);
-  }
-  if (!nonlinear_.empty()) {
-    // A joint that left its zone of constant friction, or never was in it, is moved by itself.
-    const DriveState::Lanes middle = product(matrix.middle.data(), in);
-    for (const auto& [j, gliding, exact] : nonlinear_) {
-      const double direction = s.v[j] > 0.0 ? 1.0 : -1.0;
-      const double slowest = std::min(direction * middle[j], direction * out[kVelocity][j]);
-      if (glides[j] && slowest > gliding.speed) {
-        s.slide[j] = s.v[j] > 0.0 ? SlideMode::positive : SlideMode::negative;
-        continue;
-      }
-      LaneState lane = s.lane(j);
-      exact.advance(lane, input.command[j], input.F[j], step);
-      out[0][j] = lane.i;
-      out[1][j] = lane.w;
-      out[2][j] = lane.delta;
-      out[3][j] = lane.v;
-      out[4][j] = lane.x;
-      s.set_lane(j, lane);
+  for (std::size_t block = 0; block < constants_.size(); ++block) {
+    const DriveInputBlock& in = input.blocks[block];
+    LaneBits others = kernel_.advance(
+        s.blocks[block], in, hold(static_cast<std::size_t>(index), block), constants_[block]);
+    while (others != 0) {
+      const auto j = static_cast<std::size_t>(std::countr_zero(others));
+      others &= static_cast<LaneBits>(others - 1U);
+      const std::size_t l = block * kLaneWidth + j;
+      LaneState lane = s.lane(l);
+      drives_[l]->exact->advance(lane, in.command[j], in.F[j], step);
+      s.set_lane(l, lane);
     }
   }
-  s.i = out[0];
-  s.w = out[1];
-  s.delta = out[2];
-  s.v = out[3];
-  s.x = out[4];
 }
 
-DriveState DriveBank::at_rest(const Joints& Q) const {
-  DriveState s;
-  for (std::size_t j = 0; j < kJoints; ++j) {
-    if (present_[j]) s.set_lane(j, plant::at_rest(params_[j], Q[static_cast<Eigen::Index>(j)]));
-  }
+DriveState DriveBank::at_rest(std::span<const double> x) const {
+  assert(x.size() == lanes());
+  DriveState s(lanes());
+  for (std::size_t l = 0; l < lanes(); ++l) s.set_lane(l, plant::at_rest(drives_[l]->params, x[l]));
   return s;
 }
 

@@ -1,72 +1,67 @@
-/// All drives of a machine, moved between instants of the base clock.
+/// Drives in lanes, moved between instants of the base clock.
 #pragma once
 
-#include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "plant/drives/exact_step.h"
-#include "plant/drives/feed_drive.h"
+#include "plant/drives/drive_kernel.h"
+#include "plant/drives/prepared_drives.h"
 #include "plant/vocabulary/ticks.h"
 
 namespace servomill::plant {
 
-/// Exact propagator of all drives of a machine between instants of the base clock:
+/// Exact propagator of drives between instants of the base clock:
 ///   x(t + h) = exp(A h) x(t) + int_0^h exp(A s) ds B u.
-/// Matrices are prepared once for every step length that the schedule contains. A joint that is not
-/// linear takes part with its friction as a constant force while it glides (struct Gliding);
-/// else it is moved by its ExactStep.
+/// Matrices are prepared once for every step length that the schedule contains and every drive that
+/// differs from the others. A drive that is not linear takes part with its friction as a constant
+/// force while it glides (struct Gliding); else it is moved by its ExactStep.
+///
+/// Lane l lives in blocks[l / 8] at l % 8. What a lane computes depends on its own numbers only,
+/// bit for bit: not on its place, its neighbours, how many they are or whether they are active.
 class DriveBank {
  public:
-  /// @param params       one entry per joint; joints that the machine lacks stay at zero
-  /// @param present      which joints there are
+  /// @param lanes        one entry per lane
   /// @param base_period  s
   /// @param steps        step lengths that `advance` will be asked for, in ticks; none: it will not
   ///                     be called, nor anything prepared for it
-  DriveBank(const std::array<FeedDriveParams, kJoints>& params,
-            const std::array<bool, kJoints>& present, double base_period,
-            std::span<const Tick> steps);
+  /// @param kept         drives prepared earlier, and where those prepared now are kept
+  DriveBank(std::span<const FeedDriveParams> lanes, double base_period, std::span<const Tick> steps,
+            PreparedDrives* kept = nullptr);
 
-  /// Moves the state by `step` ticks. @pre step is one of those given at construction
+  std::size_t lanes() const { return drives_.size(); }
+
+  /// Moves the active lanes by `step` ticks. @pre step is one of those given at construction; state
+  /// and input have the blocks of lanes()
   void advance(DriveState& state, const DriveInput& input, Tick step) const;
 
-  /// Motor angle (rad) of a joint: (delta + x) / r.
-  double motor_angle(const DriveState& state, std::size_t joint) const {
-    return (state.delta[joint] + state.x[joint]) * inverse_r_[joint];
+  /// Motor angle (rad) of a lane: (delta + x) / r.
+  double motor_angle(const DriveState& state, std::size_t lane) const {
+    const DriveBlock& block = state.blocks[lane / kLaneWidth];
+    return (block.delta[lane % kLaneWidth] + block.x[lane % kLaneWidth]) * inverse_r_[lane];
   }
 
-  /// At rest at x = Q, holding the constant load.
-  DriveState at_rest(const Joints& Q) const;
+  /// At rest at x (m or rad, one per lane), holding the constant loads.
+  DriveState at_rest(std::span<const double> x) const;
 
-  /// Sub-steps of a joint that missed their tolerance since the state began: more than 0 means that
+  /// Sub-steps of a lane that missed their tolerance since the state began: more than 0 means that
   /// its result is not to be trusted.
-  static std::uint32_t unresolved(const DriveState& state, std::size_t joint) {
-    return state.control[joint].unresolved;
+  static std::uint32_t unresolved(const DriveState& state, std::size_t lane) {
+    return state.blocks[lane / kLaneWidth].control[lane % kLaneWidth].unresolved;
   }
 
  private:
-  static constexpr std::size_t kStates = 5;
-  static constexpr std::size_t kColumns = kStates + 2;  // states, command, F
-  struct StepMatrix {
-    std::array<DriveState::Lanes, kStates * kColumns> coefficient{};
-    std::array<DriveState::Lanes, kColumns> middle{};  // v at half the step
-  };
-  struct Nonlinear {
-    std::size_t joint;
-    Gliding gliding;
-    ExactStep exact;
-  };
-  using Columns = std::array<const DriveState::Lanes*, kColumns>;
+  const HoldBlock& hold(std::size_t step, std::size_t block) const {
+    return holds_[step * constants_.size() + block];
+  }
+  void prepare_block(std::size_t block);
 
-  static DriveState::Lanes product(const DriveState::Lanes* row, const Columns& in);
-
-  std::array<FeedDriveParams, kJoints> params_;
-  std::array<bool, kJoints> present_;
-  DriveState::Lanes inverse_r_{};
-  DriveState::Lanes F_load_{};
-  std::vector<int> matrix_of_step_;  // -1: not prepared
-  std::vector<StepMatrix> matrices_;
-  std::vector<Nonlinear> nonlinear_;
+  std::vector<std::shared_ptr<const PreparedDrive>> drives_;  // of each lane
+  std::vector<double> inverse_r_;                             // 1/m, of each lane
+  std::vector<int> index_of_step_;                            // -1: not prepared
+  std::vector<HoldBlock> holds_;                              // step after step, block after block
+  std::vector<DriveConstants> constants_;                     // of each block
+  DriveKernel kernel_;
 };
 
 }  // namespace servomill::plant

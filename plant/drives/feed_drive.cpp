@@ -38,18 +38,6 @@ Eigen::Matrix<double, 5, 7> rigid_equations(const FeedDriveParams& p) {
 
 }  // namespace
 
-void DriveState::set_lane(std::size_t j, const LaneState& s) {
-  i[j] = s.i;
-  w[j] = s.w;
-  delta[j] = s.delta;
-  v[j] = s.v;
-  x[j] = s.x;
-  z[j] = s.z;
-  slide[j] = s.slide;
-  contact[j] = s.contact;
-  control[j] = s.control;
-}
-
 Eigen::Matrix<double, 5, 7> drive_equations(const FeedDriveParams& p, bool sticking, bool gap) {
   Eigen::Matrix<double, 5, 7> A = p.is_rigid() ? rigid_equations(p) : two_mass_equations(p, gap);
   A(kPosition, kVelocity) = 1.0;

@@ -3,13 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "plant/drives/drive_state.h"
 #include "plant/drives/friction.h"
-#include "plant/vocabulary/axes.h"
 
 namespace servomill::plant {
 
@@ -24,6 +23,7 @@ struct Cogging {
   double T = 0.0;      // N m
   double n = 0.0;      // periods per radian of the motor angle
   double phase = 0.0;  // rad
+  bool operator==(const Cogging&) const = default;
 };
 
 /// Constant description of one feed drive. For a rotary axis read rad for m, N m for N, kg m^2 for
@@ -55,6 +55,7 @@ struct FeedDriveParams {
   FrictionParams friction;
   Cogging cogging;  // of a direct drive
 
+  bool operator==(const FeedDriveParams&) const = default;
   bool has_winding() const { return L > 0.0; }
   /// Whether the current is the command itself, without lag or winding.
   bool current_is_command() const { return !has_winding() && T_i <= 0.0; }
@@ -67,53 +68,6 @@ struct FeedDriveParams {
   bool is_linear() const {
     return friction.kind == FrictionKind::none && gap == 0.0 && cogging.T == 0.0;
   }
-};
-
-/// How a slide with set-valued friction moves.
-enum class SlideMode : std::uint8_t { sticking, positive, negative };
-/// Which flank of the screw carries; without backlash always `positive`.
-enum class ContactMode : std::uint8_t { positive, gap, negative };
-
-/// What the exact step (exact_step.h) keeps between two calls: nothing of the drive itself.
-struct StepControl {
-  int halvings = 0;              // how far below the longest the last sub-step was, a first guess
-  std::uint32_t unresolved = 0;  // sub-steps that missed their tolerance at the finest length
-};
-
-/// State of one drive.
-struct LaneState {
-  double i = 0.0;      // A, torque-forming current
-  double w = 0.0;      // rad/s, motor speed
-  double delta = 0.0;  // m, r phi - x: wind-up, with backlash within [-gap/2, gap/2] free
-  double v = 0.0;      // m/s, slide
-  double x = 0.0;      // m, slide
-  double z = 0.0;      // m, bristle deflection (LuGre)
-  SlideMode slide = SlideMode::sticking;        // counts with set-valued friction only
-  ContactMode contact = ContactMode::positive;  // counts with backlash only
-  StepControl control{};
-};
-
-/// State of the drives of one machine: structure of arrays, one lane per joint.
-struct DriveState {
-  using Lanes = std::array<double, kJoints>;
-  Lanes i{}, w{};  // A, rad/s
-  Lanes delta{};   // m (carried instead of phi: no cancellation)
-  Lanes v{}, x{};  // m/s, m
-  Lanes z{};       // m
-  std::array<SlideMode, kJoints> slide{};
-  std::array<ContactMode, kJoints> contact{};
-  std::array<StepControl, kJoints> control{};
-
-  LaneState lane(std::size_t j) const {
-    return {i[j], w[j], delta[j], v[j], x[j], z[j], slide[j], contact[j], control[j]};
-  }
-  void set_lane(std::size_t j, const LaneState& s);
-};
-
-/// Inputs, constant over a step (zero-order hold).
-struct DriveInput {
-  DriveState::Lanes command{};  // A; V for a drive with a winding
-  DriveState::Lanes F{};        // N, force against the slide beside the constant F_load
 };
 
 /// dx/dt = A x + B (command, F) of one drive, states (i, w, delta, v, x); columns 5 and 6 hold B.

@@ -24,6 +24,8 @@ struct FrictionParams {
   double v0 = 1.0;                              // m/s, of the regularisation
   double sigma0 = 0.0;                          // N/m, stiffness of the bristles
   double sigma1 = 0.0;                          // N s/m, their damping
+
+  bool operator==(const FrictionParams&) const = default;
 };
 
 /// Beyond this many vs the Stribeck term is below the last bit of Fc, beyond this many v0 tanh

@@ -48,10 +48,10 @@ BENCHMARK(BM_Prepare)->Unit(benchmark::kMillisecond);
 void BM_DriveBank(benchmark::State& state) {
   const MachineSettings& machine = experiment1().machine;
   const std::vector<Tick> steps = {4};
-  const plant::DriveBank bank(machine.drives, machine.present(), 10e-6, steps);
-  plant::DriveState drives = bank.at_rest(Joints::Constant(0.1));
-  plant::DriveInput input;
-  input.command = drives.i;
+  const plant::DriveBank bank(machine.drives, 10e-6, steps);
+  plant::DriveState drives = bank.at_rest(std::vector<double>(kJoints, 0.1));
+  plant::DriveInput input(kJoints);
+  input.blocks[0].command = drives.blocks[0].i;
   for (auto _ : state) {
     bank.advance(drives, input, 4);
     benchmark::DoNotOptimize(drives);
@@ -76,16 +76,17 @@ void BM_DriveBankWithFriction(benchmark::State& state, plant::FrictionKind kind,
   }
   constexpr Tick kTicks = 10, kPeriod = 400;
   const std::vector<Tick> steps = {kTicks};
-  const plant::DriveBank bank(params, machine.present(), 10e-6, steps);
-  plant::DriveState start = bank.at_rest(Joints::Constant(0.1));
-  start.v.fill(speed);
+  const plant::DriveBank bank(params, 10e-6, steps);
+  plant::DriveState start = bank.at_rest(std::vector<double>(kJoints, 0.1));
+  plant::DriveBlock& block = start.blocks[0];
+  block.v.fill(speed);
   for (std::size_t j = 0; j < kJoints; ++j) {
-    start.w[j] = speed / params[j].r;
-    start.z[j] = speed > 0.02 ? params[j].friction.Fc_positive / params[j].friction.sigma0 : 0.0;
-    start.i[j] += params[j].r * 0.6 * params[j].slide_mass() / params[j].Kt;
+    block.w[j] = speed / params[j].r;
+    block.z[j] = speed > 0.02 ? params[j].friction.Fc_positive / params[j].friction.sigma0 : 0.0;
+    block.i[j] += params[j].r * 0.6 * params[j].slide_mass() / params[j].Kt;
   }
-  plant::DriveInput input;
-  input.command = start.i;
+  plant::DriveInput input(kJoints);
+  input.blocks[0].command = block.i;
   plant::DriveState drives = start;
   int n = 0;
   for (auto _ : state) {

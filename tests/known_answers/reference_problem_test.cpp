@@ -176,10 +176,10 @@ double largest_error(const Axes& axes, const std::string& reference) {
   const auto x_ref = read_reference(reference);
   const plant::VolumetricModel volumetric = read_volumetric();
   const Eigen::Vector3d p_ST(0.0, 0.0, -0.15);
-  const plant::DriveBank bank(axes.drive, {true, true, true, true, true}, kTick,
-                              std::vector<Tick>{2, 4, 6});
-  plant::DriveState drive;
-  plant::DriveInput input;
+  const plant::DriveBank bank(axes.drive, kTick, std::vector<Tick>{2, 4, 6});
+  plant::DriveState state(kJoints);
+  plant::DriveInput input(kJoints);
+  const plant::DriveBlock& drive = state.blocks.front();
   std::array<CascadeState, kJoints> cascade{};
   std::array<CurrentLoopState, kJoints> current{};
   SetPoint set_point;
@@ -201,17 +201,17 @@ double largest_error(const Axes& axes, const std::string& reference) {
     if (n % kCurrent == 0) {
       for (std::size_t j = 0; j < kJoints; ++j) {
         if (n % kVelocity == 0) {
-          velocity_loop(axes.cascade[j], cascade[j], bank.motor_angle(drive, j));
+          velocity_loop(axes.cascade[j], cascade[j], bank.motor_angle(state, j));
         }
         current_loop(axes.current[j], current[j], cascade[j].i_next, drive.i[j]);
-        input.command[j] = current[j].u;
+        input.blocks.front().command[j] = current[j].u;
       }
     }
     if (n % kRecord == 0) {
       largest = std::max(largest, (x - x_ref[n / kRecord]).cwiseAbs().maxCoeff());
     }
     if (n == kEnd) return 1e9 * largest;
-    bank.advance(drive, input, next_instant(n) - n);
+    bank.advance(state, input, next_instant(n) - n);
   }
 }
 

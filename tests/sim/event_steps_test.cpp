@@ -68,18 +68,21 @@ struct FiveAxisCase {
 std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
   const LoopPeriods& p = c.machine.nc.periods;
   const std::array<Tick, 1> one = {1};
-  const plant::DriveBank drives(c.machine.drives, c.machine.present(), p.base, one);
+  const plant::DriveBank drives(c.machine.drives, p.base, one);
   SetPoint set_point(c.machine.nc, c.trajectory, {});
   const auto part = c.strategy->feedback(6 * p.base);
-  plant::DriveState x = drives.at_rest(set_point.settle().Q_cmd);
-  plant::DriveInput u;
+  const Joints Q_start = set_point.settle().Q_cmd;
+  plant::DriveState state = drives.at_rest({Q_start.data(), kJoints});
+  plant::DriveInput input(kJoints);
+  plant::DriveBlock& x = state.blocks.front();
+  plant::DriveInputBlock& u = input.blocks.front();
   std::array<controllers::CascadeState, kJoints> loops;
   const auto scales = [&] { return Joints(Eigen::Map<const Joints>(x.x.data())); };
   Eigen::Vector3d d_now = part->settle(scales()), d_next = d_now;
   Joints Q_read = scales();
   Q_read.head<3>() += d_now;
   for (std::size_t j = 0; j < kJoints; ++j) {
-    loops[j].phi = drives.motor_angle(x, j);
+    loops[j].phi = drives.motor_angle(state, j);
     loops[j].i_next = loops[j].i_cmd = u.command[j] = x.i[j];
     loops[j].integral = x.i[j] * c.machine.nc.cascade[j].Kt;
   }
@@ -108,11 +111,11 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
         u.command[j] = loops[j].i_cmd;
       }
       if (n % p.velocity == 0) {
-        controllers::velocity_loop(c.machine.nc.cascade[j], loops[j], drives.motor_angle(x, j));
+        controllers::velocity_loop(c.machine.nc.cascade[j], loops[j], drives.motor_angle(state, j));
       }
     }
     if (n % 100 == 0) recorded.push_back(scales());
-    drives.advance(x, u, 1);
+    drives.advance(state, input, 1);
   }
   return recorded;
 }

@@ -11,52 +11,56 @@
 namespace servomill::plant {
 namespace {
 
-constexpr std::array<bool, kJoints> kOnlyX = {true, false, false, false, false};
-
 DriveBank bank_of(const FeedDriveParams& p, std::initializer_list<Tick> steps) {
-  return DriveBank({p, {}, {}, {}, {}}, kOnlyX, kTick, std::vector<Tick>(steps));
+  return DriveBank(std::array{p}, kTick, std::vector<Tick>(steps));
 }
+
+// One drive with its inputs.
+struct One {
+  DriveState state = DriveState(1);
+  DriveInput input = DriveInput(1);
+  double& command = input.blocks[0].command[0];
+  double& F = input.blocks[0].F[0];
+  const DriveBlock& at = state.blocks[0];
+};
 
 TEST(DriveBank, AgreesWithCvodeUnderHeldInputs) {
   constexpr double kPositionTol = 1e-12;  // m, CVODE at rtol 1e-12 after 50 changes of input
   const DriveBank bank = bank_of(x_axis(), {20});
-  DriveState s;
-  DriveInput input;
+  One s;
   CvodeDrive reference(x_axis());
   LaneState r;
   for (int n = 0; n < 50; ++n) {
-    input.command[0] = 20.0 * std::sin(0.7 * n);
-    input.F[0] = n % 2 ? 300.0 : -100.0;
-    bank.advance(s, input, 20);
-    reference.advance(r, input.command[0], input.F[0], 20 * kTick);
-    ASSERT_NEAR(s.x[0], r.x, kPositionTol) << n;
-    ASSERT_NEAR(s.v[0], r.v, 1e-9) << n;
-    ASSERT_NEAR(s.w[0], r.w, 1e-7) << n;
+    s.command = 20.0 * std::sin(0.7 * n);
+    s.F = n % 2 ? 300.0 : -100.0;
+    bank.advance(s.state, s.input, 20);
+    reference.advance(r, s.command, s.F, 20 * kTick);
+    ASSERT_NEAR(s.at.x[0], r.x, kPositionTol) << n;
+    ASSERT_NEAR(s.at.v[0], r.v, 1e-9) << n;
+    ASSERT_NEAR(s.at.w[0], r.w, 1e-7) << n;
   }
 }
 
 TEST(DriveBank, OneLongStepEqualsManyShortOnes) {
   constexpr double kRoundingTol = 1e-15;  // m, sixty products of rounding
   const DriveBank bank = bank_of(x_axis(), {1, 60});
-  DriveState fine, coarse;
-  DriveInput input;
-  input.command[0] = 12.0;
-  for (int n = 0; n < 60; ++n) bank.advance(fine, input, 1);
-  bank.advance(coarse, input, 60);
-  EXPECT_NEAR(fine.x[0], coarse.x[0], kRoundingTol);
+  One fine, coarse;
+  fine.command = coarse.command = 12.0;
+  for (int n = 0; n < 60; ++n) bank.advance(fine.state, fine.input, 1);
+  bank.advance(coarse.state, coarse.input, 60);
+  EXPECT_NEAR(fine.at.x[0], coarse.at.x[0], kRoundingTol);
 }
 
 TEST(DriveBank, ConstantCurrentAcceleratesTheTotalInertia) {
   FeedDriveParams p = x_axis();
   p.b_motor = p.b_load = 0.0;
   const DriveBank bank = bank_of(p, {1000});
-  DriveState s;
-  DriveInput input;
-  input.command[0] = 10.0;
-  for (int n = 0; n < 20; ++n) bank.advance(s, input, 1000);  // until the screw is wound up
-  const double v0 = s.v[0];
-  for (int n = 0; n < 20; ++n) bank.advance(s, input, 1000);
-  const double acceleration = (s.v[0] - v0) / (20 * 1000 * kTick);
+  One s;
+  s.command = 10.0;
+  for (int n = 0; n < 20; ++n) bank.advance(s.state, s.input, 1000);  // until the screw is wound up
+  const double v0 = s.at.v[0];
+  for (int n = 0; n < 20; ++n) bank.advance(s.state, s.input, 1000);
+  const double acceleration = (s.at.v[0] - v0) / (20 * 1000 * kTick);
   EXPECT_NEAR(acceleration, p.Kt * 10.0 * p.r / p.J_total(), 1e-6 * acceleration);
 }
 
@@ -65,17 +69,18 @@ TEST(DriveBank, ResonatesWhereTheTwoMassFormulaSays) {
   p.b_motor = p.b_load = 0.0;
   p.c = 0.0;
   const DriveBank bank = bank_of(p, {1});
-  DriveState s;
-  s.delta[0] = 1e-6;  // wound up, then released
+  One s;
+  double& delta = s.state.blocks[0].delta[0];
+  delta = 1e-6;  // wound up, then released
   int crossings = 0;
-  double first = 0, last = 0, before = s.delta[0];
+  double first = 0, last = 0, before = delta;
   for (int n = 1; n < 100000; ++n) {
-    bank.advance(s, {}, 1);
-    if (before > 0 && s.delta[0] <= 0) {
-      const double t = (n - s.delta[0] / (s.delta[0] - before)) * kTick;
+    bank.advance(s.state, s.input, 1);
+    if (before > 0 && delta <= 0) {
+      const double t = (n - delta / (delta - before)) * kTick;
       (crossings++ ? last : first) = t;
     }
-    before = s.delta[0];
+    before = delta;
   }
   const double f = (crossings - 1) / (last - first);
   const double expected = std::sqrt(p.k * (1 / p.M + p.r * p.r / p.J)) / (2 * std::numbers::pi);
@@ -90,15 +95,14 @@ TEST(DriveBank, RigidIsTheStiffLimit) {
     stiff.c *= std::sqrt(stiffness_factor);
     FeedDriveParams rigid = x_axis();
     rigid.kind = DriveKind::rigid;
-    DriveState a, b;
+    One a, b;
     const DriveBank bank_a = bank_of(stiff, {100}), bank_b = bank_of(rigid, {100});
-    DriveInput input;
-    input.command[0] = 10.0;
+    a.command = b.command = 10.0;
     for (int n = 0; n < 200; ++n) {
-      bank_a.advance(a, input, 100);
-      bank_b.advance(b, input, 100);
+      bank_a.advance(a.state, a.input, 100);
+      bank_b.advance(b.state, b.input, 100);
     }
-    return std::abs(a.x[0] - b.x[0]);
+    return std::abs(a.at.x[0] - b.at.x[0]);
   };
   const double coarse = deviation(1.0), fine = deviation(100.0);
   EXPECT_NEAR(coarse / fine, 100.0, 5.0);  // first order in 1/k
@@ -108,14 +112,12 @@ TEST(DriveBank, StaysAtRestUnderItsConstantLoad) {
   FeedDriveParams p = x_axis();
   p.F_load = 200.0;
   const DriveBank bank = bank_of(p, {20});
-  Joints Q = Joints::Zero();
-  Q[0] = 0.25;
-  DriveState s = bank.at_rest(Q);
-  DriveInput input;
-  input.command[0] = s.i[0];
-  for (int n = 0; n < 5000; ++n) bank.advance(s, input, 20);
-  EXPECT_NEAR(s.x[0], 0.25, 1e-12);
-  EXPECT_EQ(s.x[1], 0.0);  // joints that the machine lacks do not move
+  One s;
+  s.state.set_lane(0, bank.at_rest(std::array{0.25}).lane(0));
+  s.command = s.at.i[0];
+  for (int n = 0; n < 5000; ++n) bank.advance(s.state, s.input, 20);
+  EXPECT_NEAR(s.at.x[0], 0.25, 1e-12);
+  EXPECT_EQ(s.at.x[1], 0.0);  // lanes that fill the block do not move
 }
 
 FeedDriveParams with_friction(FrictionKind kind) {
@@ -132,25 +134,7 @@ FeedDriveParams with_friction(FrictionKind kind) {
   return p;
 }
 
-TEST(DriveBank, LinearJointsDoNotNoticeTheFrictionOfOthers) {
-  constexpr std::array<bool, kJoints> kXAndY = {true, true, false, false, false};
-  const std::vector<Tick> steps = {20};
-  const DriveBank linear({x_axis(), x_axis(), {}, {}, {}}, kXAndY, kTick, steps);
-  const DriveBank mixed({x_axis(), with_friction(FrictionKind::lugre), {}, {}, {}}, kXAndY, kTick,
-                        steps);
-  DriveState a, b;
-  DriveInput input;
-  for (int n = 0; n < 500; ++n) {
-    input.command.fill(20.0 * std::sin(0.03 * n));
-    linear.advance(a, input, 20);
-    mixed.advance(b, input, 20);
-    ASSERT_EQ(a.x[0], b.x[0]);
-    ASSERT_EQ(a.delta[0], b.delta[0]);
-  }
-  EXPECT_NE(a.x[1], b.x[1]);
-}
-
-TEST(DriveBank, JointsWithFrictionMoveAsTheirExactStepSays) {
+TEST(DriveBank, LanesWithFrictionMoveAsTheirExactStepSays) {
   // to and fro through both zones of friction and the standstill between them
   constexpr double kPositionTol = 1e-14;  // m, rounding: constant force against collocation
   for (const FrictionKind kind :
@@ -158,23 +142,22 @@ TEST(DriveBank, JointsWithFrictionMoveAsTheirExactStepSays) {
     const FeedDriveParams p = with_friction(kind);
     const DriveBank bank = bank_of(p, {20});
     const ExactStep exact(p, kTick, 20);
-    DriveState s;
+    One s;
     LaneState lane;
-    DriveInput input;
     double fastest = 0.0;
     int standing = 0;
     for (int n = 0; n < 2000; ++n) {
-      input.command[0] = n % 1000 < 600 ? 8.0 * std::sin(0.01 * n) : 0.0;
-      input.F[0] = 50.0;
-      bank.advance(s, input, 20);
-      exact.advance(lane, input.command[0], input.F[0], 20);
-      ASSERT_NEAR(s.x[0], lane.x, kPositionTol) << static_cast<int>(kind) << ' ' << n;
-      fastest = std::max(fastest, std::abs(s.v[0]));
-      if (std::abs(s.v[0]) < 1e-4) ++standing;  // m/s
+      s.command = n % 1000 < 600 ? 8.0 * std::sin(0.01 * n) : 0.0;
+      s.F = 50.0;
+      bank.advance(s.state, s.input, 20);
+      exact.advance(lane, s.command, s.F, 20);
+      ASSERT_NEAR(s.at.x[0], lane.x, kPositionTol) << static_cast<int>(kind) << ' ' << n;
+      fastest = std::max(fastest, std::abs(s.at.v[0]));
+      if (std::abs(s.at.v[0]) < 1e-4) ++standing;  // m/s
     }
     EXPECT_GT(fastest, 0.05);  // both were seen
     EXPECT_GT(standing, 20);
-    EXPECT_EQ(DriveBank::unresolved(s, 0), 0U);
+    EXPECT_EQ(DriveBank::unresolved(s.state, 0), 0U);
   }
 }
 

@@ -1,0 +1,30 @@
+#include "plant/drives/drive_state.h"
+
+#include <cassert>
+
+namespace servomill::plant {
+
+LaneState DriveState::lane(std::size_t l) const {
+  assert(l / kLaneWidth < blocks.size());
+  const DriveBlock& b = blocks[l / kLaneWidth];
+  const std::size_t j = l % kLaneWidth;
+  return {b.i[j], b.w[j],     b.delta[j],   b.v[j],      b.x[j],
+          b.z[j], b.slide[j], b.contact[j], b.control[j]};
+}
+
+void DriveState::set_lane(std::size_t l, const LaneState& s) {
+  assert(l / kLaneWidth < blocks.size());
+  DriveBlock& b = blocks[l / kLaneWidth];
+  const std::size_t j = l % kLaneWidth;
+  b.i[j] = s.i;
+  b.w[j] = s.w;
+  b.delta[j] = s.delta;
+  b.v[j] = s.v;
+  b.x[j] = s.x;
+  b.z[j] = s.z;
+  b.slide[j] = s.slide;
+  b.contact[j] = s.contact;
+  b.control[j] = s.control;
+}
+
+}  // namespace servomill::plant

@@ -1,0 +1,72 @@
+#include "plant/drives/prepared_drives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unsupported/Eigen/MatrixFunctions>
+#include <utility>
+
+namespace servomill::plant {
+namespace {
+
+enum Row : int { kCurrent = 0, kVelocity = 3, kCommand = 5 };
+
+using Matrix7l = Eigen::Matrix<long double, 7, 7>;
+
+// [A B; 0 0] h -> exp: the first rows hold exp(A h) and the integral that multiplies the input.
+// Computed in variables of equal size (all m/s or m/s^2) and in long double: in SI the entries span
+// eight decades, and a slide at rest under load would creep by what the exponential loses.
+Eigen::Matrix<double, 5, 7> hold_matrix(const FeedDriveParams& p, double h) {
+  const double stiffness = p.is_rigid() ? 0.0 : p.k;
+  const double omega = std::sqrt(stiffness / p.M) + 1.0;
+  Eigen::Matrix<double, 7, 1> scale;
+  scale << 1.0, 1.0 / p.r, 1.0 / omega, 1.0, 1.0 / omega, 1.0, p.M;
+  Matrix7l generator = Matrix7l::Zero();
+  generator.topRows<5>() = drive_equations(p).cast<long double>() * static_cast<long double>(h);
+  const Eigen::Matrix<long double, 7, 1> S = scale.cast<long double>();
+  const Matrix7l scaled = S.cwiseInverse().asDiagonal() * generator * S.asDiagonal();
+  Matrix7l E = S.asDiagonal() * Matrix7l(scaled.exp()) * S.cwiseInverse().asDiagonal();
+  if (p.current_is_command()) {
+    E.row(kCurrent).setZero();
+    E(kCurrent, kCommand) = 1.0L;
+  }
+  return E.topRows<5>().cast<double>();
+}
+
+}  // namespace
+
+PreparedDrive::PreparedDrive(const FeedDriveParams& drive, double period, std::vector<Tick> lengths)
+    : params(drive), base_period(period), steps(std::move(lengths)) {
+  Tick longest = 0;
+  for (const Tick step : steps) {
+    longest = std::max(longest, step);
+    const double h = static_cast<double>(step) * base_period;
+    hold.push_back({hold_matrix(params, h), hold_matrix(params, 0.5 * h).row(kVelocity)});
+  }
+  if (!params.is_linear() && !steps.empty()) exact.emplace(params, base_period, longest);
+}
+
+std::shared_ptr<const PreparedDrive> PreparedDrives::get(const FeedDriveParams& params,
+                                                         double base_period,
+                                                         const std::vector<Tick>& steps) {
+  const auto find = [&] {
+    const auto found = std::find_if(drives_.begin(), drives_.end(), [&](const auto& drive) {
+      return drive->params == params && drive->base_period == base_period && drive->steps == steps;
+    });
+    return found == drives_.end() ? nullptr : *found;
+  };
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto drive = find()) return drive;
+  }
+  auto drive = std::make_shared<const PreparedDrive>(params, base_period, steps);
+  const std::lock_guard lock(mutex_);
+  if (drives_.size() < most_) {
+    drives_.push_back(drive);
+  } else if (most_ > 0) {
+    drives_[oldest_] = drive;
+    oldest_ = (oldest_ + 1) % most_;
+  }
+  return drive;
+}
+
+}  // namespace servomill::plant

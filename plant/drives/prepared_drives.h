@@ -1,0 +1,52 @@
+/// What is costly to compute of a drive, kept for all lanes that have the same one.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "plant/drives/exact_step.h"
+#include "plant/drives/feed_drive.h"
+#include "plant/vocabulary/ticks.h"
+
+namespace servomill::plant {
+
+/// One drive, ready to be moved by steps of certain lengths.
+struct PreparedDrive {
+  /// The drive over one of the steps while the force against its slide is constant: rows
+  /// (i, w, delta, v, x), columns (i, w, delta, v, x, command, force).
+  struct Hold {
+    Eigen::Matrix<double, 5, 7> end;
+    Eigen::Matrix<double, 1, 7> middle;  // v at half the step
+  };
+
+  /// @param steps  ticks, without repetition
+  PreparedDrive(const FeedDriveParams& params, double base_period, std::vector<Tick> steps);
+
+  FeedDriveParams params;
+  double base_period;  // s
+  std::vector<Tick> steps;
+  std::vector<Hold> hold;          // one for each step
+  std::optional<ExactStep> exact;  // of a drive that is not linear
+};
+
+/// Keeps prepared drives from one bank to the next: those that were made last. May be shared by
+/// threads.
+class PreparedDrives {
+ public:
+  /// @param most  how many are kept; one drive takes some 100 kB with friction, 1 kB without
+  explicit PreparedDrives(std::size_t most = 64) : most_(most) {}
+
+  /// The drive from the store, or made now.
+  std::shared_ptr<const PreparedDrive> get(const FeedDriveParams& params, double base_period,
+                                           const std::vector<Tick>& steps);
+
+ private:
+  std::mutex mutex_;
+  std::size_t most_, oldest_ = 0;
+  std::vector<std::shared_ptr<const PreparedDrive>> drives_;
+};
+
+}  // namespace servomill::plant
