@@ -9,13 +9,6 @@
 namespace servomill::sim {
 namespace {
 
-std::vector<plant::FeedDriveParams> drives_of(const MachineSettings& machine,
-                                              const std::vector<int>& joints) {
-  std::vector<plant::FeedDriveParams> drives;
-  for (const int j : joints) drives.push_back(machine.drives[static_cast<std::size_t>(j)]);
-  return drives;
-}
-
 std::string_view name_of(controllers::AxisFaultKind fault) {
   switch (fault) {
     case controllers::AxisFaultKind::following_error:
@@ -51,179 +44,292 @@ std::vector<Tick> steps_of(const std::vector<Instant>& schedule) {
   return steps;
 }
 
-ServoAxes::ServoAxes(const MachineSettings& machine, std::vector<int> joints,
+namespace {
+
+std::vector<plant::FeedDriveParams> params_of(const std::vector<const MachineSettings*>& machines,
+                                              const std::vector<int>& joints) {
+  std::vector<plant::FeedDriveParams> params;
+  for (const int j : joints) {
+    for (const MachineSettings* machine : machines) {
+      params.push_back(machine->drives[static_cast<std::size_t>(j)]);
+    }
+  }
+  return params;
+}
+
+}  // namespace
+
+const ServoKernel& servo_kernel() {
+  static const ServoKernel kKernel =
+      at_simd_level(simd_level(), []<SimdLevel level>() { return make_servo_kernel<level>(); });
+  return kKernel;
+}
+
+ServoAxes::ServoAxes(std::vector<const MachineSettings*> machines, std::vector<int> joints,
                      const std::vector<Instant>& schedule)
-    : machine_(machine),
+    : machines_(std::move(machines)),
       joints_(std::move(joints)),
-      drives_(drives_of(machine, joints_), machine.nc.periods.base,
-              machine.integrator == Integrator::exact ? steps_of(schedule) : std::vector<Tick>()),
-      state_(joints_.size()),
-      input_(joints_.size()) {
-  for (std::size_t n = 0; n < joints_.size(); ++n) drive_lane_[lane(joints_[n])] = n;
-  if (machine.integrator == Integrator::cvode) {
-    cvode_.emplace(drives_of(machine, joints_), machine.nc.periods.base);
-  }
-}
-
-void ServoAxes::settle(const Joints& Q, const Eigen::Vector3d& displacement) {
-  std::vector<double> x;
-  for (const int j : joints_) x.push_back(Q[j]);
-  state_ = drives_.at_rest(x);
+      params_(params_of(machines_, joints_)),
+      drives_(
+          params_, machines_[0]->nc.periods.base,
+          machines_[0]->integrator == Integrator::exact ? steps_of(schedule) : std::vector<Tick>()),
+      state_(params_.size()),
+      input_(params_.size()),
+      servos_(blocks_of(params_.size())),
+      functions_(params_.size()),
+      kernel_(servo_kernel()) {
   for (const int j : joints_) {
-    const plant::FeedDriveParams& params = machine_.drives[lane(j)];
-    const AxisFunctions& functions = machine_.nc.functions[lane(j)];
-    const controllers::CascadeParams& cascade = machine_.nc.cascade[lane(j)];
-    const double i = drive().i[drive_lane(j)];
-    const auto current = params.has_winding()
-                             ? controllers::standing_at(functions.current_loop, i, params.R * i)
-                             : controllers::StandingCurrent{i, {}};
-    drive().x[drive_lane(j)] -= controllers::standing_error(cascade, current.i_cmd);
-    const double phi = motor_reading(j);
-    const double d = j < kLinearJoints ? displacement[j] : 0.0;
-    Loop& loop = loops_[lane(j)];
-    loop = {};
-    loop.cascade = controllers::standing_at(cascade, phi, current.i_cmd);
-    loop.current = current.state;
-    input_.blocks.front().command[drive_lane(j)] = params.has_winding() ? loop.current.u : i;
-    loop.feedback =
-        controllers::standing_at(functions.position_feedback, params.r * phi,
-                                 machine_.scale[lane(j)].read(drive().x[drive_lane(j)]) + d);
-    if (const auto& marks = machine_.marks[lane(j)]) {
-      loop.marks.emplace(plant::ReferenceMarks(marks->params), marks->allowed);
-      loop.marks->start(drive().x[drive_lane(j)], drive().x[drive_lane(j)] + d);
-    }
-    take_reading(j, d);
-    loop.backlash = controllers::standing_at(functions.backlash, Q_read_[j]);
-    loop.supervision = controllers::standing_at(
-        functions.supervision, {Q_read_[j], 0.0, Q_read_[j], loop.y_motor, loop.y_scale});
+    first_lane_[static_cast<std::size_t>(j)] = axes_.size();
+    for (std::size_t run = 0; run < machines_.size(); ++run) axes_.push_back({run, j});
   }
-}
-
-double ServoAxes::motor_reading(int joint) const {
-  const plant::ScrewError& screw = machine_.screw[lane(joint)];
-  const double phi =
-      screw.is_zero()
-          ? drives_.motor_angle(state_, drive_lane(joint))
-          : plant::motor_angle(screw, machine_.drives[lane(joint)].r,
-                               drive().delta[drive_lane(joint)] + drive().x[drive_lane(joint)],
-                               machine_.nc.periods.seconds(now_));
-  return machine_.motor[lane(joint)].read(phi, now_);
-}
-
-double ServoAxes::scale_reading(int joint) const {
-  return machine_.scale[lane(joint)].read(drive().x[drive_lane(joint)], now_);
-}
-
-Joints ServoAxes::scale_reading() const {
-  Joints Q = Joints::Zero();
-  for (const int j : joints_) Q[j] = scale_reading(j);
-  return Q;
-}
-
-void ServoAxes::take_reading(int joint, double displacement) {
-  Loop& loop = loops_[lane(joint)];
-  loop.y_scale = scale_reading(joint) + displacement + injected_[lane(joint)].reading;
-  loop.y_motor = machine_.drives[lane(joint)].r * motor_reading(joint);
-  if (loop.marks && !loop.mark_fault) {
-    const double x = drive().x[drive_lane(joint)];
-    loop.mark_fault = loop.marks->advance(x, x + displacement);
+  if (machines_[0]->integrator == Integrator::cvode) {
+    cvode_.emplace(params_, machines_[0]->nc.periods.base);
   }
-  Q_read_[joint] =
-      controllers::position_feedback(machine_.nc.functions[lane(joint)].position_feedback,
-                                     loop.feedback, loop.y_motor, loop.y_scale);
+  for (std::size_t l = 0; l < axes_.size(); ++l) describe(l);
 }
 
-void ServoAxes::take_reading(const Eigen::Vector3d& displacement) {
-  for (const int j : joints_) take_reading(j, j < kLinearJoints ? displacement[j] : 0.0);
+void ServoAxes::describe(std::size_t l) {
+  const MachineSettings& machine = machine_of(l);
+  const auto j = static_cast<std::size_t>(axes_[l].joint);
+  const AxisFunctions& functions = machine.nc.functions[j];
+  const auto set = [&](LaneArray ServoBlock::*member, double value) { at(member, l) = value; };
+  const auto encoder = [](double step) { return step > 0.0 ? 1.0 / step : 0.0; };
+  set(&ServoBlock::r, params_[l].r);
+  set(&ServoBlock::per_r, 1.0 / params_[l].r);
+  set(&ServoBlock::motor_step, machine.motor[j].step());
+  set(&ServoBlock::per_motor_step, encoder(machine.motor[j].step()));
+  set(&ServoBlock::scale_step, machine.scale[j].step());
+  set(&ServoBlock::per_scale_step, encoder(machine.scale[j].step()));
+  set(&ServoBlock::reads_scale,
+      functions.position_feedback.kind == controllers::PositionFeedback::scale ? 1.0 : 0.0);
+  set(&ServoBlock::feedback_gain, functions.position_feedback.gain);
+  set(&ServoBlock::has_winding, params_[l].has_winding() ? 1.0 : 0.0);
+  ServoBlock& servo = servos_[block(l)];
+  set_lane(servo.cascade, place(l), gains_of(machine.nc.cascade[j]));
+  const controllers::CurrentLoopGains current = gains_of(functions.current_loop);
+  servo.current.Kp[place(l)] = current.Kp;
+  servo.current.Ki_Ti[place(l)] = current.Ki_Ti;
+  servo.current.u_max[place(l)] = current.u_max;
+
+  if (!machine.motor[j].is_plain() || !machine.screw[j].is_zero()) own_motor_reading_.push_back(l);
+  if (!machine.scale[j].is_plain()) own_scale_reading_.push_back(l);
+  if (machine.marks[j]) marked_.push_back(l);
+  if (functions.backlash.width != 0.0) with_backlash_.push_back(l);
+  if (functions.friction.compensates()) with_friction_.push_back(l);
 }
 
-void ServoAxes::run_position_loops(const AxisSetPoint& set) {
+void ServoAxes::settle(const Joints& Q, const Eigen::Vector3d& displacement, std::size_t run) {
+  displace(displacement, run);
+  for (const int j : joints_) settle(lane(run, j), Q[j], j < kLinearJoints ? displacement[j] : 0.0);
+}
+
+void ServoAxes::settle(std::size_t l, double Q, double d) {
+  const MachineSettings& machine = machine_of(l);
+  const auto j = static_cast<std::size_t>(axes_[l].joint);
+  const plant::FeedDriveParams& drive = params_[l];
+  const AxisFunctions& functions = machine.nc.functions[j];
+  const controllers::CascadeParams& cascade = machine.nc.cascade[j];
+  plant::LaneState state = plant::at_rest(drive, Q);
+  const auto current = drive.has_winding() ? controllers::standing_at(functions.current_loop,
+                                                                      state.i, drive.R * state.i)
+                                           : controllers::StandingCurrent{state.i, {}};
+  state.x -= controllers::standing_error(cascade, current.i_cmd);
+  state_.set_lane(l, state);
+  const double phi = motor_reading(l), scale = scale_reading(l);
+  const double y_motor = drive.r * phi, y_scale = scale + d;
+  const auto feedback = controllers::standing_at(functions.position_feedback, y_motor, y_scale);
+  auto after = feedback;
+  const double Q_read =
+      controllers::position_feedback(functions.position_feedback, after, y_motor, y_scale);
+
+  ServoBlock& servo = servos_[block(l)];
+  set_lane(servo.cascade_state, place(l), controllers::standing_at(cascade, phi, current.i_cmd));
+  servo.current_state.integral[place(l)] = current.state.integral;
+  servo.current_state.u[place(l)] = current.state.u;
+  servo.current_state.excess[place(l)] = 0.0;
+  input_.blocks[block(l)].command[place(l)] = drive.has_winding() ? current.state.u : state.i;
+  input_.blocks[block(l)].active[place(l)] = true;
+  const auto set = [&](LaneArray ServoBlock::*member, double value) { at(member, l) = value; };
+  set(&ServoBlock::phi, phi);
+  set(&ServoBlock::scale, scale);
+  set(&ServoBlock::y_motor, y_motor);
+  set(&ServoBlock::y_scale, y_scale);
+  set(&ServoBlock::difference, after.difference);
+  set(&ServoBlock::Q_read, Q_read);
+  set(&ServoBlock::Q_cmd, Q_read);
+  for (const auto member :
+       {&ServoBlock::dQ_ff, &ServoBlock::ddQ_ff, &ServoBlock::v_add, &ServoBlock::tau_add}) {
+    set(member, 0.0);
+  }
+  Functions& own = functions_[l];
+  own = {};
+  if (const auto& marks = machine.marks[j]) {
+    own.marks.emplace(plant::ReferenceMarks(marks->params), marks->allowed);
+    own.marks->start(state.x, state.x + d);
+  }
+  own.backlash = controllers::standing_at(functions.backlash, Q_read);
+  own.supervision =
+      controllers::standing_at(functions.supervision, {Q_read, 0.0, Q_read, y_motor, y_scale});
+}
+
+void ServoAxes::displace(const Eigen::Vector3d& displacement, std::size_t run) {
   for (const int j : joints_) {
-    const AxisFunctions& functions = machine_.nc.functions[lane(j)];
-    Loop& loop = loops_[lane(j)];
-    double v_add = 0.0;
-    if (functions.backlash.width != 0.0) {
-      const auto ramp =
-          controllers::backlash_compensation(functions.backlash, loop.backlash, set.Q_cmd[j]);
-      // only the motor cannot see the gap; the other loops gain the time
-      const bool unseen = functions.position_feedback.kind == controllers::PositionFeedback::motor;
-      // counted off its reading, so that the gap is no following error
-      if (unseen) {
-        Q_read_[j] -= ramp.offset;
-      } else {
-        v_add = ramp.rate;
-      }
-    }
-    loop.dq_ff = set.dQ_ff[j];
-    controllers::position_loop(machine_.nc.cascade[lane(j)], loop.cascade, set.Q_cmd[j], Q_read_[j],
-                               set.dQ_ff[j], set.ddQ_ff[j], v_add);
+    if (j < kLinearJoints) at(&ServoBlock::displacement, lane(run, j)) = displacement[j];
   }
+}
+
+void ServoAxes::follow(const AxisSetPoint& set, std::size_t run) {
+  for (const int j : joints_) {
+    const std::size_t l = lane(run, j);
+    at(&ServoBlock::Q_cmd, l) = set.Q_cmd[j];
+    at(&ServoBlock::dQ_ff, l) = set.dQ_ff[j];
+    at(&ServoBlock::ddQ_ff, l) = set.ddQ_ff[j];
+  }
+}
+
+void ServoAxes::inject(int joint, const Injection& injection, std::size_t run) {
+  const std::size_t l = lane(run, joint);
+  at(&ServoBlock::added_velocity, l) = injection.velocity;
+  at(&ServoBlock::added_current, l) = injection.current;
+  at(&ServoBlock::added_reading, l) = injection.reading;
+  input_.blocks[block(l)].F[place(l)] = -injection.force;
+}
+
+void ServoAxes::end(std::size_t run) {
+  for (const int j : joints_) {
+    const std::size_t l = lane(run, j);
+    input_.blocks[block(l)].active[place(l)] = false;
+  }
+}
+
+double ServoAxes::motor_reading(std::size_t l) const {
+  const MachineSettings& machine = machine_of(l);
+  const auto j = static_cast<std::size_t>(axes_[l].joint);
+  const plant::ScrewError& screw = machine.screw[j];
+  const plant::LaneState s = state_.lane(l);
+  const double phi = screw.is_zero() ? drives_.motor_angle(state_, l)
+                                     : plant::motor_angle(screw, params_[l].r, s.delta + s.x,
+                                                          machine.nc.periods.seconds(now_));
+  return machine.motor[j].read(phi, now_);
+}
+
+double ServoAxes::scale_reading(std::size_t l) const {
+  const auto j = static_cast<std::size_t>(axes_[l].joint);
+  return machine_of(l).scale[j].read(state_.blocks[block(l)].x[place(l)], now_);
+}
+
+void ServoAxes::read_motors() {
+  kernel_.read_motors(servos_.data(), state_.blocks.data(), servos_.size());
+  for (const std::size_t l : own_motor_reading_) at(&ServoBlock::phi, l) = motor_reading(l);
+}
+
+void ServoAxes::read_scales() {
+  kernel_.read_scales(servos_.data(), state_.blocks.data(), servos_.size());
+  for (const std::size_t l : own_scale_reading_) at(&ServoBlock::scale, l) = scale_reading(l);
+}
+
+void ServoAxes::take_readings() {
+  read_scales();
+  read_motors();
+  kernel_.take_readings(servos_.data(), servos_.size());
+  for (const std::size_t l : marked_) {
+    Functions& own = functions_[l];
+    if (own.mark_fault) continue;
+    const double x = state_.blocks[block(l)].x[place(l)];
+    own.mark_fault = own.marks->advance(x, x + at(&ServoBlock::displacement, l));
+  }
+}
+
+void ServoAxes::run_position_loops() {
+  for (const std::size_t l : with_backlash_) {
+    const AxisFunctions& functions =
+        machine_of(l).nc.functions[static_cast<std::size_t>(axes_[l].joint)];
+    const auto ramp = controllers::backlash_compensation(functions.backlash, functions_[l].backlash,
+                                                         at(&ServoBlock::Q_cmd, l));
+    // Only the motor cannot see the gap; the other loops gain the time. It is counted off the
+    // motor's reading, so that the gap is no following error.
+    if (functions.position_feedback.kind == controllers::PositionFeedback::motor) {
+      at(&ServoBlock::Q_read, l) -= ramp.offset;
+    } else {
+      at(&ServoBlock::v_add, l) = ramp.rate;
+    }
+  }
+  kernel_.position_loops(servos_.data(), servos_.size());
 }
 
 void ServoAxes::run_current_loops() {
-  for (const int j : joints_) {
-    Loop& loop = loops_[lane(j)];
-    controllers::latch_current_command(loop.cascade);
-    const double i_cmd = loop.cascade.i_cmd + injected_[lane(j)].current;
-    if (machine_.drives[lane(j)].has_winding()) {
-      controllers::current_loop(machine_.nc.functions[lane(j)].current_loop, loop.current, i_cmd,
-                                drive().i[drive_lane(j)]);
-      input_.blocks.front().command[drive_lane(j)] = loop.current.u;
-    } else {
-      input_.blocks.front().command[drive_lane(j)] = i_cmd;
-    }
-  }
+  kernel_.current_loops(servos_.data(), state_.blocks.data(), input_.blocks.data(), servos_.size());
 }
 
 void ServoAxes::run_velocity_loops() {
-  for (const int j : joints_) {
-    const controllers::CascadeParams& cascade = machine_.nc.cascade[lane(j)];
-    const auto& friction = machine_.nc.functions[lane(j)].friction;
-    Loop& loop = loops_[lane(j)];
-    double tau = 0.0;
-    if (friction.compensates()) {  // in lag mode the axis reverses with its speed command
-      tau = controllers::friction_compensation(friction, loop.friction,
-                                               cascade.kvf > 0.0 ? loop.dq_ff : loop.cascade.v_cmd);
-    }
-    const double phi = motor_reading(j), v_cmd = loop.cascade.v_cmd;
-    loop.cascade.v_cmd += injected_[lane(j)].velocity;
-    speed_read_[j] = (phi - loop.cascade.phi) / cascade.Tv;
-    speed_error_[j] = loop.cascade.v_cmd / cascade.r - speed_read_[j];
-    const bool voltage_limited = machine_.drives[lane(j)].has_winding() && loop.current.limited;
-    controllers::velocity_loop(cascade, loop.cascade, phi, tau, voltage_limited);
-    loop.cascade.v_cmd = v_cmd;
+  for (const std::size_t l : with_friction_) {
+    const NcSettings& nc = machine_of(l).nc;
+    const auto j = static_cast<std::size_t>(axes_[l].joint);
+    // in lag mode the axis reverses with its speed command
+    const double v = nc.cascade[j].kvf > 0.0 ? at(&ServoBlock::dQ_ff, l)
+                                             : servos_[block(l)].cascade_state.v_cmd[place(l)];
+    at(&ServoBlock::tau_add, l) =
+        controllers::friction_compensation(nc.functions[j].friction, functions_[l].friction, v);
   }
+  read_motors();
+  kernel_.velocity_loops(servos_.data(), servos_.size());
 }
 
-double ServoAxes::motor_speed(int joint) const {
-  const plant::FeedDriveParams& params = machine_.drives[lane(joint)];
-  return params.is_rigid() ? drive().v[drive_lane(joint)] / params.r : drive().w[drive_lane(joint)];
+Joints ServoAxes::motor_angle(std::size_t run) const {
+  Joints phi = Joints::Zero();
+  for (const int j : joints_) phi[j] = drives_.motor_angle(state_, lane(run, j));
+  return phi;
 }
 
-Joints ServoAxes::motor_speed() const {
+Joints ServoAxes::motor_speed(std::size_t run) const {
   Joints w = Joints::Zero();
-  for (const int j : joints_) w[j] = motor_speed(j);
+  for (const int j : joints_) {
+    const std::size_t l = lane(run, j);
+    const plant::DriveBlock& state = state_.blocks[block(l)];
+    w[j] = params_[l].is_rigid() ? state.v[place(l)] / params_[l].r : state.w[place(l)];
+  }
   return w;
 }
 
-void ServoAxes::inject(int joint, const Injection& injection) {
-  injected_[lane(joint)] = injection;
-  input_.blocks.front().F[drive_lane(joint)] = -injection.force;
+Joints ServoAxes::measured_speed(std::size_t run) const {
+  Joints w = Joints::Zero();
+  for (const int j : joints_) {
+    w[j] = servos_[block(lane(run, j))].cascade_state.w[place(lane(run, j))];
+  }
+  return w;
 }
 
-std::optional<std::string> ServoAxes::supervise(int joint, const AxisSetPoint& set) {
-  const bool linear = joint < kLinearJoints;
+Joints ServoAxes::speed_error(std::size_t run) const {
+  Joints e = Joints::Zero();
+  for (const int j : joints_) {
+    e[j] = servos_[block(lane(run, j))].cascade_state.e[place(lane(run, j))];
+  }
+  return e;
+}
+
+std::optional<ServoAxes::Fault> ServoAxes::supervise(std::size_t run) {
+  for (const int j : joints_) {
+    if (auto reason = fault_of(lane(run, j))) return Fault{j, std::move(*reason)};
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> ServoAxes::fault_of(std::size_t l) {
+  const MachineSettings& machine = machine_of(l);
+  const auto j = static_cast<std::size_t>(axes_[l].joint);
+  const bool linear = axes_[l].joint < kLinearJoints;
   const double unit = linear ? mm : deg;
   const std::string_view unit_name = linear ? "mm" : "deg";
-  Loop& loop = loops_[lane(joint)];
+  Functions& own = functions_[l];
   const auto fault = controllers::supervise(
-      machine_.nc.functions[lane(joint)].supervision, loop.supervision,
-      {set.Q_cmd[joint], set.dQ_ff[joint], Q_read_[joint], loop.y_motor, loop.y_scale});
+      machine.nc.functions[j].supervision, own.supervision,
+      {at(&ServoBlock::Q_cmd, l), at(&ServoBlock::dQ_ff, l), at(&ServoBlock::Q_read, l),
+       at(&ServoBlock::y_motor, l), at(&ServoBlock::y_scale, l)});
   if (fault) {
     return fmt::format("{} beyond {:g} {}", name_of(fault->fault), fault->limit / unit, unit_name);
   }
-  if (loop.mark_fault) {
-    const plant::MarkFault& mark = *loop.mark_fault;
+  if (own.mark_fault) {
+    const plant::MarkFault& mark = *own.mark_fault;
     if (mark.from == mark.to) {
       return fmt::format(
           "counted {} signal periods until the reference mark at {:.3f} {} came again",
@@ -234,15 +340,14 @@ std::optional<std::string> ServoAxes::supervise(int joint, const AxisSetPoint& s
         "{}",
         mark.counted, mark.expected, mark.from / unit, mark.to / unit, unit_name);
   }
-  if (plant::DriveBank::unresolved(state_, drive_lane(joint)) > 0) {
+  if (plant::DriveBank::unresolved(state_, l) > 0) {
     return "friction too stiff for the exact step; use integrator = \"cvode\"";
   }
-  const plant::Encoder& scale = machine_.scale[lane(joint)];
-  const plant::Encoder& motor = machine_.motor[lane(joint)];
-  const double w = motor_speed(joint);
-  if (scale.too_fast(drive().v[drive_lane(joint)]))
-    return overspeed("scale", scale, drive().v[drive_lane(joint)]);
-  if (motor.too_fast(w)) return overspeed("motor encoder", motor, w);
+  const plant::DriveBlock& state = state_.blocks[block(l)];
+  const double v = state.v[place(l)];
+  const double w = params_[l].is_rigid() ? v / params_[l].r : state.w[place(l)];
+  if (machine.scale[j].too_fast(v)) return overspeed("scale", machine.scale[j], v);
+  if (machine.motor[j].too_fast(w)) return overspeed("motor encoder", machine.motor[j], w);
   return std::nullopt;
 }
 

@@ -1,8 +1,9 @@
-/// The axes of a machine with drives, encoders and servo loops, without program or clock: what a
-/// case, a frequency response and the stability check have in common.
+/// The axes of one or several machines with drives, encoders and servo loops, without program or
+/// clock: what cases, a frequency response and the stability check have in common.
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "plant/drives/drive_bank.h"
 #include "sim/machine.h"
 #include "sim/schedule.h"
+#include "sim/servo_kernel.h"
 
 namespace servomill::sim {
 
@@ -39,24 +41,43 @@ struct Injection {
 };
 
 /// One function for each kind of instant of the schedule (sim/schedule.h), to be called in its
-/// order when due; then `advance` to the next instant.
+/// order when due; then `advance` to the next instant. They treat all runs in lockstep, eight axes
+/// at once; a run gives the same bits alone and among others, and goes on as it is if another one
+/// ends.
+///
+/// Runs are numbered from 0; functions that concern one of them take its number last, and the
+/// first if it is left out.
 class ServoAxes {
  public:
-  /// @param machine   must outlive this
+  /// @param machines  one a run; must outlive this. All have the same periods and integrator
   /// @param joints    those that take part; the others stand at zero
   /// @param schedule  its steps are what `advance` may be asked for
-  ServoAxes(const MachineSettings& machine, std::vector<int> joints,
+  ServoAxes(std::vector<const MachineSettings*> machines, std::vector<int> joints,
             const std::vector<Instant>& schedule);
+  ServoAxes(const MachineSettings& machine, std::vector<int> joints,
+            const std::vector<Instant>& schedule)
+      : ServoAxes(std::vector{&machine}, std::move(joints), schedule) {}
+
+  std::size_t runs() const { return machines_.size(); }
 
   /// Has stood for long where the loops hold Q, which the NC reads as Q + displacement: there, or
   /// below it by what the load needs where no loop has an integral part.
-  void settle(const Joints& Q, const Eigen::Vector3d& displacement);
+  void settle(const Joints& Q, const Eigen::Vector3d& displacement, std::size_t run = 0);
+  /// What a virtual encoder adds to the readings of the linear joints (3; m), from now on.
+  void displace(const Eigen::Vector3d& displacement, std::size_t run = 0);
+  /// What the position loops follow, from now on.
+  void follow(const AxisSetPoint& set, std::size_t run = 0);
+  /// What is added to a joint from now on.
+  void inject(int joint, const Injection& injection, std::size_t run = 0);
+  /// The run has ended: its drives stay where they are.
+  void end(std::size_t run);
 
+  /// kErrorModel and kRecord need this first: the position encoders are read.
+  void read_scales();
   /// kSample: the reading that the next position period will use.
-  /// @param displacement  of the linear joints (3; m), added by a virtual encoder
-  void take_reading(const Eigen::Vector3d& displacement);
+  void take_readings();
   /// kPositionLoop
-  void run_position_loops(const AxisSetPoint& set);
+  void run_position_loops();
   /// kCurrentLoop
   void run_current_loops();
   /// kVelocityLoop
@@ -71,103 +92,132 @@ class ServoAxes {
     now_ += step;
   }
 
-  /// Readings of the position encoders at this moment.
-  Joints scale_reading() const;
+  /// What read_scales read.
+  Joints Q_meas(std::size_t run = 0) const { return joints_of(&ServoBlock::scale, run); }
   /// What the position loops read last.
-  const Joints& Q_read() const { return Q_read_; }
-  Joints Q_true() const { return joints_of(drive().x); }
-  Joints dQ_true() const { return joints_of(drive().v); }
-  Joints current() const { return joints_of(drive().i); }
+  Joints Q_read(std::size_t run = 0) const { return joints_of(&ServoBlock::Q_read, run); }
+  Joints Q_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::x, run); }
+  Joints dQ_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::v, run); }
+  Joints current(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::i, run); }
+  /// What acts on the drives: A, with a winding V.
+  Joints command(std::size_t run = 0) const {
+    return gathered(input_.blocks, &plant::DriveInputBlock::command, run);
+  }
+  Joints motor_angle(std::size_t run = 0) const;
+  Joints motor_speed(std::size_t run = 0) const;
+  /// Motor speed as the velocity loop formed it last, and what it lacked (rad/s).
+  Joints measured_speed(std::size_t run = 0) const;
+  Joints speed_error(std::size_t run = 0) const;
   const std::vector<int>& joints() const { return joints_; }
 
-  /// Why the NC stops the machine for this joint in this position period, as it would say it
-  /// ("following error beyond 10 mm"); nullopt as long as all is well.
-  std::optional<std::string> supervise(int joint, const AxisSetPoint& set);
+  /// Why the NC stops a machine in this position period: the joint, and the reason as it would say
+  /// it ("following error beyond 10 mm"); nullopt as long as all is well.
+  struct Fault {
+    int joint;
+    std::string reason;
+  };
+  std::optional<Fault> supervise(std::size_t run = 0);
 
-  Joints motor_speed() const;
-  /// Motor speed as the velocity loop formed it last, and what it lacked (rad/s).
-  const Joints& measured_speed() const { return speed_read_; }
-  const Joints& speed_error() const { return speed_error_; }
-
-  /// What is added to a joint from now on.
-  void inject(int joint, const Injection& injection);
-
-  /// Visits what of one axis changes with time, as double&: drive, loops, reading. States that
-  /// cannot move (no integral part, no current lag, ...) are left out.
+  /// Visits what of one axis of the first run changes with time, as double&: drive, loops, reading.
+  /// States that cannot move (no integral part, no current lag, ...) are left out.
   template <class Visit>
   void each_state(int joint, Visit visit);
 
  private:
-  static std::size_t lane(int joint) { return static_cast<std::size_t>(joint); }
-  // The drives of all joints that take part lie in one block.
-  plant::DriveBlock& drive() { return state_.blocks.front(); }
-  const plant::DriveBlock& drive() const { return state_.blocks.front(); }
-  std::size_t drive_lane(int joint) const { return drive_lane_[lane(joint)]; }
-  Joints joints_of(const LaneArray& values) const {
-    Joints Q = Joints::Zero();
-    for (const int j : joints_) Q[j] = values[drive_lane(j)];
-    return Q;
-  }
-  // State of the NC's functions of one axis.
-  struct Loop {
-    controllers::CascadeState cascade;
-    controllers::CurrentLoopState current;
-    controllers::PositionFeedbackState feedback;
+  // What the NC does for an axis beside its loops.
+  struct Functions {
     controllers::FrictionCompensationState friction;
     controllers::BacklashCompensationState backlash;
     controllers::SupervisionState supervision;
     std::optional<plant::MarkMonitor> marks;
     std::optional<plant::MarkFault> mark_fault;
-    double y_motor = 0.0, y_scale = 0.0;  // m or rad, read last for the position loop
-    double dq_ff = 0.0;                   // m/s or rad/s, fed forward in this position period
+  };
+  struct Axis {
+    std::size_t run;
+    int joint;
   };
 
-  double motor_reading(int joint) const;
-  double motor_speed(int joint) const;
-  double scale_reading(int joint) const;
-  void take_reading(int joint, double displacement);
+  std::size_t lane(std::size_t run, int joint) const {
+    return first_lane_[static_cast<std::size_t>(joint)] + run;
+  }
+  static std::size_t block(std::size_t lane) { return lane / kLaneWidth; }
+  static std::size_t place(std::size_t lane) { return lane % kLaneWidth; }
+  template <class Blocks, class Member>
+  Joints gathered(const Blocks& blocks, Member member, std::size_t run) const {
+    Joints Q = Joints::Zero();
+    for (const int j : joints_) {
+      const std::size_t l = lane(run, j);
+      Q[j] = (blocks[block(l)].*member)[place(l)];
+    }
+    return Q;
+  }
+  Joints joints_of(LaneArray ServoBlock::*member, std::size_t run) const {
+    return gathered(servos_, member, run);
+  }
+  Joints drives_of(LaneArray plant::DriveBlock::*member, std::size_t run) const {
+    return gathered(state_.blocks, member, run);
+  }
+  double& at(LaneArray ServoBlock::*member, std::size_t lane) {
+    return (servos_[block(lane)].*member)[place(lane)];
+  }
 
-  const MachineSettings& machine_;
+  const MachineSettings& machine_of(std::size_t lane) const { return *machines_[axes_[lane].run]; }
+  void describe(std::size_t lane);
+  void settle(std::size_t lane, double Q, double displacement);
+  void read_motors();
+  double motor_reading(std::size_t lane) const;
+  double scale_reading(std::size_t lane) const;
+  std::optional<std::string> fault_of(std::size_t lane);
+
+  std::vector<const MachineSettings*> machines_;
   std::vector<int> joints_;
-  std::array<std::size_t, kJoints> drive_lane_{};
+  std::vector<Axis> axes_;  // by lane: joint by joint
+  std::array<std::size_t, kJoints> first_lane_{};
+  std::vector<plant::FeedDriveParams> params_;  // by lane
   plant::DriveBank drives_;
   std::optional<plant::CvodeBank> cvode_;  // moves the drives instead, if asked for
   plant::DriveState state_;
   plant::DriveInput input_;
-  std::array<Loop, kJoints> loops_;
+  std::vector<ServoBlock> servos_;
+  std::vector<Functions> functions_;  // by lane
+  // lanes that need more than the kernel does
+  std::vector<std::size_t> own_motor_reading_, own_scale_reading_, marked_, with_backlash_,
+      with_friction_;
+  const ServoKernel& kernel_;
   Tick now_ = 0;
-  std::array<Injection, kJoints> injected_{};
-  Joints Q_read_ = Joints::Zero();
-  Joints speed_read_ = Joints::Zero(), speed_error_ = Joints::Zero();
 };
 
 template <class Visit>
 void ServoAxes::each_state(int joint, Visit visit) {
-  const std::size_t j = lane(joint);
-  const plant::FeedDriveParams& params = machine_.drives[j];
-  const controllers::CascadeParams& cascade = machine_.nc.cascade[j];
-  const AxisFunctions& functions = machine_.nc.functions[j];
-  Loop& loop = loops_[j];
+  const std::size_t l = lane(0, joint), k = place(l);
+  const plant::FeedDriveParams& drive = params_[l];
+  const auto j = static_cast<std::size_t>(joint);
+  const controllers::CascadeParams& cascade = machines_[0]->nc.cascade[j];
+  const AxisFunctions& functions = machines_[0]->nc.functions[j];
+  plant::DriveBlock& state = state_.blocks[block(l)];
+  ServoBlock& servo = servos_[block(l)];
   // the drive
-  if (params.has_winding() || params.T_i > 0.0) visit(drive().i[drive_lane(joint)]);
-  if (!params.is_rigid()) {
-    visit(drive().w[drive_lane(joint)]);
-    visit(drive().delta[drive_lane(joint)]);
+  if (drive.has_winding() || drive.T_i > 0.0) visit(state.i[k]);
+  if (!drive.is_rigid()) {
+    visit(state.w[k]);
+    visit(state.delta[k]);
   }
-  visit(drive().v[drive_lane(joint)]);
-  visit(drive().x[drive_lane(joint)]);
-  visit(input_.blocks.front().command[drive_lane(joint)]);
+  visit(state.v[k]);
+  visit(state.x[k]);
+  visit(input_.blocks[block(l)].command[k]);
   // the loops
-  visit(loop.cascade.v_cmd);
-  if (cascade.Ki > 0.0) visit(loop.cascade.integral);
-  visit(loop.cascade.phi);
-  visit(loop.cascade.i_next);
-  for (std::size_t n = 0; n < 2 * cascade.filters.count; ++n) visit(loop.cascade.filters.z[n]);
-  if (params.has_winding() && functions.current_loop.Ki > 0.0) visit(loop.current.integral);
+  controllers::CascadeLanesState& loops = servo.cascade_state;
+  visit(loops.v_cmd[k]);
+  if (cascade.Ki > 0.0) visit(loops.integral[k]);
+  visit(loops.phi[k]);
+  visit(loops.i_next[k]);
+  for (std::size_t n = 0; n < 2 * cascade.filters.count; ++n) visit(loops.filters.z[n][k]);
+  if (drive.has_winding() && functions.current_loop.Ki > 0.0)
+    visit(servo.current_state.integral[k]);
   if (functions.position_feedback.kind == controllers::PositionFeedback::crossover) {
-    visit(loop.feedback.difference);
+    visit(servo.difference[k]);
   }
-  visit(Q_read_[joint]);
+  visit(servo.Q_read[k]);
 }
 
 }  // namespace servomill::sim

@@ -64,8 +64,7 @@ const AxisSetPoint& SetPoint::settle() {
   return out_;
 }
 
-const AxisSetPoint& SetPoint::advance(double t) {
-  const auto sample = reference_.at(t, cursor_);
+const AxisSetPoint& SetPoint::advance(const controllers::Trajectory::Sample& sample) {
   out_ = {sample.Q_ref, sample.Q_ref, sample.dQ_ref, sample.ddQ_ref};
   if (filters_) {
     out_.Q_ref = filters_->Q(sample.Q_ref);

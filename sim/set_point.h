@@ -25,8 +25,8 @@ class SetPoint {
   /// Time by which the filter delays the reference (s).
   double delay() const { return delay_; }
 
-  /// Set point of time t (s), one position period after the call before.
-  const AxisSetPoint& advance(double t);
+  /// Set point for what the trajectory asks for, one position period after the call before.
+  const AxisSetPoint& advance(const controllers::Trajectory::Sample& sample);
 
  private:
   struct Correction {
@@ -46,7 +46,6 @@ class SetPoint {
   void feed_forward(const Eigen::Vector3d& offset);
 
   const controllers::Trajectory& reference_;
-  controllers::Trajectory::Cursor cursor_;
   std::vector<Correction> corrections_;
   double Tp_;
   double delay_ = 0.0;

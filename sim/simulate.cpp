@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "plant/vocabulary/units.h"
@@ -72,14 +74,34 @@ class LastTicks {
   std::size_t count_ = 0;
 };
 
-// One machine with its loops, stepped from instant to instant of the static schedule.
+// The reference of one trajectory, asked for once at each instant however many runs follow it.
+class Reference {
+ public:
+  explicit Reference(const controllers::Trajectory& trajectory) : trajectory_(trajectory) {}
+  bool is(const controllers::Trajectory& other) const { return &trajectory_ == &other; }
+  const controllers::Trajectory::Sample& at(double t) {
+    if (t != t_) sample_ = trajectory_.at(t, cursor_);
+    t_ = t;
+    return sample_;
+  }
+
+ private:
+  const controllers::Trajectory& trajectory_;
+  controllers::Trajectory::Cursor cursor_;
+  double t_ = std::numeric_limits<double>::quiet_NaN();
+  controllers::Trajectory::Sample sample_;
+};
+
+// What belongs to one case among those that run in lockstep: set point, feedback hardware,
+// recorder.
 class CaseRun {
  public:
-  explicit CaseRun(CaseInputs& in)
+  CaseRun(CaseInputs& in, ServoAxes& axes, std::size_t run, Reference& reference)
       : in_(in),
         nc_(in.machine.nc),
-        schedule_(make_schedule(rates_of(in))),
-        axes_(in.machine, in.machine.joints(), schedule_),
+        axes_(axes),
+        run_(run),
+        reference_(reference),
         set_point_(nc_, in.reference, std::move(in.set_points)),
         recorder_(in.machine, in.truth, in.imposed, in.path, in.tips),
         last_ticks_(in.machine.joints()) {
@@ -89,29 +111,62 @@ class CaseRun {
     settle();
   }
 
-  CaseResult run(const StopFlag& stop, std::atomic<float>& progress) {
-    CaseResult result;
-    Outcome& outcome = result.outcome;
-    Tick n = 0;
-    while (n <= end_ && outcome.finished) {
-      progress.store(static_cast<float>(n) / static_cast<float>(end_), std::memory_order_relaxed);
-      if (stop.load(std::memory_order_relaxed)) outcome = interrupted(nc_.periods.seconds(n));
-      for (const Instant& instant : schedule_) {
-        if (n > end_ || !outcome.finished) break;
-        if (instant.due & kErrorModel) evaluate_error_model();
-        if (instant.due & kSample) axes_.take_reading(d_now_);
-        if (instant.due & kPositionLoop) run_position_loops(n, outcome);
-        if (instant.due & kCurrentLoop) axes_.run_current_loops();
-        if (instant.due & kVelocityLoop) axes_.run_velocity_loops();
-        if (instant.due & kRecord) record(n);
-        axes_.advance(instant.step);
-        n += instant.step;
-      }
+  Tick end() const { return end_; }
+  bool goes_on_at(Tick n) const { return n <= end_ && result_.outcome.finished; }
+
+  // Feedback hardware: the model evaluated one period ago acts now, the next one is begun.
+  void evaluate_error_model() {
+    axes_.displace(d_next_, run_);
+    d_next_ = in_.feedback->evaluate(axes_.Q_meas(run_));
+  }
+
+  void interpolate(Tick n) {
+    set_ = set_point_.advance(reference_.at(nc_.periods.seconds(n)));
+    last_ticks_.keep(nc_.periods.seconds(n), set_.Q_cmd, axes_.Q_read(run_), axes_.Q_true(run_),
+                     axes_.current(run_));
+    axes_.follow(set_, run_);
+  }
+
+  void supervise(Tick n) {
+    const auto fault = axes_.supervise(run_);
+    if (!fault || !result_.outcome.finished) return;
+    Outcome& outcome = result_.outcome;
+    outcome.finished = false;
+    outcome.axis = in_.machine.chain.layout.letter_of(fault->joint);
+    outcome.time = nc_.periods.seconds(n);
+    outcome.reason =
+        fmt::format("axis {}: {} at {:.4f} s", outcome.axis, fault->reason, outcome.time);
+  }
+
+  void record(Tick n) {
+    // The reference of this very instant: between position periods the held one is older than
+    // Q_true.
+    const double t = nc_.periods.seconds(n) - set_point_.delay();
+    const auto& reference = recorded_.at(t);
+    Snapshot now;
+    now.time = nc_.periods.seconds(n);
+    now.s = reference.s;
+    now.Q_ref = reference.Q_ref;
+    now.Q_cmd = set_.Q_cmd;
+    now.Q_read = axes_.Q_read(run_);
+    now.Q_meas = axes_.Q_meas(run_);
+    now.Q_true = axes_.Q_true(run_);
+    now.dQ_true = axes_.dQ_true(run_);
+    now.current = axes_.current(run_);
+    for (const int j : axes_.joints()) {
+      now.torque[j] = in_.machine.drives[static_cast<std::size_t>(j)].Kt * now.current[j];
     }
-    result.simulated_time = nc_.periods.seconds(n);
-    result.servo = recorder_.take();
-    if (!result.outcome.finished) result.last_ticks = last_ticks_.series(in_.machine.chain.layout);
-    return result;
+    recorder_.record(now);
+  }
+
+  void interrupt(Tick n) { result_.outcome = interrupted(nc_.periods.seconds(n)); }
+
+  CaseResult finish(Tick n) {
+    result_.simulated_time = nc_.periods.seconds(n);
+    result_.servo = recorder_.take();
+    if (!result_.outcome.finished)
+      result_.last_ticks = last_ticks_.series(in_.machine.chain.layout);
+    return std::move(result_);
   }
 
  private:
@@ -121,72 +176,119 @@ class CaseRun {
     Joints Q = set_.Q_cmd;
     if (in_.feedback) {
       for (int n = 0; n < 50; ++n) {  // Q + d(Q) = Q_cmd, a contraction by the slope of the errors
-        d_now_ = in_.feedback->settle(Q);
+        d_next_ = in_.feedback->settle(Q);
         Q = set_.Q_cmd;
-        Q.head<3>() -= d_now_;
+        Q.head<3>() -= d_next_;
       }
-      d_next_ = d_now_;
     }
-    axes_.settle(Q, d_now_);
-  }
-
-  // Feedback hardware: the model evaluated one period ago acts now, the next one is begun.
-  void evaluate_error_model() {
-    d_now_ = d_next_;
-    d_next_ = in_.feedback->evaluate(axes_.scale_reading());
-  }
-
-  void run_position_loops(Tick n, Outcome& outcome) {
-    const double time = nc_.periods.seconds(n);
-    set_ = set_point_.advance(time);
-    last_ticks_.keep(time, set_.Q_cmd, axes_.Q_read(), axes_.Q_true(), axes_.current());
-    axes_.run_position_loops(set_);
-    for (const int j : axes_.joints()) {
-      if (const auto reason = axes_.supervise(j, set_)) halt(outcome, j, *reason, time);
-    }
-  }
-
-  void record(Tick n) {
-    // The reference of this very instant: between position periods the held one is older than
-    // Q_true.
-    const double t = nc_.periods.seconds(n) - set_point_.delay();
-    const auto reference = in_.reference.at(t, record_cursor_);
-    Snapshot now;
-    now.time = nc_.periods.seconds(n);
-    now.s = reference.s;
-    now.Q_ref = reference.Q_ref;
-    now.Q_cmd = set_.Q_cmd;
-    now.Q_read = axes_.Q_read();
-    now.Q_meas = axes_.scale_reading();
-    now.Q_true = axes_.Q_true();
-    now.dQ_true = axes_.dQ_true();
-    now.current = axes_.current();
-    for (const int j : axes_.joints()) {
-      now.torque[j] = in_.machine.drives[static_cast<std::size_t>(j)].Kt * now.current[j];
-    }
-    recorder_.record(now);
-  }
-
-  void halt(Outcome& outcome, int joint, const std::string& reason, double time) const {
-    if (!outcome.finished) return;
-    outcome.finished = false;
-    outcome.axis = in_.machine.chain.layout.letter_of(joint);
-    outcome.time = time;
-    outcome.reason = fmt::format("axis {}: {} at {:.4f} s", outcome.axis, reason, time);
+    axes_.settle(Q, d_next_, run_);
   }
 
   CaseInputs& in_;
   const NcSettings& nc_;
-  std::vector<Instant> schedule_;
-  ServoAxes axes_;
+  ServoAxes& axes_;
+  std::size_t run_;
+  Reference& reference_;
+  Reference recorded_{in_.reference};
   SetPoint set_point_;
   Recorder recorder_;
   LastTicks last_ticks_;
   Tick end_ = 0;
-
   AxisSetPoint set_;
-  controllers::Trajectory::Cursor record_cursor_;
-  Eigen::Vector3d d_now_ = Eigen::Vector3d::Zero(), d_next_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d d_next_ = Eigen::Vector3d::Zero();  // acts one model period later
+  CaseResult result_;
+};
+
+// Machines with their loops, stepped together from instant to instant of one static schedule.
+class Lockstep {
+ public:
+  explicit Lockstep(std::span<CaseInputs* const> together)
+      : schedule_(make_schedule(rates_of(*together.front()))),
+        axes_(machines_of(together), together.front()->machine.joints(), schedule_) {
+    for (std::size_t run = 0; run < together.size(); ++run) {
+      CaseInputs& in = *together[run];
+      runs_.push_back(std::make_unique<CaseRun>(in, axes_, run, reference_of(in.reference)));
+      longest_ = std::max(longest_, runs_.back()->end());
+    }
+  }
+
+  std::vector<CaseResult> run(const StopFlag& stop, std::atomic<float>& progress) {
+    std::vector<CaseResult> results(runs_.size());
+    for (Tick n = 0; n <= longest_;) {
+      progress.store(static_cast<float>(n) / static_cast<float>(longest_),
+                     std::memory_order_relaxed);
+      if (stop.load(std::memory_order_relaxed)) {
+        for (auto& run : runs_) {
+          if (run) run->interrupt(n);
+        }
+      }
+      for (const Instant& instant : schedule_) {
+        if (end_those_done(n, results)) return results;
+        visit(instant.due, n);
+        axes_.advance(instant.step);
+        n += instant.step;
+      }
+    }
+    end_those_done(longest_ + 1, results);
+    return results;
+  }
+
+ private:
+  static std::vector<const MachineSettings*> machines_of(std::span<CaseInputs* const> together) {
+    std::vector<const MachineSettings*> machines;
+    for (const CaseInputs* in : together) machines.push_back(&in->machine);
+    return machines;
+  }
+
+  Reference& reference_of(const controllers::Trajectory& trajectory) {
+    for (const auto& reference : references_) {
+      if (reference->is(trajectory)) return *reference;
+    }
+    return *references_.emplace_back(std::make_unique<Reference>(trajectory));
+  }
+
+  void visit(std::uint8_t due, Tick n) {
+    if (due & (kErrorModel | kRecord)) axes_.read_scales();
+    if (due & kErrorModel) each([](CaseRun& run) { run.evaluate_error_model(); });
+    if (due & kSample) axes_.take_readings();
+    if (due & kPositionLoop) {
+      each([&](CaseRun& run) { run.interpolate(n); });
+      axes_.run_position_loops();
+      each([&](CaseRun& run) { run.supervise(n); });
+    }
+    if (due & kCurrentLoop) axes_.run_current_loops();
+    if (due & kVelocityLoop) axes_.run_velocity_loops();
+    if (due & kRecord) each([&](CaseRun& run) { run.record(n); });
+  }
+
+  template <class Do>
+  void each(Do what) {
+    for (auto& run : runs_) {
+      if (run) what(*run);
+    }
+  }
+
+  // Takes out the runs that end before n; whether none is left.
+  bool end_those_done(Tick n, std::vector<CaseResult>& results) {
+    bool none_left = true;
+    for (std::size_t run = 0; run < runs_.size(); ++run) {
+      if (!runs_[run]) continue;
+      if (runs_[run]->goes_on_at(n)) {
+        none_left = false;
+        continue;
+      }
+      results[run] = runs_[run]->finish(n);
+      runs_[run].reset();
+      axes_.end(run);
+    }
+    return none_left;
+  }
+
+  std::vector<Instant> schedule_;
+  ServoAxes axes_;
+  std::vector<std::unique_ptr<Reference>> references_;
+  std::vector<std::unique_ptr<CaseRun>> runs_;
+  Tick longest_ = 0;
 };
 
 // Axes that stand where the NC wants them: what remains is the strategy's own error.
@@ -209,7 +311,7 @@ class IdealRun {
         result.outcome = interrupted(periods_.seconds(n));
         break;
       }
-      set = set_point_.advance(periods_.seconds(n));
+      set = set_point_.advance(in_.reference.at(periods_.seconds(n), cursor_));
       if (n % in_.record_period == 0) record(n, set);
     }
     result.simulated_time = periods_.seconds(n);
@@ -236,18 +338,41 @@ class IdealRun {
   const LoopPeriods& periods_;
   SetPoint set_point_;
   Recorder recorder_;
-  controllers::Trajectory::Cursor record_cursor_;
+  controllers::Trajectory::Cursor cursor_, record_cursor_;
 };
 
 }  // namespace
 
-CaseResult simulate(CaseInputs& inputs, const StopFlag& stop, std::atomic<float>& progress) {
+bool share_lanes(const CaseInputs& a, const CaseInputs& b) {
+  const auto same_rate = [](const Rate& one, const Rate& other) {
+    return one.due == other.due && one.period == other.period && one.phase == other.phase;
+  };
+  const std::vector<Rate> of_a = rates_of(a), of_b = rates_of(b);
+  return a.servo == ServoModel::cascade && b.servo == ServoModel::cascade &&
+         a.machine.integrator == b.machine.integrator &&
+         a.machine.nc.periods.base == b.machine.nc.periods.base &&
+         a.machine.joints() == b.machine.joints() &&
+         std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), same_rate);
+}
+
+std::vector<CaseResult> simulate(std::span<CaseInputs* const> together, const StopFlag& stop,
+                                 std::atomic<float>& progress) {
   const auto begin = std::chrono::steady_clock::now();
-  CaseResult result = inputs.servo == ServoModel::ideal ? IdealRun(inputs).run(stop, progress)
-                                                        : CaseRun(inputs).run(stop, progress);
-  result.wall_time =
+  std::vector<CaseResult> results;
+  if (together.front()->servo == ServoModel::ideal) {
+    results.push_back(IdealRun(*together.front()).run(stop, progress));
+  } else {
+    results = Lockstep(together).run(stop, progress);
+  }
+  const double wall_time =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return result;
+  for (CaseResult& result : results) result.wall_time = wall_time;
+  return results;
+}
+
+CaseResult simulate(CaseInputs& inputs, const StopFlag& stop, std::atomic<float>& progress) {
+  CaseInputs* const alone[] = {&inputs};
+  return std::move(simulate(alone, stop, progress).front());
 }
 
 }  // namespace servomill::sim

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -62,11 +63,21 @@ struct CaseResult {
   Series servo;                 // one row a record period
   Series last_ticks;            // when stopped: what happened in the last position periods
   double simulated_time = 0.0;  // s
-  double wall_time = 0.0;       // s
+  double wall_time = 0.0;       // s, of all that ran in lockstep
 };
 
+/// Whether two cases can run in lockstep: the same axes, moved at the same instants. Everything
+/// else may differ: program, feed, strategy, any number of the machine.
+bool share_lanes(const CaseInputs& a, const CaseInputs& b);
+
+/// Runs cases in lockstep, eight axes at a time. Each result is that of the case run alone, bit for
+/// bit.
+/// @param together  at least one; share_lanes holds for each with the first. An ideal machine runs
+///                  alone
 /// @param stop      looked at once a hyperperiod
-/// @param progress  set to the simulated share of the case, 0 to 1, as often
+/// @param progress  set to the simulated share, 0 to 1, as often
+std::vector<CaseResult> simulate(std::span<CaseInputs* const> together, const StopFlag& stop,
+                                 std::atomic<float>& progress);
 CaseResult simulate(CaseInputs& inputs, const StopFlag& stop, std::atomic<float>& progress);
 
 }  // namespace servomill::sim

@@ -41,11 +41,12 @@ double spectral_radius(const MachineSettings& machine, int joint, Tick reading_d
   Eigen::MatrixXd monodromy(states, states);
   for (int column = 0; column < states; ++column) {
     axes.settle(Joints::Zero(), Eigen::Vector3d::Zero());
+    axes.follow({});
     int k = 0;
     axes.each_state(joint, [&](double& x) { x = k++ == column ? 1.0 : 0.0; });
     for (const Instant& instant : schedule) {
-      if (instant.due & kSample) axes.take_reading(Eigen::Vector3d::Zero());
-      if (instant.due & kPositionLoop) axes.run_position_loops({});
+      if (instant.due & kSample) axes.take_readings();
+      if (instant.due & kPositionLoop) axes.run_position_loops();
       if (instant.due & kCurrentLoop) axes.run_current_loops();
       if (instant.due & kVelocityLoop) axes.run_velocity_loops();
       axes.advance(instant.step);

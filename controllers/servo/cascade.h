@@ -10,6 +10,8 @@
 #include <limits>
 
 #include "controllers/servo/filters.h"
+#include "plant/vocabulary/lanes.h"
+#include "plant/vocabulary/numbers.h"
 
 namespace servomill::controllers {
 
@@ -34,15 +36,53 @@ struct CascadeParams {
   FilterChain filters = {};   // of the current command, run once per velocity period
 };
 
-struct CascadeState {
-  double v_cmd = 0.0;     // m/s, from the position loop
-  double i_ff = 0.0;      // A, acceleration feed-forward
-  double integral = 0.0;  // N m
-  double phi = 0.0;       // rad, motor angle read last
-  double i_next = 0.0;    // A, computed; acts from the next current period on
-  double i_cmd = 0.0;     // A, acts now
-  FilterState filters = {};
+/// @tparam Number  double for one axis, LaneArray for eight
+template <class Number, class Filters>
+struct CascadeStateOf {
+  Number v_cmd{};     // m/s, from the position loop
+  Number i_ff{};      // A, acceleration feed-forward
+  Number integral{};  // N m
+  Number phi{};       // rad, motor angle read last
+  Number w{};         // rad/s, motor speed as it was read last
+  Number e{};         // rad/s, what it lacked
+  Number i_next{};    // A, computed; acts from the next current period on
+  Number i_cmd{};     // A, acts now
+  Filters filters{};
 };
+using CascadeState = CascadeStateOf<double, FilterState>;
+using CascadeLanesState = CascadeStateOf<LaneArray, FilterLanesState>;
+
+/// What the loops compute with: CascadeParams without divisions.
+template <class Number, class Filters>
+struct CascadeGainsOf {
+  Number Kv{}, kvf{}, v_max{};         // 1/s, -, m/s
+  Number i_per_a{};                    // A s^2/m: kaf J / (r Kt)
+  Number per_r{}, per_Tv{}, per_Kt{};  // 1/r, 1/Tv, 1/Kt
+  Number Kp{}, Ki_Tv{};                // N m s/rad: Kp, Ki Tv
+  Number i_max{}, di_max{};            // A: least of i_max and tau_max / Kt; slew in one period
+  Filters filters{};
+};
+using CascadeGains = CascadeGainsOf<double, FilterChain>;
+using CascadeLanes = CascadeGainsOf<LaneArray, FilterLanes>;
+
+inline CascadeGains gains_of(const CascadeParams& p) {
+  return {p.Kv,
+          p.kvf,
+          p.v_max,
+          p.kaf * p.J / (p.r * p.Kt),
+          1.0 / p.r,
+          1.0 / p.Tv,
+          1.0 / p.Kt,
+          p.Kp,
+          p.Ki * p.Tv,
+          std::min(p.i_max, p.tau_max / p.Kt),
+          p.di_max * p.Tv,
+          p.filters};
+}
+
+/// Makes one of eight axes what `gains` and `state` say.
+void set_lane(CascadeLanes& lanes, std::size_t lane, const CascadeGains& gains);
+void set_lane(CascadeLanesState& lanes, std::size_t lane, const CascadeState& state);
 
 /// The same loops without their limits, for linear analysis.
 inline CascadeParams without_limits(CascadeParams p) {
@@ -58,13 +98,13 @@ inline double standing_error(const CascadeParams& p, double i) {
 
 /// State of a cascade that has held `i` (A) at the motor angle `phi` (rad) for long.
 inline CascadeState standing_at(const CascadeParams& p, double phi, double i) {
-  return {.v_cmd = p.Kv * standing_error(p, i),
-          .i_ff = 0.0,
-          .integral = p.Ki > 0.0 ? i * p.Kt : 0.0,
-          .phi = phi,
-          .i_next = i,
-          .i_cmd = i,
-          .filters = standing_at(p.filters, i)};
+  CascadeState s;
+  s.v_cmd = p.Kv * standing_error(p, i);
+  s.integral = p.Ki > 0.0 ? i * p.Kt : 0.0;
+  s.phi = phi;
+  s.i_next = s.i_cmd = i;
+  s.filters = standing_at(p.filters, i);
+  return s;
 }
 
 /// Position loop: v_cmd = Kv (q_cmd - y) + kvf dq_ff + v_add limited to +-v_max,
@@ -74,10 +114,17 @@ inline CascadeState standing_at(const CascadeParams& p, double phi, double i) {
 /// velocity loop stays in command of a drive that moves at v_max.
 /// @param y      position that the NC reads (m or rad)
 /// @param v_add  velocity to add, m/s: backlash compensation
+template <class Gains, class State, class Number>
+void position_loop(const Gains& g, State& s, Number q_cmd, Number y, Number dq_ff, Number ddq_ff,
+                   Number v_add) {
+  const Number v_max = value<Number>(g.v_max);
+  const Number v = value<Number>(g.Kv) * (q_cmd - y) + value<Number>(g.kvf) * dq_ff + v_add;
+  put(s.v_cmd, limited_to(-v_max, v_max, v));
+  put(s.i_ff, value<Number>(g.i_per_a) * ddq_ff);
+}
 inline void position_loop(const CascadeParams& p, CascadeState& s, double q_cmd, double y,
                           double dq_ff, double ddq_ff, double v_add = 0.0) {
-  s.v_cmd = std::clamp(p.Kv * (q_cmd - y) + p.kvf * dq_ff + v_add, -p.v_max, p.v_max);
-  s.i_ff = p.kaf * p.J * ddq_ff / (p.r * p.Kt);
+  position_loop(gains_of(p), s, q_cmd, y, dq_ff, ddq_ff, v_add);
 }
 
 /// Velocity loop: e = v_cmd / r - dphi, i = (Kp e + I) / Kt + i_ff + tau_ff / Kt, then
@@ -91,24 +138,38 @@ inline void position_loop(const CascadeParams& p, CascadeState& s, double q_cmd,
 /// @param tau_ff   torque to add, N m: friction compensation
 /// @param limited  whether something behind holds the drive back, too: the voltage
 ///                 (CurrentLoopState::limited); it holds the integral
+/// @param v_add    m/s, to add to the velocity command: a measurement's injection
+template <class Gains, class State, class Number, class Mask>
+void velocity_loop(const Gains& g, State& s, Number phi, Number tau_ff, Mask limited,
+                   Number v_add) {
+  const Number w = (phi - value<Number>(s.phi)) * value<Number>(g.per_Tv);
+  const Number e = (value<Number>(s.v_cmd) + v_add) * value<Number>(g.per_r) - w;
+  put(s.phi, phi);
+  put(s.w, w);
+  put(s.e, e);
+  const Number i_max = value<Number>(g.i_max), di_max = value<Number>(g.di_max);
+  const Number integral = value<Number>(s.integral), i_last = value<Number>(s.i_next);
+
+  const Number i = (value<Number>(g.Kp) * e + integral + tau_ff) * value<Number>(g.per_Kt) +
+                   value<Number>(s.i_ff);
+  const Number i_limited = limited_to(-i_max, i_max, i);
+  const Number i_filtered = advance(g.filters, s.filters, i_limited);
+  const Number i_slewed = limited_to(i_last - di_max, i_last + di_max, i_filtered);
+  const Number i_next = limited_to(-i_max, i_max, i_slewed);
+  put(s.i_next, i_next);
+  limited = limited | (i_limited != i) | (i_next != i_filtered);
+  put(s.integral, select(limited, integral, integral + value<Number>(g.Ki_Tv) * e));
+}
 inline void velocity_loop(const CascadeParams& p, CascadeState& s, double phi, double tau_ff = 0.0,
                           bool limited = false) {
-  const double e = s.v_cmd / p.r - (phi - s.phi) / p.Tv;
-  s.phi = phi;
-  const double i_limit = std::min(p.i_max, p.tau_max / p.Kt);
-  const double slew = p.di_max * p.Tv;
-
-  const double i = (p.Kp * e + s.integral) / p.Kt + s.i_ff + tau_ff / p.Kt;
-  const double i_limited = std::clamp(i, -i_limit, i_limit);
-  const double i_filtered = advance(p.filters, s.filters, i_limited);
-  const double i_slewed = std::clamp(i_filtered, s.i_next - slew, s.i_next + slew);
-  s.i_next = std::clamp(i_slewed, -i_limit, i_limit);
-  limited = limited || i_limited != i || s.i_next != i_filtered;
-  if (!limited) s.integral += p.Ki * p.Tv * e;
+  velocity_loop(gains_of(p), s, phi, tau_ff, limited, 0.0);
 }
 
 /// The drive follows what the velocity loop computed before this instant, so that a command is one
 /// current period old when it acts. Call it before velocity_loop within a tick.
-inline void latch_current_command(CascadeState& s) { s.i_cmd = s.i_next; }
+template <class State>
+void latch_current_command(State& s) {
+  s.i_cmd = s.i_next;
+}
 
 }  // namespace servomill::controllers

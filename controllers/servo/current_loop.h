@@ -1,7 +1,8 @@
 /// Current loop of one axis, discrete: the drive's current follows its command through the winding.
 #pragma once
 
-#include <algorithm>
+#include "plant/vocabulary/lanes.h"
+#include "plant/vocabulary/numbers.h"
 
 namespace servomill::controllers {
 
@@ -13,11 +14,29 @@ struct CurrentLoopParams {
   double Ti = 0.0;     // s, current period
 };
 
-struct CurrentLoopState {
-  double integral = 0.0;  // V
-  double u = 0.0;         // V, holds until the next current period
-  bool limited = false;   // whether u_max cut it
+/// @tparam Number  double for one axis, LaneArray for eight
+template <class Number>
+struct CurrentLoopStateOf {
+  Number integral{};  // V
+  Number u{};         // V, holds until the next current period
+  Number excess{};    // V, by which u_max cut it
+
+  bool limited() const { return excess != 0.0; }
 };
+using CurrentLoopState = CurrentLoopStateOf<double>;
+using CurrentLoopLanesState = CurrentLoopStateOf<LaneArray>;
+
+/// What the loop computes with.
+template <class Number>
+struct CurrentLoopGainsOf {
+  Number Kp{}, Ki_Ti{}, u_max{};  // V/A: Kp, Ki Ti; V
+};
+using CurrentLoopGains = CurrentLoopGainsOf<double>;
+using CurrentLoopLanes = CurrentLoopGainsOf<LaneArray>;
+
+inline CurrentLoopGains gains_of(const CurrentLoopParams& p) {
+  return {p.Kp, p.Ki * p.Ti, p.u_max};
+}
 
 /// Command (A) that holds a current for long, and the state that goes with it.
 struct StandingCurrent {
@@ -36,12 +55,18 @@ inline StandingCurrent standing_at(const CurrentLoopParams& p, double i, double 
 /// unless the limit holds it (anti-windup). A limit that is reached but does not cut is none.
 /// @param i_cmd  A, from the velocity loop
 /// @param i      A, torque-forming current at this instant
+template <class Gains, class State, class Number>
+void current_loop(const Gains& g, State& s, Number i_cmd, Number i) {
+  const Number u_max = value<Number>(g.u_max), integral = value<Number>(s.integral);
+  const Number e = i_cmd - i;
+  const Number u = value<Number>(g.Kp) * e + integral;
+  const Number u_limited = limited_to(-u_max, u_max, u);
+  put(s.u, u_limited);
+  put(s.excess, u - u_limited);
+  put(s.integral, select(u_limited != u, integral, integral + value<Number>(g.Ki_Ti) * e));
+}
 inline void current_loop(const CurrentLoopParams& p, CurrentLoopState& s, double i_cmd, double i) {
-  const double e = i_cmd - i;
-  const double u = p.Kp * e + s.integral;
-  s.u = std::clamp(u, -p.u_max, p.u_max);
-  s.limited = s.u != u;
-  if (!s.limited) s.integral += p.Ki * p.Ti * e;
+  current_loop(gains_of(p), s, i_cmd, i);
 }
 
 }  // namespace servomill::controllers

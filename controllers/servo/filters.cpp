@@ -1,5 +1,6 @@
 #include "controllers/servo/filters.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -76,6 +77,19 @@ FilterState standing_at(const FilterChain& chain, double value) {
     state.z[2 * n] = (c.b1 - c.a1) * value + state.z[2 * n + 1];
   }
   return state;
+}
+
+void FilterLanes::set_lane(std::size_t lane, const FilterChain& chain) {
+  for (std::size_t n = 0; n < kMaxSections; ++n) {
+    const Biquad c = n < chain.count ? chain.sections[n] : Biquad{};
+    Section& to = sections[n];
+    to.b0[lane] = c.b0;
+    to.b1[lane] = c.b1;
+    to.b2[lane] = c.b2;
+    to.a1[lane] = c.a1;
+    to.a2[lane] = c.a2;
+  }
+  count = std::max(count, chain.count);
 }
 
 }  // namespace servomill::controllers

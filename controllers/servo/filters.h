@@ -6,6 +6,9 @@
 #include <complex>
 #include <cstddef>
 
+#include "plant/vocabulary/lanes.h"
+#include "plant/vocabulary/numbers.h"
+
 namespace servomill::controllers {
 
 /// One section, transposed direct form II, with two states z1, z2:
@@ -80,15 +83,30 @@ std::complex<double> response(const FilterChain& chain, double w_T);
 /// State of a chain whose input has been `value` for long.
 FilterState standing_at(const FilterChain& chain, double value);
 
-/// Next sample in, next sample out.
-inline double advance(const FilterChain& chain, FilterState& state, double u) {
+/// Filter chains of eight axes; axes with fewer sections than others pass the rest.
+struct FilterLanes {
+  struct Section {
+    LaneArray b0, b1, b2, a1, a2;
+  };
+  std::array<Section, kMaxSections> sections = {};
+  std::size_t count = 0;
+
+  void set_lane(std::size_t lane, const FilterChain& chain);
+};
+struct FilterLanesState {
+  std::array<LaneArray, 2 * kMaxSections> z{};
+};
+
+/// Next sample in, next sample out: a FilterChain of doubles, or FilterLanes.
+template <class Chain, class State, class Number>
+Number advance(const Chain& chain, State& state, Number u) {
   for (std::size_t n = 0; n < chain.count; ++n) {
-    const Biquad& c = chain.sections[n];
-    double& z1 = state.z[2 * n];
-    double& z2 = state.z[2 * n + 1];
-    const double y = c.b0 * u + z1;
-    z1 = c.b1 * u - c.a1 * y + z2;
-    z2 = c.b2 * u - c.a2 * y;
+    const auto& c = chain.sections[n];
+    auto& z1 = state.z[2 * n];
+    auto& z2 = state.z[2 * n + 1];
+    const Number y = value<Number>(c.b0) * u + value<Number>(z1);
+    put(z1, value<Number>(c.b1) * u - value<Number>(c.a1) * y + value<Number>(z2));
+    put(z2, value<Number>(c.b2) * u - value<Number>(c.a2) * y);
     u = y;
   }
   return u;

@@ -38,6 +38,14 @@ inline PositionFeedbackState standing_at(const PositionFeedbackParams&, double y
   return {y_scale - y_motor};
 }
 
+/// d_k and y of position_feedback, for one axis or for lanes.
+template <class Number>
+Number combined_reading(const Number& gain, Number& difference, const Number& y_motor,
+                        const Number& y_scale) {
+  difference = difference + gain * (y_scale - y_motor - difference);
+  return y_motor + difference;
+}
+
 /// Position that the NC reads, once per position period:
 ///
 ///   d_k = d_(k-1) + gain (y_scale - y_motor - d_(k-1)),  y = y_motor + d_k
@@ -51,8 +59,7 @@ inline PositionFeedbackState standing_at(const PositionFeedbackParams&, double y
 inline double position_feedback(const PositionFeedbackParams& p, PositionFeedbackState& s,
                                 double y_motor, double y_scale) {
   if (p.kind == PositionFeedback::scale) return y_scale;
-  s.difference += p.gain * (y_scale - y_motor - s.difference);
-  return y_motor + s.difference;
+  return combined_reading(p.gain, s.difference, y_motor, y_scale);
 }
 
 }  // namespace servomill::controllers

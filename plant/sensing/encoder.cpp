@@ -79,7 +79,7 @@ std::vector<std::string> implausible(const EncoderParams& p) {
 
 Encoder::Encoder(const EncoderParams& params, const NoiseKey& key)
     : step_(params.step),
-      inverse_step_(params.step > 0.0 ? 1.0 / params.step : 0.0),
+      per_step_(params.step > 0.0 ? 1.0 / params.step : 0.0),
       disturbed_(has_signal_errors(params)),
       noisy_(params.signal_noise > 0.0 || params.position_noise > 0.0),
       periods_per_unit_(params.period > 0.0 ? 1.0 / params.period : 0.0),

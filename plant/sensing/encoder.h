@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "plant/sensing/noise.h"
+#include "plant/sensing/quantise.h"
 #include "plant/vocabulary/ticks.h"
 
 namespace servomill::plant {
@@ -99,15 +100,15 @@ class Encoder {
   double step() const { return step_; }
   double frequency_limit() const { return frequency_limit_; }
   bool is_noisy() const { return noisy_; }
+  /// Whether it does nothing but quantise.
+  bool is_plain() const { return !disturbed_ && !noisy_; }
 
  private:
-  double quantised(double position) const {
-    return step_ > 0.0 ? step_ * std::nearbyint(position * inverse_step_) : position;
-  }
+  double quantised(double position) const { return plant::quantised(step_, per_step_, position); }
   double with_noise(double position, Tick now) const;
   double interpolation_error(double position, std::complex<double> noise) const;
 
-  double step_ = 0.0, inverse_step_ = 0.0;
+  double step_ = 0.0, per_step_ = 0.0;
   bool disturbed_ = false, noisy_ = false;
   double periods_per_unit_ = 0.0, period_per_radian_ = 0.0;
   std::complex<double> ellipse_, centre_;  // (c + i s) / (its part that turns with theta)

@@ -15,6 +15,7 @@
 #include <xsimd/xsimd.hpp>
 
 #include "plant/vocabulary/lanes.h"
+#include "plant/vocabulary/numbers.h"
 #include "plant/vocabulary/simd.h"
 
 namespace servomill {
@@ -76,6 +77,8 @@ struct Pack {
 #pragma GCC unroll 4
     for (std::size_t n = 0; n < kRegisters; ++n) r[n].store_aligned(&to[0] + n * Batch::size);
   }
+
+  friend void put(LaneArray& to, const Pack& number) { number.store(to); }
 
   template <class F>
   static Pack each(F f) {
@@ -156,11 +159,5 @@ struct Pack {
     return each([&](std::size_t n) { return xsimd::nearbyint(a.r[n]); });
   }
 };
-
-/// The same words for one number, so that a formula is written once.
-inline double fma(double a, double b, double c) { return a * b + c; }
-inline double select(bool mask, double yes, double no) { return mask ? yes : no; }
-inline double min(double a, double b) { return b < a ? b : a; }
-inline double max(double a, double b) { return a < b ? b : a; }
 
 }  // namespace servomill

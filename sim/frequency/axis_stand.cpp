@@ -70,12 +70,13 @@ bool AxisStand::at_current_limit() {
 
 void AxisStand::run_loops(std::uint8_t due, const StandInput& in) {
   axes_.inject(joint_, in.added);
-  if (due & kSample) axes_.take_reading(Eigen::Vector3d::Zero());
+  if (due & kSample) axes_.take_readings();
   if (due & kPositionLoop) {
     set_.Q_ref[joint_] = set_.Q_cmd[joint_] = in.q;
     set_.dQ_ff[joint_] = in.dq;
     set_.ddQ_ff[joint_] = in.ddq;
-    axes_.run_position_loops(set_);
+    axes_.follow(set_);
+    axes_.run_position_loops();
   }
   if (due & kCurrentLoop) axes_.run_current_loops();
   if (due & kVelocityLoop) axes_.run_velocity_loops();

@@ -72,7 +72,10 @@ class AxisStand {
   bool at_current_limit();
 
   /// What the position encoder adds to the position at this moment (m, rad).
-  double scale_error() const { return axes_.scale_reading()[joint_] - axes_.Q_true()[joint_]; }
+  double scale_error() {
+    axes_.read_scales();
+    return axes_.Q_meas()[joint_] - axes_.Q_true()[joint_];
+  }
 
   int states() const { return states_; }
   void set_states(const Eigen::VectorXd& x);
@@ -109,7 +112,7 @@ void AxisStand::run(Tick begin, const Input& input, const Look& look) {
     axes_.advance(instant.step);
     ++n;
   }
-  if (!fault_) fault_ = axes_.supervise(joint_, set_);
+  if (const auto fault = axes_.supervise(); fault && !fault_) fault_ = fault->reason;
 }
 
 }  // namespace servomill::sim

@@ -183,7 +183,7 @@ TEST(AntiWindup, RecoversFromTheVoltageLimitBehindIt) {
     const double h = p.Tv / 20;
     for (int k = 0; k < 5000; ++k) {
       latch_current_command(s);
-      velocity_loop(p, s, phi, 0.0, tell && u.limited);
+      velocity_loop(p, s, phi, 0.0, tell && u.limited());
       current_loop(current, u, s.i_cmd, i);
       for (int n = 0; n < 20; ++n) {
         i += h * (u.u - R * i - Ke * w) / L;

@@ -44,11 +44,11 @@ TEST(CurrentLoop, HoldsTheIntegralOnlyWhileTheVoltageIsLimited) {
     CurrentLoopState at, beyond;
     current_loop(p, at, sign * 32.0, 0.0);
     EXPECT_EQ(at.u, sign * 320.0);
-    EXPECT_FALSE(at.limited);
+    EXPECT_FALSE(at.limited());
     EXPECT_NE(at.integral, 0.0);
     current_loop(p, beyond, sign * 32.1, 0.0);
     EXPECT_EQ(beyond.u, sign * 320.0);
-    EXPECT_TRUE(beyond.limited);
+    EXPECT_TRUE(beyond.limited());
     EXPECT_EQ(beyond.integral, 0.0);
   }
 }

@@ -1,0 +1,89 @@
+#include "sim/servo_kernel.h"
+
+#include "controllers/servo/position_feedback.h"
+#include "plant/sensing/quantise.h"
+#include "plant/vocabulary/pack.h"
+
+namespace servomill::sim {
+
+namespace {
+
+using Number = Pack<SERVOMILL_ARCH>;
+using plant::DriveBlock;
+using plant::DriveInputBlock;
+
+bool any(const LaneArray& flags) { return (Number(flags) > Number(0.0)).any(); }
+
+void read_motors(ServoBlock* servos, const DriveBlock* drives, std::size_t count) {
+  for (std::size_t n = 0; n < count; ++n) {
+    ServoBlock& s = servos[n];
+    const Number phi = (Number(drives[n].delta) + Number(drives[n].x)) * Number(s.per_r);
+    put(s.phi, plant::quantised(Number(s.motor_step), Number(s.per_motor_step), phi));
+  }
+}
+
+void read_scales(ServoBlock* servos, const DriveBlock* drives, std::size_t count) {
+  for (std::size_t n = 0; n < count; ++n) {
+    ServoBlock& s = servos[n];
+    put(s.scale,
+        plant::quantised(Number(s.scale_step), Number(s.per_scale_step), Number(drives[n].x)));
+  }
+}
+
+void take_readings(ServoBlock* servos, std::size_t count) {
+  for (std::size_t n = 0; n < count; ++n) {
+    ServoBlock& s = servos[n];
+    const Number y_scale = Number(s.scale) + Number(s.displacement) + Number(s.added_reading);
+    const Number y_motor = Number(s.r) * Number(s.phi);
+    put(s.y_scale, y_scale);
+    put(s.y_motor, y_motor);
+    Number difference(s.difference);
+    const Number y =
+        controllers::combined_reading(Number(s.feedback_gain), difference, y_motor, y_scale);
+    put(s.difference, difference);
+    put(s.Q_read, select(Number(s.reads_scale) > Number(0.0), y_scale, y));
+  }
+}
+
+void position_loops(ServoBlock* servos, std::size_t count) {
+  for (std::size_t n = 0; n < count; ++n) {
+    ServoBlock& s = servos[n];
+    controllers::position_loop(s.cascade, s.cascade_state, Number(s.Q_cmd), Number(s.Q_read),
+                               Number(s.dQ_ff), Number(s.ddQ_ff), Number(s.v_add));
+  }
+}
+
+void velocity_loops(ServoBlock* servos, std::size_t count) {
+  for (std::size_t n = 0; n < count; ++n) {
+    ServoBlock& s = servos[n];
+    const auto voltage_limited = Number(s.current_state.excess) != Number(0.0);
+    controllers::velocity_loop(s.cascade, s.cascade_state, Number(s.phi), Number(s.tau_add),
+                               voltage_limited, Number(s.added_velocity));
+  }
+}
+
+void current_loops(ServoBlock* servos, const DriveBlock* drives, DriveInputBlock* inputs,
+                   std::size_t count) {
+  for (std::size_t n = 0; n < count; ++n) {
+    ServoBlock& s = servos[n];
+    controllers::latch_current_command(s.cascade_state);
+    const Number i_cmd = Number(s.cascade_state.i_cmd) + Number(s.added_current);
+    if (!any(s.has_winding)) {
+      put(inputs[n].command, i_cmd);
+      continue;
+    }
+    controllers::current_loop(s.current, s.current_state, i_cmd, Number(drives[n].i));
+    put(inputs[n].command,
+        select(Number(s.has_winding) > Number(0.0), Number(s.current_state.u), i_cmd));
+  }
+}
+
+}  // namespace
+
+template <>
+ServoKernel make_servo_kernel<SERVOMILL_LEVEL>() {
+  return {&read_motors,    &read_scales,    &take_readings,
+          &position_loops, &velocity_loops, &current_loops};
+}
+
+}  // namespace servomill::sim

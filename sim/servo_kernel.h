@@ -1,0 +1,64 @@
+/// The servo loops of eight axes at once, with the encoders that they read.
+#pragma once
+
+#include <cstddef>
+
+#include "controllers/servo/cascade.h"
+#include "controllers/servo/current_loop.h"
+#include "plant/drives/drive_state.h"
+#include "plant/vocabulary/lanes.h"
+#include "plant/vocabulary/simd.h"
+
+namespace servomill::sim {
+
+/// Eight axes (m, rad as for their drives). Lanes without an axis hold zeros.
+struct ServoBlock {
+  // what they are
+  LaneArray r, per_r;                    // m/rad, 1/r
+  LaneArray motor_step, per_motor_step;  // rad
+  LaneArray scale_step, per_scale_step;  // m or rad
+  LaneArray reads_scale;                 // 1: the scale closes the position loop
+  LaneArray feedback_gain;               // of controllers::position_feedback, otherwise
+  LaneArray has_winding;                 // 1: behind the current command is a current loop
+  controllers::CascadeLanes cascade;
+  controllers::CurrentLoopLanes current;
+
+  // what they are told
+  LaneArray Q_cmd, dQ_ff, ddQ_ff;  // set point
+  LaneArray v_add, tau_add;        // m/s, N m: compensation of backlash and friction
+  LaneArray displacement;          // m: a virtual encoder adds it to the scale
+  LaneArray added_velocity, added_current, added_reading;  // injected from outside
+
+  // what they read and compute
+  LaneArray phi;               // rad, motor encoder, read last
+  LaneArray scale;             // m or rad, position encoder, read last
+  LaneArray y_motor, y_scale;  // m or rad, as the position loop got them
+  LaneArray difference;        // state of controllers::position_feedback
+  LaneArray Q_read;            // what the position loop reads
+  controllers::CascadeLanesState cascade_state;
+  controllers::CurrentLoopLanesState current_state;
+};
+
+/// Each function treats `count` blocks; drives[n] and inputs[n] belong to servos[n].
+struct ServoKernel {
+  /// phi of encoders that do nothing but quantise.
+  void (*read_motors)(ServoBlock* servos, const plant::DriveBlock* drives, std::size_t count);
+  /// scale, likewise.
+  void (*read_scales)(ServoBlock* servos, const plant::DriveBlock* drives, std::size_t count);
+  /// Q_read from phi and scale.
+  void (*take_readings)(ServoBlock* servos, std::size_t count);
+  void (*position_loops)(ServoBlock* servos, std::size_t count);
+  void (*velocity_loops)(ServoBlock* servos, std::size_t count);
+  /// The command that was computed before acts from now on.
+  void (*current_loops)(ServoBlock* servos, const plant::DriveBlock* drives,
+                        plant::DriveInputBlock* inputs, std::size_t count);
+};
+
+/// The functions for the instruction set of this machine.
+const ServoKernel& servo_kernel();
+
+/// Those of one level.
+template <SimdLevel level>
+ServoKernel make_servo_kernel();
+
+}  // namespace servomill::sim

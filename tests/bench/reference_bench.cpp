@@ -1,0 +1,144 @@
+/// The reference problem, from the blocks of which scenarios are built, next to a straightforward
+/// loop in C (plain.c). What counts is `ns_per_tick`, nanoseconds of processor time for one run and
+/// one tick of 10 us of five axes; tools/bench makes ratios of it.
+
+#include <benchmark/benchmark.h>
+
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "tests/bench/plain.h"
+#include "tests/known_answers/reference_problem.h"
+
+namespace servomill::reference_problem {
+namespace {
+
+constexpr Tick kTicks = 200'000;  // 2 s: each axis moves, stands and reverses
+
+struct PlainProblem {
+  std::array<PlainAxis, PLAIN_AXES> axes;
+  double vol[21][4];
+};
+
+PlainProblem read_plain(const std::string& name, bool friction) {
+  const sim::MachineSettings machine = read_machine(name, friction);
+  PlainProblem problem;
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    const plant::FeedDriveParams& d = machine.drives[j];
+    const controllers::CascadeParams& c = machine.nc.cascade[j];
+    const controllers::CurrentLoopParams& u = machine.nc.functions[j].current_loop;
+    PlainAxis& p = problem.axes[j];
+    p = {d.L,
+         d.R,
+         d.Kt,
+         d.Ke,
+         d.J,
+         d.b_motor,
+         d.r,
+         d.M,
+         d.k,
+         d.c,
+         d.b_load,
+         d.friction.Fc_positive,
+         d.friction.Fs_positive,
+         d.friction.vs,
+         d.friction.v0,
+         c.Kv,
+         c.kvf,
+         c.kaf,
+         c.J,
+         c.Kp,
+         c.Ki * c.Tv,
+         c.i_max,
+         u.Kp,
+         u.Ki * u.Ti,
+         u.u_max,
+         {},
+         {}};
+    // i, w, th, v, x: the matrix of `derivative` without friction
+    Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
+    A.row(0) << -d.R / d.L, -d.Ke / d.L, 0, 0, 0, 1.0 / d.L;
+    A.row(1) << d.Kt, -d.r * d.r * d.c - d.b_motor, -d.r * d.r * d.k, d.r * d.c, d.r * d.k, 0;
+    A.row(1) /= d.J;
+    A(2, 1) = 1.0;
+    A.row(3) << 0, d.c * d.r, d.k * d.r, -d.c - d.b_load, -d.k, 0;
+    A.row(3) /= d.M;
+    A(4, 3) = 1.0;
+    const Eigen::Matrix<double, 6, 6> E = (A * kTick).exp();
+    for (int row = 0; row < 5; ++row) {
+      for (int column = 0; column < 5; ++column) p.Ad[row][column] = E(row, column);
+      p.Bd[row] = E(row, 5);
+    }
+  }
+  const auto rows = read_rows("vol.csv");
+  for (std::size_t row = 0; row < 21; ++row) {
+    for (std::size_t k = 0; k < 4; ++k) problem.vol[row][k] = rows.at(row).at(k);
+  }
+  return problem;
+}
+
+void count(benchmark::State& state, std::size_t runs) {
+  state.counters["ns_per_tick"] = benchmark::Counter(
+      1e-9 * static_cast<double>(kTicks) * static_cast<double>(runs),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void BM_Plain(benchmark::State& state, const char* file, bool friction) {
+  const PlainProblem problem = read_plain(file, friction);
+  std::vector<double> log(PLAIN_SIGNALS * (kTicks / kRecord + 1));
+  for (auto _ : state) {
+    plain_run(problem.axes.data(), problem.vol, friction ? 1 : 0, kTicks, log.data());
+    benchmark::DoNotOptimize(log.data());
+  }
+  count(state, 1);
+}
+
+// Forty signals a row, as the plain loop takes them.
+void take_row(std::size_t run, const sim::AxisSetPoint& set, const sim::ServoAxes& axes,
+              double* row) {
+  Joints::Map(row) = set.Q_cmd;
+  Joints::Map(row + 5) = axes.Q_read(run);
+  Joints::Map(row + 10) = axes.Q_true(run);
+  Joints::Map(row + 15) = axes.dQ_true(run);
+  Joints::Map(row + 20) = axes.motor_angle(run);
+  Joints::Map(row + 25) = axes.motor_speed(run);
+  Joints::Map(row + 30) = axes.current(run);
+  Joints::Map(row + 35) = axes.command(run);
+}
+
+void BM_Servomill(benchmark::State& state, const char* file, bool friction) {
+  const auto runs = static_cast<std::size_t>(state.range(0));
+  const plant::VolumetricModel volumetric = read_volumetric();
+  std::vector<sim::MachineSettings> machines(runs, read_machine(file, friction));
+  std::vector<const sim::MachineSettings*> all;
+  for (std::size_t m = 0; m < runs; ++m) {  // no two alike, as in a sweep
+    for (auto& cascade : machines[m].nc.cascade) cascade.Kv *= 1.0 + 1e-3 * static_cast<double>(m);
+    all.push_back(&machines[m]);
+  }
+  std::vector<double> log(PLAIN_SIGNALS * runs * (kTicks / kRecord + 1));
+  for (auto _ : state) {
+    state.PauseTiming();
+    Problem run(all, volumetric);
+    state.ResumeTiming();
+    double* row = log.data();
+    run.until(kTicks, [&](std::size_t n, const sim::AxisSetPoint& set, const sim::ServoAxes& axes) {
+      take_row(n, set, axes, row);
+      row += PLAIN_SIGNALS;
+    });
+    benchmark::DoNotOptimize(log.data());
+  }
+  count(state, runs);
+}
+
+#define REFERENCE(variant, file, friction)                                             \
+  BENCHMARK_CAPTURE(BM_Plain, variant, file, friction)->Unit(benchmark::kMillisecond); \
+  BENCHMARK_CAPTURE(BM_Servomill, variant, file, friction)                             \
+      ->Arg(1)                                                                         \
+      ->Arg(8)                                                                         \
+      ->Unit(benchmark::kMillisecond)
+REFERENCE(L, "axes.csv", false);
+REFERENCE(N, "axes.csv", true);
+REFERENCE(N_sharp, "axes_sharp.csv", true);
+#undef REFERENCE
+
+}  // namespace
+}  // namespace servomill::reference_problem
