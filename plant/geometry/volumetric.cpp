@@ -2,52 +2,21 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+
+#include "plant/geometry/turn.h"
+#include "plant/geometry/volumetric_evaluation.h"
 
 namespace servomill::plant {
 namespace {
 
+// One tool, one error after the other without gaps: the kernel writes numbers.
+static_assert(sizeof(ToolPose) == 6 * sizeof(double));
+static_assert(sizeof(VolumetricError) == 6 * sizeof(double));
+
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-// Exponential of [e]x: Rot v = v + a e x v + b e x (e x v). The angular velocity when e changes by
-// de is de + b e x de + c e x (e x de).
-class Rotation {
- public:
-  explicit Rotation(const Vector3d& e) : e_(e), t2_(e.squaredNorm()) {
-    if (t2_ < kSeries) {
-      a_ = 1.0 + t2_ * (-1.0 / 6.0 + t2_ * (1.0 / 120.0 - t2_ * (1.0 / 5040.0)));
-      b_ = 0.5 + t2_ * (-1.0 / 24.0 + t2_ * (1.0 / 720.0 - t2_ * (1.0 / 40320.0)));
-    } else {
-      const double t = std::sqrt(t2_);
-      a_ = std::sin(t) / t;
-      b_ = (1.0 - std::cos(t)) / t2_;
-    }
-  }
-
-  Vector3d operator*(const Vector3d& v) const {
-    const Vector3d ev = e_.cross(v);
-    return v + a_ * ev + b_ * e_.cross(ev);
-  }
-
-  Matrix3d matrix() const {
-    Matrix3d R;
-    for (int i = 0; i < 3; ++i) R.col(i) = *this * Vector3d::Unit(i);
-    return R;
-  }
-
-  Vector3d velocity(const Vector3d& de) const {
-    const double c =
-        t2_ < kSeries ? 1.0 / 6.0 - t2_ * (1.0 / 120.0 - t2_ * (1.0 / 5040.0)) : (1.0 - a_) / t2_;
-    const Vector3d ed = e_.cross(de);
-    return de + b_ * ed + c * e_.cross(ed);
-  }
-
- private:
-  static constexpr double kSeries = 1e-3;  // rad^2: the next term is below 1e-17
-  Vector3d e_;
-  double t2_, a_, b_;
-};
 
 int lane_of(Axis direction) { return index_of(direction) + (is_linear(direction) ? 0 : 1); }
 
@@ -64,12 +33,6 @@ bool has_orthogonal_linear_axes(const MachineChain& chain) {
     }
   }
   return linear == kLinearJoints;
-}
-
-std::size_t leading_rotary_axes(const MachineChain& chain) {
-  const auto first = std::find_if(chain.axes.begin(), chain.axes.end(),
-                                  [](const ChainAxis& a) { return is_linear(a.axis); });
-  return static_cast<std::size_t>(first - chain.axes.begin());
 }
 
 // A tool pose and its derivatives with respect to all joints, moved together by rigid motions.
@@ -94,10 +57,10 @@ struct PoseAndJacobian {
 }  // namespace
 
 VolumetricModel::VolumetricModel(const MachineChain& chain, const ErrorModel& errors)
-    : chain_(chain), linear_axes_are_orthogonal_(has_orthogonal_linear_axes(chain)) {
+    : chain_(chain),
+      linear_axes_are_orthogonal_(has_orthogonal_linear_axes(chain)),
+      evaluation_(std::make_shared<const VolumetricEvaluation>(chain, errors)) {
   for (const ChainAxis& a : chain_.axes) errors_.push_back(prepare(a, errors));
-  const std::size_t rotary = leading_rotary_axes(chain_);
-  for (faultless_ = 0; faultless_ < rotary && errors_[faultless_].is_zero();) ++faultless_;
 }
 
 VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
@@ -107,8 +70,6 @@ VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
     const int lane = lane_of(direction);
     const ErrorFunction& f = errors.component({direction, axis.axis, false});
     if (f.is_zero()) continue;
-    out.has_components = true;
-    out.has_angles = out.has_angles || !is_linear(direction);
     out.polynomial.resize(std::max(out.polynomial.size(), f.polynomial.size()), Screw::Zero());
     for (std::size_t i = 0; i < f.polynomial.size(); ++i) out.polynomial[i][lane] = f.polynomial[i];
     for (const Harmonic& h : f.harmonics) {
@@ -121,9 +82,7 @@ VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
   for (const Axis direction : kAllAxes) {
     out.location[lane_of(direction)] = errors.location({direction, axis.axis, true});
   }
-  out.has_location = !out.location.isZero(0.0);
-  out.R_location = Rotation(turn_of(out.location)).matrix();
-  if (is_linear(axis.axis)) out.direction = out.R_location * unit_vector(axis.axis);
+  out.R_location = TurnOf(turn_of(out.location)).matrix();
   return out;
 }
 
@@ -151,68 +110,28 @@ VolumetricModel::Screw VolumetricModel::derivatives(const Prepared& errors, doub
   return e;
 }
 
-template <bool kWithAxis>
-void VolumetricModel::apply_component_errors(const Prepared& errors, double q, ToolPose& P) {
-  if (!errors.has_components) return;
-  const Screw e = values(errors, q);
-  if (errors.has_angles) {
-    const Rotation R(turn_of(e));
-    P.p_WT = R * P.p_WT;
-    if constexpr (kWithAxis) P.k_W = R * P.k_W;
-  }
-  P.p_WT += shift_of(e);
-}
-
-template <bool kWithAxis>
-void VolumetricModel::apply_with_errors(const ChainAxis& a, const Prepared& errors, double q,
-                                        const JointMotion& m, ToolPose& P) {
-  P.p_WT -= a.centre;
-  if (a.side == Side::tool) apply_component_errors<kWithAxis>(errors, q, P);
-  // L J(q) L^-1, now about the origin
-  if (is_linear(a.axis)) {
-    P.p_WT += m.shift * errors.direction;
-  } else if (!errors.has_location) {
-    P.p_WT = turned(a.axis, m.cosine, m.sine, P.p_WT);
-    P.k_W = turned(a.axis, m.cosine, m.sine, P.k_W);
-  } else {
-    const Matrix3d& R = errors.R_location;
-    const Vector3d t = shift_of(errors.location);
-    const Vector3d p = R.transpose() * P.p_WT - t, k = R.transpose() * P.k_W;
-    P.p_WT = R * (turned(a.axis, m.cosine, m.sine, p) + t);
-    P.k_W = R * turned(a.axis, m.cosine, m.sine, k);
-  }
-  if (a.side == Side::workpiece) apply_component_errors<kWithAxis>(errors, q, P);
-  P.p_WT += a.centre;
-}
-
-// Takes the true tool, and the ideal one if asked for, from the spindle to the frame before
-// `first_axis`. Without the tool axis k_W is left meaningless.
-template <bool kWithAxis>
-void VolumetricModel::move_through(std::size_t first_axis, const Joints& Q, ToolPose& P_true,
-                                   ToolPose* P) const {
-  for (std::size_t i = chain_.axes.size(); i-- > first_axis;) {
-    const ChainAxis& a = chain_.axes[i];
-    const double q = Q[a.joint];
-    const JointMotion m = motion_at(a, q);
-    if (errors_[i].is_zero()) {
-      apply(a, m, P_true);
-    } else {
-      apply_with_errors<kWithAxis>(a, errors_[i], q, m, P_true);
-    }
-    if (P != nullptr) apply(a, m, *P);
-  }
-}
-
 ToolPose VolumetricModel::forward(const Joints& Q, const Vector3d& p_ST) const {
-  ToolPose P{p_ST, Vector3d::UnitZ()};
-  move_through<true>(0, Q, P, nullptr);
+  ToolPose P;
+  evaluation_->tool(Q, p_ST, P.p_WT.data());
   return P;
 }
 
 VolumetricError VolumetricModel::error(const Joints& Q, const Vector3d& p_ST) const {
-  ToolPose P{p_ST, Vector3d::UnitZ()}, P_true = P;
-  move_through<true>(0, Q, P_true, &P);
-  return {P_true.p_WT - P.p_WT, P_true.k_W - P.k_W};
+  VolumetricError e;
+  evaluation_->error(Q, p_ST, e.dp_W.data());
+  return e;
+}
+
+void VolumetricModel::poses(std::span<const Joints> Q, const Vector3d& p_ST,
+                            std::span<ToolPose> out) const {
+  assert(out.size() == Q.size());
+  if (!Q.empty()) evaluation_->tools(Q, p_ST, out.front().p_WT.data());
+}
+
+void VolumetricModel::errors(std::span<const Joints> Q, const Vector3d& p_ST,
+                             std::span<VolumetricError> out) const {
+  assert(out.size() == Q.size());
+  if (!Q.empty()) evaluation_->errors(Q, p_ST, out.front().dp_W.data());
 }
 
 VolumetricError VolumetricModel::first_order_error(const Joints& Q, const Vector3d& p_ST) const {
@@ -244,15 +163,20 @@ Vector3d VolumetricModel::joint_offset(const Joints& Q, const Vector3d& p_ST) co
   if (!linear_axes_are_orthogonal_) {
     return least_squares(linear_jacobian(chain_, Q), error(Q, p_ST).dp_W).x;
   }
-  // Rotary axes without errors before the linear ones turn the shift there and back.
-  ToolPose P{p_ST, Vector3d::UnitZ()}, P_true = P;
-  move_through<false>(faultless_, Q, P_true, &P);
-  Vector3d d = P_true.p_WT - P.p_WT;
-  for (std::size_t i = faultless_; !is_linear(chain_.axes[i].axis); ++i) {
-    const JointMotion m = motion_at(chain_.axes[i], Q[chain_.axes[i].joint]);
-    d = turned(chain_.axes[i].axis, m.cosine, -m.sine, d);
-  }
+  Vector3d d;
+  evaluation_->offset(Q, p_ST, d.data());
   return d;
+}
+
+void VolumetricModel::joint_offsets(std::span<const Joints> Q, const Vector3d& p_ST,
+                                    std::span<Vector3d> out) const {
+  assert(out.size() == Q.size());
+  if (Q.empty()) return;
+  if (linear_axes_are_orthogonal_) {
+    evaluation_->offsets(Q, p_ST, out.front().data());
+  } else {
+    for (std::size_t n = 0; n < Q.size(); ++n) out[n] = joint_offset(Q[n], p_ST);
+  }
 }
 
 PoseJacobian VolumetricModel::jacobian(const Joints& Q, const Vector3d& p_ST) const {
@@ -263,7 +187,7 @@ PoseJacobian VolumetricModel::jacobian(const Joints& Q, const Vector3d& p_ST) co
     const JointMotion m = motion_at(a, Q[a.joint]);
     const Screw e = values(errors, Q[a.joint]), de = derivatives(errors, Q[a.joint]);
     const auto apply_components = [&] {
-      const Rotation R(turn_of(e));
+      const TurnOf R(turn_of(e));
       tool.turn(R.matrix());
       tool.turn_with(a.joint, R.velocity(turn_of(de)));
       tool.shift(shift_of(e));

@@ -3,13 +3,17 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "plant/geometry/error_model.h"
 #include "plant/kinematics/chain.h"
 
 namespace servomill::plant {
+
+class VolumetricEvaluation;
 
 /// Deviation of the tool from the ideal machine, in W.
 struct VolumetricError {
@@ -32,6 +36,8 @@ struct PoseJacobian {
 ///   (3) |error(Q) - first_order_error(Q)| shrinks with the square of the errors
 ///   (4) forward(inverse(p)) = p
 ///   (5) linear_jacobian(chain, Q) joint_offset(Q) = error(Q).dp_W
+///   (6) poses(Q...), errors(Q...), joint_offsets(Q...) = forward(Q), error(Q), joint_offset(Q) of
+///       each, bit for bit, on every machine
 class VolumetricModel {
  public:
   VolumetricModel(const MachineChain& chain, const ErrorModel& errors);
@@ -55,6 +61,15 @@ class VolumetricModel {
   /// comes closest, and the smallest of those; 0 for axes that the machine lacks.
   Eigen::Vector3d joint_offset(const Joints& Q, const Eigen::Vector3d& p_ST) const;
 
+  /// The same of many poses at once, several times faster than one by one.
+  /// @param Q    joint coordinates of each pose
+  /// @param out  result of each pose, as many
+  void poses(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, std::span<ToolPose> out) const;
+  void errors(std::span<const Joints> Q, const Eigen::Vector3d& p_ST,
+              std::span<VolumetricError> out) const;
+  void joint_offsets(std::span<const Joints> Q, const Eigen::Vector3d& p_ST,
+                     std::span<Eigen::Vector3d> out) const;
+
   /// Derivatives of forward() with respect to all joints, error functions included.
   PoseJacobian jacobian(const Joints& Q, const Eigen::Vector3d& p_ST) const;
 
@@ -71,7 +86,8 @@ class VolumetricModel {
   // EX. EY. EZ. 0 EA. EB. EC. 0: two halves, so that neither straddles a vector register.
   using Screw = Eigen::Matrix<double, 8, 1>;
 
-  // Errors of one axis, laid out for evaluation: all six polynomials are one of vectors.
+  // Errors of one axis, laid out for evaluation with derivatives: all six polynomials are one of
+  // vectors.
   struct Prepared {
     struct PreparedHarmonic {
       int lane;
@@ -82,16 +98,12 @@ class VolumetricModel {
       int lane;
       LinearTable table;
     };
-    bool is_zero() const { return !has_components && !has_location; }
 
-    bool has_components = false, has_angles = false, has_location = false;
     std::vector<Screw> polynomial;  // c0, c1, ...
     std::vector<PreparedHarmonic> harmonics;
     std::vector<PreparedTable> tables;
     Screw location = Screw::Zero();
     Eigen::Matrix3d R_location = Eigen::Matrix3d::Identity();  // of L
-    Eigen::Vector3d direction =
-        Eigen::Vector3d::Zero();  // of a linear axis: L T(q) L^-1 is a shift
   };
 
   static Eigen::Vector3d shift_of(const Screw& e) { return e.head<3>(); }
@@ -99,18 +111,11 @@ class VolumetricModel {
   static Prepared prepare(const ChainAxis& axis, const ErrorModel& errors);
   static Screw values(const Prepared& errors, double q);
   static Screw derivatives(const Prepared& errors, double q);
-  template <bool kWithAxis>
-  static void apply_component_errors(const Prepared& errors, double q, ToolPose& P);
-  template <bool kWithAxis>
-  static void apply_with_errors(const ChainAxis& a, const Prepared& errors, double q,
-                                const JointMotion& m, ToolPose& P);
-  template <bool kWithAxis>
-  void move_through(std::size_t first_axis, const Joints& Q, ToolPose& P_true, ToolPose* P) const;
 
   MachineChain chain_;
   std::vector<Prepared> errors_;     // in the order of chain_.axes
   bool linear_axes_are_orthogonal_;  // three of them, no rotary axis between
-  std::size_t faultless_;            // rotary axes next to the workpiece that have no errors
+  std::shared_ptr<const VolumetricEvaluation> evaluation_;
 };
 
 /// The same for one evaluation; prepare a VolumetricModel for many.

@@ -1,0 +1,115 @@
+/// The arithmetic of VolumetricModel, compiled for each instruction set (plant/vocabulary/simd.h).
+///
+/// The tool travels through a list of steps, from the spindle to the workpiece. A fault, the errors
+/// of one axis, moves it by
+///
+///     p <- p + w + (R - 1)(p - c)       k <- k + (R - 1) k
+///
+/// What is known before the tool arrives, w and R - 1, is computed for all axes first: for one pose
+/// with the axes in lanes, for many with the poses in lanes. Both run the same formulas with one
+/// rounding per operation, so that a pose has the same bits alone, among others and on every
+/// machine.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "plant/vocabulary/lanes.h"
+#include "plant/vocabulary/simd.h"
+
+namespace servomill::plant {
+
+inline constexpr std::size_t kMachineJoints = 5;
+inline constexpr std::size_t kErrorComponents = 6;  // along X, Y, Z, about A, B, C
+
+/// Turns below this use the series of their sine and cosine, whose next term is below 1e-17.
+inline constexpr double kSmallTurn = 1e-3;  // rad
+
+enum class VolumetricMove : std::uint8_t {
+  shift,         // an ideal linear axis
+  turn,          // an ideal rotary axis
+  tilted_turn,   // a rotary axis with location errors; ideal for the ideal tool
+  faulty_shift,  // a linear axis with errors; ideal for the ideal tool
+  fault          // errors of a rotary axis before or after its turn; nothing for the ideal tool
+};
+
+struct VolumetricStep {
+  VolumetricMove move;
+  bool has_angles, has_lever;     // a fault: turns the tool; c or lever_slope is not 0
+  std::uint8_t direction, joint;  // 0, 1, 2: along X, Y, Z or about A, B, C; place in Joints
+  double centre[3];               // m, c: where the lever of a fault and a turn begin at q = 0
+  double lever_slope[3];          // m/m: c moves by -lever_slope q (workpiece side)
+  double R[3][3], t[3];           // m; a tilted turn is R T J T^-1 R^T with T = Trans(t)
+};
+
+/// Eight waves amplitude sin(omega q + phase), amplitudes aside.
+struct VolumetricWaves {
+  LaneArray omega, phase;  // 1/m or 1, rad
+  std::uint8_t joint[kLaneWidth];
+};
+
+/// What one wave adds to one error.
+struct VolumetricHarmonic {
+  std::size_t wave;  // 8 x block + lane
+  std::size_t component, joint;
+  double amplitude;  // m or rad
+};
+
+/// A power of q times the coefficients of each error: [component], lanes: joints.
+struct VolumetricPower {
+  LaneArray e[kErrorComponents];
+};
+
+/// A machine and its errors. Points into memory of its owner.
+struct VolumetricProgram {
+  const VolumetricStep* steps;  // in the order in which they move the tool
+  std::size_t number_of_steps;
+  std::size_t offset_steps;  // without the last ones, ideal turns, which offsets undo at once
+  std::size_t linear_end;    // behind the last linear step: what follows are turns and faults
+  const VolumetricPower* polynomial;  // c1, c2, ..., then c0 at the end
+  std::size_t degree;                 // >= 1
+  bool has_constants, has_angles;     // some c0 is not 0; some error is an angle
+  std::size_t joints;                 // 1 + the last joint that has errors, or 0
+  const VolumetricWaves* waves;
+  std::size_t wave_blocks;
+  const VolumetricHarmonic* harmonics;
+  std::size_t number_of_harmonics;
+  bool has_terms;  // beyond polynomials: harmonics or tables
+};
+
+/// What the kernel does not compute: turned rotary joints, and values of tables.
+struct OnePoseData {
+  double cosine[kMachineJoints], sine[kMachineJoints];
+  VolumetricPower tables;  // lanes: joints
+};
+struct EightPosesData {
+  LaneArray cosine[kMachineJoints], sine[kMachineJoints];  // lanes: poses
+  VolumetricPower tables[kMachineJoints];                  // lanes: poses
+};
+
+/// Q: joints of one pose (5), or of `blocks` times eight poses one behind the other. p_ST: tip in
+/// the spindle nose (3). Data: one, or one for each block; may be null where the program has
+/// neither turns nor tables. out: offset 3; tool 6 (tip, axis); error 6 (of the tip, of the axis)
+/// per pose.
+struct VolumetricKernel {
+  using One = void (*)(const VolumetricProgram&, const OnePoseData*, const double* Q,
+                       const double* p_ST, double* out);
+  using Many = void (*)(const VolumetricProgram&, const EightPosesData*, const double* Q,
+                        std::size_t blocks, const double* p_ST, double* out);
+  One tool, error, offset;
+  Many tools, errors, offsets;
+};
+
+template <SimdLevel level>
+VolumetricKernel make_volumetric_kernel();
+
+template <>
+VolumetricKernel make_volumetric_kernel<SimdLevel::baseline>();
+#ifdef SERVOMILL_X86
+template <>
+VolumetricKernel make_volumetric_kernel<SimdLevel::avx2>();
+template <>
+VolumetricKernel make_volumetric_kernel<SimdLevel::avx512>();
+#endif
+
+}  // namespace servomill::plant
