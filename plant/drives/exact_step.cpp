@@ -13,17 +13,12 @@ namespace servomill::plant {
 namespace {
 
 using Matrix4 = Eigen::Matrix4d;
-using Matrix5l = Eigen::Matrix<long double, 5, 5>;
-using Vector5l = Eigen::Matrix<long double, 5, 1>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEventLength = 10e-9;  // s: events are located in a sub-step no longer than this
 constexpr double kCoastRate = 1e-3;     // rate x finest sub-step: coast() is exact to its cube
 constexpr double kFrictionRate = 1e-3;  // the same for the rates of friction, which are solved for
-constexpr double kSeriesRate = 2.0;     // rate x coarsest sub-step: the series converges in kTerms
-constexpr int kTerms = 30;              // 2^30 / 30! is below the last bit of long double
 constexpr int kMostHalvings = 26;
-constexpr double kMemory = 5e-3;  // s, for which the servo loop leaves an error of speed standing
 constexpr double kNewtonShare = 0.02;  // of the tolerance
 constexpr double kNoTravel = 1e-14;    // m: a reversal that moves less in a sub-step is none
 
@@ -95,56 +90,6 @@ int halvings_of(const FeedDriveParams& p, double base_period) {
   return std::max(0, static_cast<int>(std::ceil(std::log2(base_period / finest))));
 }
 
-// e^{At}, int_0^t e^{A(t-s)} b ds and int_0^t e^{A(t-s)} b_F s^m ds, m = 0, 1, 2, as power series.
-class Series {
- public:
-  struct Values {
-    Matrix5l E = Matrix5l::Zero();
-    Vector5l command = Vector5l::Zero();
-    std::array<Vector5l, 3> moment = {Vector5l::Zero(), Vector5l::Zero(), Vector5l::Zero()};
-  };
-
-  explicit Series(const Eigen::Matrix<double, 5, 7>& equations) {
-    const Matrix5l A = equations.leftCols<5>().cast<long double>();
-    A_[0].setIdentity();
-    for (std::size_t k = 1; k < kTerms; ++k) A_[k] = A * A_[k - 1];
-    for (std::size_t k = 0; k < kTerms; ++k) {
-      command_[k] = A_[k] * equations.col(5).cast<long double>();
-      force_[k] = A_[k] * equations.col(6).cast<long double>();
-    }
-  }
-
-  Values at(long double t) const {
-    Values v;
-    std::array<long double, 4> factor = {1.0L, t, t * t / 2.0L, t * t * t / 3.0L};
-    for (std::size_t k = 0; k < kTerms; ++k) {
-      const auto n = static_cast<long double>(k + 1);
-      v.E += A_[k] * factor[0];
-      v.command += command_[k] * factor[1];
-      for (std::size_t m = 0; m < 3; ++m) v.moment[m] += force_[k] * factor[m + 1];
-      for (std::size_t m = 0; m < 4; ++m) factor[m] *= t / (n + static_cast<long double>(m));
-    }
-    return v;
-  }
-
- private:
-  std::array<Matrix5l, kTerms> A_;
-  std::array<Vector5l, kTerms> command_, force_;
-};
-
-// The parabolas that are 1 at one of 0, 1/2, 1 and 0 at the others: coefficients of 1, s, s^2.
-constexpr double kLagrange[3][3] = {{1.0, -3.0, 2.0}, {0.0, 4.0, -4.0}, {0.0, -1.0, 2.0}};
-// Their integrals from 0 to 1/4, 1/2, 3/4, 1, and their values at 1/4, 3/4.
-constexpr double kIntegral[4][3] = {{1.0 / 6.0, 5.0 / 48.0, -1.0 / 48.0},
-                                    {5.0 / 24.0, 1.0 / 3.0, -1.0 / 24.0},
-                                    {3.0 / 16.0, 9.0 / 16.0, 0.0},
-                                    {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0}};
-constexpr double kQuarter[2][3] = {{0.375, 0.75, -0.125}, {-0.125, 0.75, 0.375}};
-
-double parabola(const double (&weight)[3], const std::array<double, 3>& value) {
-  return weight[0] * value[0] + weight[1] * value[1] + weight[2] * value[2];
-}
-
 double direction(SlideMode slide) { return slide == SlideMode::negative ? -1.0 : 1.0; }
 
 // Where a straight line from a to b >= 0 reaches 0, as a fraction.
@@ -178,8 +123,9 @@ ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick lon
     : params_(params), resolution_(resolution), sub_ticks_(halvings_of(params, base_period)) {
   assert(sub_ticks_ <= kMostHalvings);
   finest_ = std::ldexp(base_period, -sub_ticks_);
-  const double longest = std::min({static_cast<double>(longest_step) * base_period,
-                                   resolution.longest, kSeriesRate / fastest_rate(params)});
+  const double longest =
+      std::min({static_cast<double>(longest_step) * base_period, resolution.longest,
+                PropagatorSeries::kMostRate / fastest_rate(params)});
   const int coarsest =
       std::max(0, static_cast<int>(std::floor(std::log2(longest / finest_) + 1e-9)));
   const bool may_stick = params.friction.kind == FrictionKind::set_valued;
@@ -208,28 +154,9 @@ ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick lon
 void ExactStep::prepare(bool sticking, bool gap, int coarsest) {
   Linear& mode = linear_.emplace_back();
   mode.A = drive_equations(params_, sticking, gap);
-  const Series series(mode.A);
-  mode.ladder.resize(static_cast<std::size_t>(coarsest) + 1);
-  for (std::size_t level = 0; level < mode.ladder.size(); ++level) {
-    const long double h = std::ldexp(static_cast<long double>(finest_), static_cast<int>(level));
-    for (std::size_t node = 0; node < kNodes; ++node) {
-      const Series::Values S = series.at(h * static_cast<long double>(node + 1) / 4.0L);
-      for (std::size_t row = 0; row < kStates; ++row) {
-        const auto r = static_cast<Eigen::Index>(row);
-        const auto entry = [&](std::size_t column) -> double& {
-          return mode.ladder[level][column][node * kStates + row];
-        };
-        for (std::size_t column = 0; column < 4; ++column) {
-          entry(column) = static_cast<double>(S.E(r, static_cast<Eigen::Index>(column)));
-        }
-        entry(4) = static_cast<double>(S.command(r));
-        for (std::size_t j = 0; j < 3; ++j) {
-          const double(&l)[3] = kLagrange[j];
-          entry(5 + j) = static_cast<double>(l[0] * S.moment[0](r) + l[1] * S.moment[1](r) / h +
-                                             l[2] * S.moment[2](r) / (h * h));
-        }
-      }
-    }
+  const PropagatorSeries series(mode.A);
+  for (int level = 0; level <= coarsest; ++level) {
+    mode.ladder.push_back(series.over(std::ldexp(static_cast<long double>(finest_), level)));
   }
 }
 
@@ -264,101 +191,88 @@ double ExactStep::force(const LaneState& s, double F) const {
   return params_.F_load + F + friction_force(s) + cogging_force(params_, s.x);
 }
 
-// The force against the slide at the nodes h/2 and h, and its derivative by the speeds there.
-struct ExactStep::Forces {
-  std::array<double, 2> f{}, rate{};  // N; dz/dt, m/s
-  Eigen::Matrix2d df = Eigen::Matrix2d::Zero(), drate = Eigen::Matrix2d::Zero();
+// The rows of a propagator, times a factor for each column.
+struct ExactStep::Rows {
+  std::array<double, Propagator::kSlideRows> slide{};
+  std::array<double, Propagator::kInnerRows> inner{};
+  bool looks_within;  // whether the inner rows are wanted
+
+  void add(const Propagator& P, std::size_t column, double factor) {
+    for (std::size_t n = 0; n < slide.size(); ++n) slide[n] += P.slide[column][n] * factor;
+    if (!looks_within) return;
+    for (std::size_t n = 0; n < inner.size(); ++n) inner[n] += P.inner[column][n] * factor;
+  }
 };
 
-ExactStep::Forces ExactStep::forces_at(const LaneState& s, double F, double h,
-                                       const std::array<double, 2>& v,
-                                       const std::array<double, 2>& x) const {
+// Whether the states within a sub-step have a say: for breaking away, for the flanks, for cogging.
+bool ExactStep::looks_within(const LaneState& s) const {
+  return sticks(s) || params_.gap > 0.0 || params_.cogging.T != 0.0;
+}
+
+NodeForces<double> ExactStep::friction_at(const LaneState& s, double h,
+                                          const double (&v)[2]) const {
   const FrictionParams& p = params_.friction;
-  Forces out;
-  if (p.kind == FrictionKind::lugre) {
-    // dz/dt = v - a(v) z at the nodes, z by its collocation: linear in z
-    const double rate0 = bristle_rate(p, s.v, s.z);
-    Eigen::Matrix2d C;
-    C << kIntegral[1][1], kIntegral[1][2], kIntegral[3][1], kIntegral[3][2];
-    C *= h;
-    Eigen::Vector2d a, slope;  // a(v), da/dv
-    for (int j = 0; j < 2; ++j) {
-      const double vj = v[static_cast<std::size_t>(j)];
-      const ForceSlope g = sliding(p, vj >= 0.0, vj);
-      a[j] = p.sigma0 * std::abs(vj) / g.value;
-      slope[j] = p.sigma0 * (std::copysign(1.0, vj) - std::abs(vj) * g.slope / g.value) / g.value;
+  switch (p.kind) {
+    case FrictionKind::none:
+      break;
+    case FrictionKind::set_valued: {
+      const double way = direction(s.slide);
+      const ForceSlope half = sliding(p, way > 0.0, v[0]), end = sliding(p, way > 0.0, v[1]);
+      return {{way * half.value, way * end.value},
+              {way * half.slope, 0.0, 0.0, way * end.slope},
+              {},
+              {}};
     }
-    const Eigen::Vector2d V(v[0], v[1]);
-    const Eigen::Vector2d known = Eigen::Vector2d::Constant(s.z) +
-                                  h * rate0 * Eigen::Vector2d(kIntegral[1][0], kIntegral[3][0]) +
-                                  C * V;
-    const Eigen::Matrix2d inverse = (Eigen::Matrix2d::Identity() + C * a.asDiagonal()).inverse();
-    const Eigen::Vector2d z = inverse * known;
-    const Eigen::Matrix2d direct = (Eigen::Vector2d::Ones() - slope.cwiseProduct(z)).asDiagonal();
-    const Eigen::Matrix2d dz = inverse * C * direct;
-    const Eigen::Vector2d rate = V - a.cwiseProduct(z);
-    const Eigen::Vector2d f = p.sigma0 * z + p.sigma1 * rate;
-    out.f = {f[0], f[1]};
-    out.rate = {rate[0], rate[1]};
-    out.drate = direct - a.asDiagonal() * dz;
-    out.df = p.sigma0 * dz + p.sigma1 * out.drate;
-  } else {
-    for (std::size_t j = 0; j < 2; ++j) {
-      ForceSlope g = {0.0, 0.0};
-      if (p.kind == FrictionKind::regularised) g = regularised(p, v[j]);
-      if (p.kind == FrictionKind::set_valued) {
-        g = sliding(p, s.slide == SlideMode::positive, v[j]);
-        g = {direction(s.slide) * g.value, direction(s.slide) * g.slope};
-      }
-      out.f[j] = g.value;
-      out.df(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(j)) = g.slope;
-    }
+    case FrictionKind::regularised:
+      return regularised_at(p, v);
+    case FrictionKind::lugre:
+      return bristles_at(p, s.z, bristle_rate(p, s.v, s.z), h, v);
   }
-  for (std::size_t j = 0; j < 2; ++j) {
-    out.f[j] += params_.F_load + F + cogging_force(params_, x[j]);
-  }
-  return out;
+  return {};
 }
 
 // Newton's iteration for the speeds at h/2 and h. y holds the response to all but the force there.
 bool ExactStep::collocate(const LaneState& s, double F, double h, const Propagator& P, Rows& y,
                           Trial& trial) const {
-  constexpr std::size_t kVelocity[2] = {kStates + 3, 3 * kStates + 3};
-  constexpr std::size_t kPosition[2] = {kStates + 4, 3 * kStates + 4};
+  constexpr std::size_t kRow[2] = {1, 3};  // of v at h/2 and h
   constexpr int kMostIterations = 12;
   const double f0 = force(s, F);
-  add(y, P[5], f0);
-  std::array<double, 2> f = {f0, f0}, v{}, x{};
-  Eigen::Matrix2d C;
-  for (int j = 0; j < 2; ++j) {
-    C(j, 0) = P[6][kVelocity[j]];
-    C(j, 1) = P[7][kVelocity[j]];
-  }
-  const auto response = [&](std::size_t row) {
-    return y[row] + P[6][row] * f[0] + P[7][row] * f[1];
+  y.add(P, 5, f0);
+  const auto& at_half = P.slide[6];
+  const auto& at_end = P.slide[7];
+  const Matrix2<double> C = {at_half[kRow[0]], at_end[kRow[0]], at_half[kRow[1]], at_end[kRow[1]]};
+  double f[2] = {f0, f0}, v[2], dv[2];
+  const auto response = [&](std::size_t j) {
+    return y.slide[kRow[j]] + at_half[kRow[j]] * f[0] + at_end[kRow[j]] * f[1];
   };
-  for (std::size_t j = 0; j < 2; ++j) v[j] = response(kVelocity[j]);
+  for (std::size_t j = 0; j < 2; ++j) v[j] = response(j);
+  const double load = params_.F_load + F;
   for (int n = 0; n < kMostIterations; ++n) {
-    for (std::size_t j = 0; j < 2; ++j) x[j] = s.x + response(kPosition[j]);
-    const Forces at = forces_at(s, F, h, v, x);
-    f = at.f;
-    const Eigen::Vector2d residual(response(kVelocity[0]) - v[0], response(kVelocity[1]) - v[1]);
-    const Eigen::Matrix2d jacobian = Eigen::Matrix2d::Identity() - C * at.df;
-    const Eigen::Vector2d dv = jacobian.inverse() * residual;
-    const Eigen::Vector2d df = at.df * dv;
-    for (std::size_t j = 0; j < 2; ++j) {
-      v[j] += dv[static_cast<Eigen::Index>(j)];
-      f[j] += df[static_cast<Eigen::Index>(j)];
+    double cogging[2] = {};
+    if (params_.cogging.T != 0.0) {
+      constexpr std::size_t kHalf = 4 * 1 + 3, kEnd = Propagator::kPosition;
+      cogging[0] = cogging_force(
+          params_, s.x + y.inner[kHalf] + P.inner[6][kHalf] * f[0] + P.inner[7][kHalf] * f[1]);
+      cogging[1] =
+          cogging_force(params_, s.x + y.slide[kEnd] + at_half[kEnd] * f[0] + at_end[kEnd] * f[1]);
     }
-    const double change = dv.cwiseAbs().maxCoeff();
+    const NodeForces<double> at = friction_at(s, h, v);
+    for (std::size_t j = 0; j < 2; ++j) f[j] = load + cogging[j] + at.f[j];
+    const double residual[2] = {response(0) - v[0], response(1) - v[1]};
+    newton(C, at.df, residual, dv);
+    for (std::size_t j = 0; j < 2; ++j) v[j] += dv[j];
+    f[0] += at.df.a * dv[0] + at.df.b * dv[1];
+    f[1] += at.df.c * dv[0] + at.df.d * dv[1];
+    const double change = std::max(std::abs(dv[0]), std::abs(dv[1]));
     if (change <= speed_tolerance_ + 1e-13 * std::abs(v[1])) {
-      add(y, P[6], f[0]);
-      add(y, P[7], f[1]);
-      trial.f = {f0, f[0], f[1]};
+      y.add(P, 6, f[0]);
+      y.add(P, 7, f[1]);
+      const double forces[3] = {f0, f[0], f[1]};
+      std::copy(std::begin(forces), std::end(forces), trial.f);
       if (params_.friction.kind == FrictionKind::lugre) {
-        const Eigen::Vector2d drate = at.drate * dv;
-        trial.dz = {bristle_rate(params_.friction, s.v, s.z), at.rate[0] + drate[0],
-                    at.rate[1] + drate[1]};
+        trial.dz[0] = bristle_rate(params_.friction, s.v, s.z);
+        trial.dz[1] = at.rate[0] + at.drate.a * dv[0] + at.drate.b * dv[1];
+        trial.dz[2] = at.rate[1] + at.drate.c * dv[0] + at.drate.d * dv[1];
         for (std::size_t node = 0; node < kNodes; ++node) {
           trial.at[node].z = s.z + h * parabola(kIntegral[node], trial.dz);
         }
@@ -370,23 +284,14 @@ bool ExactStep::collocate(const LaneState& s, double F, double h, const Propagat
   return false;
 }
 
-// What the parabola misses at h/4 and 3h/4, as the displacement (m) that it leaves. A cubic miss
-// moves the slide only within the sub-step, a quartic one changes its speed. Factors: integrals of
-// s (s - 1/2) (s - 1), times (1 - s), and of s (s - 1/2)^2 (s - 1), over their values at 1/4.
+// What the parabola misses at h/4 and 3h/4, as the displacement (m) that it leaves.
 double ExactStep::error_of(double F, double h, const Trial& trial) const {
-  constexpr double kCubic = 8.0 / 45.0, kQuartic = 32.0 / 45.0;
   const LaneState& first = trial.at[0];
   const LaneState& third = trial.at[2];
-  const auto effect = [](double a, double b, const std::array<double, 3>& nodes, double cubic,
-                         double quartic) {
-    a -= parabola(kQuarter[0], nodes);
-    b -= parabola(kQuarter[1], nodes);
-    return 0.5 * (kCubic * cubic * std::abs(a - b) + kQuartic * quartic * std::abs(a + b));
-  };
   const double impulse = h / params_.slide_mass();
-  double error = effect(force(first, F), force(third, F), trial.f, impulse * h, impulse * kMemory);
+  double error = missed(force(first, F), force(third, F), trial.f, impulse * h, impulse * kMemory);
   if (params_.friction.kind == FrictionKind::lugre) {
-    error += effect(bristle_rate(params_.friction, first.v, first.z),
+    error += missed(bristle_rate(params_.friction, first.v, first.z),
                     bristle_rate(params_.friction, third.v, third.z), trial.dz, h, h);
   }
   return error;
@@ -411,9 +316,9 @@ ExactStep::Trial ExactStep::attempt(const LaneState& s, double command, double F
   const double offset = contact_offset(params_, s.contact);
   Trial trial;
   trial.at.fill(s);
-  Rows y{};
+  Rows y{.looks_within = looks_within(s)};
   const double start[] = {s.i, s.w, s.delta - offset, s.v, command};
-  for (std::size_t column = 0; column < 5; ++column) add(y, P[column], start[column]);
+  for (std::size_t column = 0; column < 5; ++column) y.add(P, column, start[column]);
   const bool slides = !sticks(s);
   if (slides && !collocate(s, F, h, P, y, trial)) {
     trial.error = kInfinity;
@@ -421,12 +326,15 @@ ExactStep::Trial ExactStep::attempt(const LaneState& s, double command, double F
   }
   for (std::size_t node = 0; node < kNodes; ++node) {
     LaneState& at = trial.at[node];
-    const double* row = &y[node * kStates];
-    at.i = row[0];
-    at.w = row[1];
-    at.delta = offset + row[2];
-    at.v = row[3];
-    at.x = s.x + row[4];
+    const bool last = node + 1 == kNodes;
+    at.v = y.slide[node];
+    if (last || y.looks_within) {
+      const double* row = last ? &y.slide[Propagator::kCurrent] : &y.inner[4 * node];
+      at.i = row[0];
+      at.w = row[1];
+      at.delta = offset + row[2];
+      at.x = s.x + row[3];
+    }
     if (trial.event == kNone && happens(at, F)) trial.event = node;
     const double before = node == 0 ? s.v : trial.at[node - 1].v;
     if (has_kink_ && trial.kink == kNone && before * at.v < 0.0 && std::abs(at.v) * h > kNoTravel) {

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "plant/drives/collocation.h"
 #include "plant/drives/feed_drive.h"
+#include "plant/drives/propagator.h"
 #include "plant/vocabulary/ticks.h"
 
 namespace servomill::plant {
@@ -65,12 +67,8 @@ class ExactStep {
   const Gliding& gliding() const { return gliding_; }
 
  private:
-  static constexpr std::size_t kStates = 5, kNodes = 4, kColumns = 8, kNone = kNodes;
-  using Rows = std::array<double, kStates * kNodes>;
-  // Columns i, w, delta, v, command, f(0), f(h/2), f(h); rows: the states at h/4, h/2, 3h/4, h,
-  // the position as an increment.
-  using Propagator = std::array<Rows, kColumns>;
-  using Equations = Eigen::Matrix<double, kStates, kStates + 2>;
+  static constexpr std::size_t kNodes = Propagator::kNodes, kNone = kNodes;
+  using Equations = Eigen::Matrix<double, 5, 7>;
   // A linear mode with its propagators for the lengths finest_ 2^n.
   struct Linear {
     Equations A;
@@ -79,24 +77,24 @@ class ExactStep {
   struct Trial {
     std::array<LaneState, kNodes> at;  // h/4, h/2, 3h/4, h
     double error = 0.0;                // m; infinite if the collocation was not solved
-    std::array<double, 3> f{}, dz{};   // force and dz/dt at 0, h/2, h
+    double f[3] = {}, dz[3] = {};      // force and dz/dt at 0, h/2, h
     std::size_t event = kNone;         // first node that belongs to another mode
     std::size_t kink = kNone;          // first node beyond a zero of v where friction has a kink
   };
-  struct Forces;
+  struct Rows;
 
   void prepare(bool sticking, bool gap, int coarsest);
   bool sticks(const LaneState& s) const;
   const Linear& linear_of(const LaneState& s) const;
   double friction_force(const LaneState& s) const;
   double force(const LaneState& s, double F) const;
-  Forces forces_at(const LaneState& s, double F, double h, const std::array<double, 2>& v,
-                   const std::array<double, 2>& x) const;
+  NodeForces<double> friction_at(const LaneState& s, double h, const double (&v)[2]) const;
   bool happens(const LaneState& s, double F) const;
   void from_rest(LaneState& s, double F) const;
   Trial attempt(const LaneState& s, double command, double F, std::size_t level) const;
   bool collocate(const LaneState& s, double F, double h, const Propagator& P, Rows& y,
                  Trial& trial) const;
+  bool looks_within(const LaneState& s) const;
   double error_of(double F, double h, const Trial& trial) const;
   LaneState coast(const LaneState& s, double command, double F, double dt) const;
   double slide_event(const LaneState& s, const LaneState& end, double F) const;

@@ -1,9 +1,14 @@
 /// Friction of a guideway: Coulomb with Stribeck effect, in three forms. Viscous friction belongs
 /// to the linear part of a drive (b_load, sigma_2 of the LuGre model).
+///
+/// The formulas are templates: of a description p that has the members of FrictionParams, for one
+/// lane or for eight (pack.h), and of its numbers T and truths M.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
+
+#include "plant/vocabulary/numbers.h"
 
 namespace servomill::plant {
 
@@ -13,6 +18,17 @@ enum class FrictionKind : std::uint8_t {
   regularised,  // F = g(v) tanh(v / v0): never holds still, creeps under load
   lugre,        // bristles of deflection z: presliding, then as above
 };
+
+/// A quantity and its derivative by speed.
+template <class T>
+struct WithSlope {
+  T value, slope;
+};
+using ForceSlope = WithSlope<double>;  // N, N s/m
+
+/// Beyond this many vs the Stribeck term is below the last bit of Fc, beyond this many v0 tanh
+/// is 1.
+inline constexpr double kStribeckEnd = 6.5, kTanhEnd = 20.0;
 
 /// Constant description of the friction of one axis. For a rotary axis read N m for N and so on.
 /// The two directions may differ; *_positive resists motion in +x.
@@ -25,59 +41,71 @@ struct FrictionParams {
   double sigma0 = 0.0;                          // N/m, stiffness of the bristles
   double sigma1 = 0.0;                          // N s/m, their damping
 
+  /// exp(-(v / vs)^2)
+  WithSlope<double> stribeck(double v) const {
+    const double q = v / vs;
+    if (std::abs(q) > kStribeckEnd) return {0.0, 0.0};
+    const double bump = std::exp(-q * q);
+    return {bump, -2.0 * q / vs * bump};
+  }
+  /// tanh(v / v0)
+  WithSlope<double> saturation(double v) const {
+    const double q = v / v0;
+    if (std::abs(q) > kTanhEnd) return {q > 0.0 ? 1.0 : -1.0, 0.0};
+    const double T = std::tanh(q);
+    return {T, (1.0 - T * T) / v0};
+  }
   bool operator==(const FrictionParams&) const = default;
-};
-
-/// Beyond this many vs the Stribeck term is below the last bit of Fc, beyond this many v0 tanh
-/// is 1.
-inline constexpr double kStribeckEnd = 6.5, kTanhEnd = 20.0;
-
-/// A force (N) and its derivative by speed (N s/m).
-struct ForceSlope {
-  double value, slope;
 };
 
 /// Magnitude of the friction force when sliding in one direction, a smooth and even function of v:
 /// g(v) = Fc + (Fs - Fc) exp(-(v / vs)^2).
-inline ForceSlope sliding(const FrictionParams& p, bool positive, double v) {
-  const double Fc = positive ? p.Fc_positive : p.Fc_negative;
-  const double Fs = positive ? p.Fs_positive : p.Fs_negative;
-  const double q = v / p.vs;
-  if (std::abs(q) > kStribeckEnd) return {Fc, 0.0};
-  const double bump = (Fs - Fc) * std::exp(-q * q);
-  return {Fc + bump, -2.0 * q / p.vs * bump};
+template <class P, class M, class T>
+WithSlope<T> sliding(const P& p, const M& positive, const T& v) {
+  const T Fc = select(positive, p.Fc_positive, p.Fc_negative);
+  const T drop = select(positive, p.Fs_positive, p.Fs_negative) - Fc;
+  const WithSlope<T> bump = p.stribeck(v);
+  return {fma(drop, bump.value, Fc), drop * bump.slope};
 }
-inline double sliding_force(const FrictionParams& p, bool positive, double v) {
+template <class P, class M, class T>
+T sliding_force(const P& p, const M& positive, const T& v) {
   return sliding(p, positive, v).value;
 }
 
 /// Regularised friction g(v) tanh(v / v0), against +v. With a direction it goes on smoothly beyond
 /// v = 0 with the g of that direction.
-inline double regularised_force(const FrictionParams& p, bool positive, double v) {
-  return sliding_force(p, positive, v) * std::tanh(v / p.v0);
+template <class P, class M, class T>
+WithSlope<T> regularised(const P& p, const M& positive, const T& v) {
+  const WithSlope<T> g = sliding(p, positive, v), S = p.saturation(v);
+  return {g.value * S.value, fma(g.slope, S.value, g.value * S.slope)};
 }
-inline ForceSlope regularised(const FrictionParams& p, double v) {
-  const ForceSlope g = sliding(p, v >= 0.0, v);
-  const double q = v / p.v0;
-  if (std::abs(q) > kTanhEnd) return q > 0.0 ? g : ForceSlope{-g.value, -g.slope};
-  const double T = std::tanh(q);
-  return {g.value * T, g.slope * T + g.value * (1.0 - T * T) / p.v0};
+template <class P, class T>
+WithSlope<T> regularised(const P& p, const T& v) {
+  return regularised(p, v >= T(0.0), v);
 }
-inline double regularised_force(const FrictionParams& p, double v) {
+template <class P, class M, class T>
+T regularised_force(const P& p, const M& positive, const T& v) {
+  return regularised(p, positive, v).value;
+}
+template <class P, class T>
+T regularised_force(const P& p, const T& v) {
   return regularised(p, v).value;
 }
 
 /// LuGre: dz/dt = v - sigma0 |v| z / g(v) (m/s). Canudas de Wit et al. 1995, equations (2) to (4).
 /// With a direction it goes on smoothly beyond v = 0 with the |v| and the g of that direction.
-inline double bristle_rate(const FrictionParams& p, bool positive, double v, double z) {
-  return v - p.sigma0 * (positive ? v : -v) * z / sliding_force(p, positive, v);
+template <class P, class M, class T>
+T bristle_rate(const P& p, const M& positive, const T& v, const T& z) {
+  return v - p.sigma0 * select(positive, v, -v) * z / sliding_force(p, positive, v);
 }
-inline double bristle_rate(const FrictionParams& p, double v, double z) {
-  return bristle_rate(p, v >= 0.0, v, z);
+template <class P, class T>
+T bristle_rate(const P& p, const T& v, const T& z) {
+  return bristle_rate(p, v >= T(0.0), v, z);
 }
 
 /// LuGre: F = sigma0 z + sigma1 dz/dt (N), against +v; sigma2 v is in b_load.
-inline double bristle_force(const FrictionParams& p, double v, double z) {
+template <class P, class T>
+T bristle_force(const P& p, const T& v, const T& z) {
   return p.sigma0 * z + p.sigma1 * bristle_rate(p, v, z);
 }
 

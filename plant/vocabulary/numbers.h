@@ -13,6 +13,7 @@ Number value(const Stored& stored) {
 /// The way back.
 inline void put(double& to, double number) { to = number; }
 
+inline double fma(double a, double b, double c) { return a * b + c; }
 inline double select(bool mask, double yes, double no) { return mask ? yes : no; }
 /// Of a number and NaN: the second argument, as the processor does it for lanes.
 inline double min(double a, double b) { return a < b ? a : b; }

@@ -1,0 +1,47 @@
+/// The motion of a linear drive over a sub-step under a force that is a parabola in time.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+namespace servomill::plant {
+
+/// States at h/4, h/2, 3h/4 and h, the position as an increment, from columns
+///   i, w, delta, v, command, f(0), f(h/2), f(h).
+struct Propagator {
+  static constexpr std::size_t kNodes = 4, kColumns = 8;
+  /// v at the four nodes, then i, w, delta, x at h: all that a slide that glides needs.
+  static constexpr std::size_t kSlideRows = 8, kCurrent = 4, kSpeed = 5, kWindUp = 6, kPosition = 7;
+  /// i, w, delta, x at the first three nodes, node after node.
+  static constexpr std::size_t kInnerRows = 12;
+
+  std::array<std::array<double, kSlideRows>, kColumns> slide{};
+  std::array<std::array<double, kInnerRows>, kColumns> inner{};
+};
+
+/// e^{At}, int_0^t e^{A(t-s)} b ds and int_0^t e^{A(t-s)} b_F s^m ds, m = 0, 1, 2, as power series
+/// in long double.
+class PropagatorSeries {
+ public:
+  /// What the terms that are left out amount to stays below the last bit of long double as long as
+  /// t times the rates of A does not exceed this.
+  static constexpr double kMostRate = 2.0;
+
+  /// @param equations  dx/dt = A x + B (command, F) of feed_drive.h
+  explicit PropagatorSeries(const Eigen::Matrix<double, 5, 7>& equations);
+  /// @param h  s
+  Propagator over(long double h) const;
+
+ private:
+  static constexpr std::size_t kTerms = 30;  // 2^30 / 30!
+  struct Values;
+  Values at(long double t) const;
+
+  using Matrix5l = Eigen::Matrix<long double, 5, 5>;
+  using Vector5l = Eigen::Matrix<long double, 5, 1>;
+  std::array<Matrix5l, kTerms> A_;
+  std::array<Vector5l, kTerms> command_, force_;
+};
+
+}  // namespace servomill::plant
