@@ -153,7 +153,7 @@ class Problem {
  public:
   /// @param machines  one a run; must outlive this
   Problem(const std::vector<const sim::MachineSettings*>& machines,
-      const plant::VolumetricModel& volumetric)
+          const plant::VolumetricModel& volumetric)
       : schedule_(sim::make_schedule({{sim::kErrorModel, kVolumetric, 0},
                                       {sim::kSample, kPosition, 0},
                                       {sim::kPositionLoop, kPosition, 0},
@@ -162,6 +162,7 @@ class Problem {
                                       {sim::kRecord, kRecord, 0}})),
         axes_(machines, {0, 1, 2, 3, 4}, schedule_),
         volumetric_(volumetric),
+        Q_(machines.size()),
         next_(machines.size(), Eigen::Vector3d::Zero()) {
     for (std::size_t run = 0; run < machines.size(); ++run) {
       axes_.settle(Joints::Zero(), Eigen::Vector3d::Zero(), run);
@@ -204,14 +205,16 @@ class Problem {
   void displace() {
     for (std::size_t run = 0; run < axes_.runs(); ++run) {
       axes_.displace(next_[run], run);
-      next_[run] = volumetric_.joint_offset(axes_.Q_true(run), p_ST_);
+      Q_[run] = axes_.Q_true(run);
     }
+    volumetric_.joint_offsets(Q_, p_ST_, next_);
   }
 
   std::vector<sim::Instant> schedule_;
   sim::ServoAxes axes_;
   const plant::VolumetricModel& volumetric_;
   const Eigen::Vector3d p_ST_{0.0, 0.0, -0.15};
+  std::vector<Joints> Q_;
   std::vector<Eigen::Vector3d> next_;
   SetPoint set_point_;
   sim::AxisSetPoint set_;
