@@ -2,31 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <map>
-#include <variant>
-
 #include "sim/comparison.h"
-#include "sim/metrology/circular_test.h"
-#include "sim/metrology/section_circle.h"
 #include "sim/scenario.h"
 
 namespace servomill::sim {
 namespace {
 
-struct Section {
-  std::variant<SectionCircle, NoCircle> circle;
-  Sense sense = Sense::counter_clockwise;
-};
-
-Section section_of(const std::vector<Eigen::Vector3d>& positions) {
-  Section section{circle_of_section(positions)};
-  if (const auto* circle = std::get_if<SectionCircle>(&section.circle)) {
-    section.sense = sense_of(circle->in_plane(positions), circle->nominal);
-  }
-  return section;
-}
-
-std::string wrong_alone(const Section& section, const std::string& name, char axis) {
+std::string wrong_alone(const CircularSection& section, const std::string& name, char axis) {
   if (const auto* no = std::get_if<NoCircle>(&section.circle)) {
     return fmt::format("section '{}' {}", name, no->why);
   }
@@ -36,7 +18,7 @@ std::string wrong_alone(const Section& section, const std::string& name, char ax
   return fmt::format("section '{}' is a circle in {}, where {} does not move", name, plane, axis);
 }
 
-std::string wrong_together(const Section& one, const Section& other,
+std::string wrong_together(const CircularSection& one, const CircularSection& other,
                            const std::vector<std::string>& names) {
   const auto both = fmt::format("sections '{}' and '{}'", names[0], names[1]);
   if (!is_same_circle(std::get<SectionCircle>(one.circle), std::get<SectionCircle>(other.circle))) {
@@ -48,24 +30,34 @@ std::string wrong_together(const Section& one, const Section& other,
 
 }  // namespace
 
-std::vector<Fault> circular_faults(
-    const Scenario& scenario,
-    const std::function<std::vector<Eigen::Vector3d>(const std::string&)>& positions) {
-  std::map<std::string, Section> known;
-  const auto section = [&](const std::string& name) -> const Section& {
-    const auto found = known.find(name);
-    return found != known.end() ? found->second
-                                : known.emplace(name, section_of(positions(name))).first->second;
-  };
+CircularSection circular_section(const std::vector<Eigen::Vector3d>& positions) {
+  CircularSection section{circle_of_section(positions)};
+  if (const auto* circle = std::get_if<SectionCircle>(&section.circle)) {
+    section.sense = sense_of(circle->in_plane(positions), circle->nominal);
+  }
+  return section;
+}
+
+std::set<std::string> circular_section_names(const Scenario& scenario) {
+  std::set<std::string> names;
+  for (const QuantitySpec& quantity : scenario.quantities) {
+    if (quantity_info(quantity.name).circles == 0) continue;
+    names.insert(quantity.sections.begin(), quantity.sections.end());
+  }
+  return names;
+}
+
+std::vector<Fault> circular_faults(const Scenario& scenario,
+                                   const std::map<std::string, CircularSection>& sections) {
   std::vector<Fault> faults;
   for (const QuantitySpec& quantity : scenario.quantities) {
     if (quantity_info(quantity.name).circles == 0) continue;
     std::string wrong;
     for (const std::string& name : quantity.sections) {
-      if (wrong.empty()) wrong = wrong_alone(section(name), name, quantity.axis);
+      if (wrong.empty()) wrong = wrong_alone(sections.at(name), name, quantity.axis);
     }
     if (wrong.empty() && quantity.sections.size() == 2) {
-      wrong = wrong_together(section(quantity.sections[0]), section(quantity.sections[1]),
+      wrong = wrong_together(sections.at(quantity.sections[0]), sections.at(quantity.sections[1]),
                              quantity.sections);
     }
     if (wrong.empty()) continue;

@@ -157,7 +157,8 @@ std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& bel
 }  // namespace
 
 Entry feedback_entry() {
-  return {"feedback", "modifies the position feedback (virtual encoder)", specs(), make};
+  return {"feedback", "modifies the position feedback (virtual encoder)", specs(), make,
+          /*reads_gains=*/true};
 }
 
 }  // namespace servomill::strategies

@@ -17,6 +17,7 @@ struct Entry {
   std::span<const ParameterSpec> parameters;
   /// @throws InputError without a place when the parameters contradict the belief
   std::unique_ptr<Strategy> (*make)(const Parameters&, Sign, const Belief&);
+  bool reads_gains = false;  ///< false: Belief::Kv is NaN, so that nothing depends on it
 };
 
 /// All strategies, sorted by name.

@@ -26,7 +26,8 @@ struct Belief {
   Joints lower = Joints::Zero();                   // m, rad; travel of the machine
   Joints upper = Joints::Zero();
   Joints reference = Joints::Zero();             // m, rad; where the machine starts
-  Eigen::Vector3d Kv = Eigen::Vector3d::Zero();  // 1/s, position gains that the NC is set to
+  Eigen::Vector3d Kv = Eigen::Vector3d::Zero();  // 1/s, position gains that the NC is set to;
+                                                 // NaN unless the entry reads_gains
 };
 
 /// Offset of the linear set points, added in the NC where `entry` says.

@@ -28,6 +28,7 @@ class ToolTable {
 
   /// nullptr if there is no such tool.
   const ToolEntry* find(int number) const;
+  const std::map<int, ToolEntry>& entries() const { return tools_; }  ///< by number
   bool empty() const { return tools_.empty(); }
   std::size_t size() const { return tools_.size(); }
 

@@ -1,0 +1,174 @@
+#include "sim/preparation_cache.h"
+
+#include <algorithm>
+
+namespace servomill::sim {
+namespace {
+
+std::size_t weight_of(const std::vector<Move>& moves) { return moves.size() + 1; }
+
+void add(MemoKey& key, const controllers::ToolTable& tools) {
+  key.add(tools.size());
+  for (const auto& [number, tool] : tools.entries()) {
+    const auto& [tool_number, pocket, offset, diameter] = tool;
+    key.add(tool_number);
+    key.add(pocket);
+    key.add(offset);
+    key.add(diameter);
+  }
+}
+
+void add(MemoKey& key, const plant::ErrorFunction& function) {
+  const auto& [polynomial, harmonics, tables] = function;
+  const auto add_all = [&key](const std::vector<double>& values) {
+    key.add(values.size());
+    for (const double value : values) key.add(value);
+  };
+  add_all(polynomial);
+  key.add(harmonics.size());
+  for (const auto& [amplitude, period, phase] : harmonics) {
+    key.add(amplitude);
+    key.add(period);
+    key.add(phase);
+  }
+  key.add(tables.size());
+  for (const auto& [s, error] : tables) {
+    add_all(s);
+    add_all(error);
+  }
+}
+
+void add(MemoKey& key, const controllers::FilterChain& filters) {
+  const auto& [sections, count] = filters;
+  key.add(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto& [b0, b1, b2, a1, a2] = sections[n];
+    for (const double coefficient : {b0, b1, b2, a1, a2}) key.add(coefficient);
+  }
+}
+
+}  // namespace
+
+InterpretedProgram::InterpretedProgram(std::vector<Move> moves_in, const AxisWords& start,
+                                       const controllers::ToolTable& tools)
+    : moves(std::move(moves_in)), tips{{0, Eigen::Vector3d::Zero()}}, path(moves, start) {
+  for (const Move& move : moves) {
+    if (const auto* tool = tools.find(move.tool_offset)) {
+      tips[move.tool_offset] = -tool->offset.head<3>();
+    }
+  }
+  // the tip of the first tool that the program works with: the one that a strategy believes in
+  const auto works = [](const Move& move) { return is_motion(move.kind) && move.tool_offset != 0; };
+  const auto first = std::find_if(moves.begin(), moves.end(), works);
+  if (first != moves.end()) first_tip = tips.at(first->tool_offset);
+  for (const Axis axis : kAllAxes) {
+    const auto leaves = [&](const Move& move) {
+      return is_motion(move.kind) && move.end_machine[index_of(axis)] != start[index_of(axis)];
+    };
+    const auto leaving = std::find_if(moves.begin(), moves.end(), leaves);
+    if (leaving != moves.end()) first_line[static_cast<std::size_t>(axis)] = leaving->line;
+  }
+}
+
+PreparationCache::PreparationCache()
+    : programs(kMoves, [](const InterpretedProgram& p) { return weight_of(p.moves); }),
+      rewritten(kMoves, [](const RewrittenProgram& p) { return weight_of(p.moves); }),
+      motions(kMoves, [](const PlannedMotion& m) { return weight_of(*m.moves); }),
+      circles(kMoves, [](const SectionsOfMotion& s) { return weight_of(*s.motion->moves); }),
+      models(kModels),
+      strategies(kModels),
+      spectral_radii(kRadii) {}
+
+void add(MemoKey& key, const JointLayout& layout) {
+  const auto& [axes] = layout;
+  for (const auto& axis : axes) {
+    key.add(axis.has_value());
+    if (axis) key.add(*axis);
+  }
+}
+
+void add(MemoKey& key, const plant::MachineChain& chain) {
+  const auto& [axes, layout] = chain;
+  key.add(axes.size());
+  for (const auto& [axis, side, joint, centre, sense] : axes) {
+    key.add(axis);
+    key.add(side);
+    key.add(joint);
+    key.add(centre);
+    key.add(sense);
+  }
+  add(key, layout);
+}
+
+void add(MemoKey& key, const plant::ErrorModel& errors) {
+  for (const auto& of_axis : errors.components) {
+    for (const plant::ErrorFunction& function : of_axis) add(key, function);
+  }
+  for (const AxisWords& location : errors.locations) key.add(location);
+}
+
+void add(MemoKey& key, const controllers::ProgramSetup& setup) {
+  const auto& [parameters, work_offset, work_rotation, work_system, tools, tool, start,
+               block_delete] = setup;
+  key.add(parameters.size());
+  for (const auto& [name, value] : parameters) {
+    key.add(name);
+    key.add(value);
+  }
+  for (const AxisWords& offset : work_offset) key.add(offset);
+  for (const double rotation : work_rotation) key.add(rotation);
+  key.add(work_system);
+  add(key, tools);
+  key.add(tool);
+  key.add(start);
+  key.add(block_delete);
+}
+
+void add(MemoKey& key, const controllers::JointLimits& limits) {
+  const auto& [v, a, j] = limits;
+  key.add(v);
+  key.add(a);
+  key.add(j);
+}
+
+void add(MemoKey& key, const controllers::PathOptions& options) {
+  const auto& [tolerance, exact_tolerance, exact_corner, rotary_tolerance, rotary_radius,
+               feed_override, rapid_override] = options;
+  for (const double value : {tolerance, exact_tolerance, exact_corner, rotary_tolerance,
+                             rotary_radius, feed_override, rapid_override}) {
+    key.add(value);
+  }
+}
+
+void add_linear_axis(MemoKey& key, const MachineSettings& linear, int joint) {
+  const auto j = static_cast<std::size_t>(joint);
+  const auto& [base, position, velocity, current] = linear.nc.periods;
+  key.add(base);
+  for (const Tick period : {position, velocity, current}) key.add(period);
+  {
+    const auto& [kind, r, J, M, k, c, gap, b_motor, b_load, Kt, i_max, T_i, L, R, Ke, F_load,
+                 friction, cogging] = linear.drives[j];
+    key.add(kind);
+    for (const double value :
+         {r, J, M, k, c, gap, b_motor, b_load, Kt, i_max, T_i, L, R, Ke, F_load}) {
+      key.add(value);
+    }
+  }
+  {
+    const auto& [Kv, kvf, kaf, Kp, Ki, r, Kt, J, i_max, Tv, v_max, tau_max, di_max, filters] =
+        linear.nc.cascade[j];
+    for (const double value : {Kv, kvf, kaf, Kp, Ki, r, Kt, J, i_max, Tv, v_max, tau_max, di_max}) {
+      key.add(value);
+    }
+    add(key, filters);
+  }
+  const auto& [current_loop, position_feedback, friction, backlash, supervision] =
+      linear.nc.functions[j];
+  const auto& [Kp, Ki, u_max, Ti] = current_loop;
+  for (const double value : {Kp, Ki, u_max, Ti}) key.add(value);
+  const auto& [kind, gain] = position_feedback;
+  key.add(kind);
+  key.add(gain);
+}
+
+}  // namespace servomill::sim

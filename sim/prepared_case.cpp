@@ -1,0 +1,521 @@
+#include "sim/prepared_case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "controllers/gcode/printer.h"
+#include "controllers/path/travel.h"
+#include "plant/vocabulary/units.h"
+#include "sim/preparation_cache.h"
+#include "sim/stability_check.h"
+
+namespace servomill::sim {
+namespace {
+
+using SharedModel = std::shared_ptr<const plant::VolumetricModel>;
+using SharedProgram = std::shared_ptr<const InterpretedProgram>;
+using SharedStrategy = std::shared_ptr<const strategies::Strategy>;
+using SharedMotion = std::shared_ptr<const PlannedMotion>;
+
+AxisWords machine_start(const Scenario& scenario, const CaseSpec& spec) {
+  return scenario.program.start + scenario.program.work_offset + spec.work_offset;
+}
+
+controllers::ProgramSetup setup_of(const Scenario& scenario, const CaseSpec& spec) {
+  controllers::ProgramSetup setup;
+  setup.parameters = scenario.program.parameters;
+  setup.work_offset[0] = scenario.program.work_offset + spec.work_offset;
+  setup.tools = scenario.program.tools;
+  setup.start = machine_start(scenario, spec);
+  return setup;
+}
+
+// Title of a rewritten program.
+std::string header_of(const Scenario& scenario, const CaseSpec& spec) {
+  return fmt::format("{}, case {}", scenario.title, spec.name);
+}
+
+// The rewritten program is written as text and read like any other; what the text cannot say, the
+// place on the original path, is carried over block by block.
+std::vector<Move> through_text(const std::vector<Move>& rewritten, const Scenario& scenario,
+                               const CaseSpec& spec, std::string& text) {
+  controllers::PrintOptions options;
+  options.axes.clear();
+  for (const auto& axis : scenario.machine.chain.layout.axis) {
+    if (axis) options.axes += letter(*axis);
+  }
+  text = controllers::print_program(rewritten, options, header_of(scenario, spec)).text;
+  std::vector<Move> read = controllers::interpret(
+      text, fmt::format("{} as rewritten for case {}", scenario.program.file, spec.name),
+      setup_of(scenario, spec));
+  auto original = rewritten.begin();
+  const auto next_motion = [&] {
+    return std::find_if(original, rewritten.end(),
+                        [](const Move& move) { return is_motion(move.kind); });
+  };
+  for (Move& move : read) {
+    if (!is_motion(move.kind)) continue;
+    original = next_motion();
+    if (original == rewritten.end()) throw std::logic_error("a rewritten program gained a block");
+    move.line = original->line;
+    move.s_begin = original->s_begin;
+    move.s_end = original->s_end;
+    ++original;
+  }
+  if (next_motion() != rewritten.end()) throw std::logic_error("a rewritten program lost a block");
+  return read;
+}
+
+// Where the key stands that a strategy's complaint names first; the strategy if it is not given.
+Place place_in(const StrategySpec& spec, const std::string& complaint) {
+  Place place = spec.place;
+  std::size_t first = std::string::npos;
+  for (const auto& [key, at] : spec.key_places) {
+    const std::size_t found = complaint.find(key);
+    if (found >= first) continue;
+    first = found;
+    place = at;
+  }
+  return place;
+}
+
+// A displaced scale moves nothing where the motor closes the position loop.
+void refuse_unread_scale(const StrategySpec& spec, const MachineSettings& machine,
+                         const std::string& case_name) {
+  if (spec.entry->name != "feedback") return;
+  for (const int j : machine.joints()) {
+    const auto& feedback = machine.nc.functions[static_cast<std::size_t>(j)].position_feedback;
+    if (j >= kLinearJoints || feedback.kind != controllers::PositionFeedback::motor) continue;
+    throw InputError(
+        spec.place, fmt::format("case {}: strategy feedback: displaces the scale of axis {}, whose "
+                                "position loop reads the motor (position_feedback = \"motor\")",
+                                case_name, machine.chain.layout.letter_of(j)));
+  }
+}
+
+const plant::ErrorModel& errors_of(const Scenario& scenario, const std::string& model) {
+  static const plant::ErrorModel kNone;
+  const auto found = scenario.errors.find(model);
+  return found == scenario.errors.end() ? kNone : found->second;
+}
+
+void add(MemoKey& key, const StrategySpec& spec) {
+  key.add(spec.entry->name);
+  key.add(spec.sign);
+  for (const ParameterSpec& parameter : spec.entry->parameters) {
+    key.add(spec.parameters.is_word(parameter.name));
+    if (spec.parameters.is_word(parameter.name)) {
+      key.add(spec.parameters.word(parameter.name));
+    } else {
+      key.add(spec.parameters.number(parameter.name));
+    }
+  }
+}
+
+// Words of axes that the machine lacks would have no effect.
+void refuse_absent_axes(const InterpretedProgram& program, const Scenario& scenario) {
+  std::vector<Fault> faults;
+  for (const Axis axis : kAllAxes) {
+    const int line = program.first_line[static_cast<std::size_t>(axis)];
+    if (scenario.machine.chain.layout.joint_of(axis) || line == 0) continue;
+    faults.push_back({{scenario.program.file, line},
+                      fmt::format("moves {0}; the machine has no axis {0}", letter(axis))});
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+void refuse_start_outside(const Scenario& scenario, const MachineSettings& machine,
+                          const Joints& start) {
+  std::vector<Fault> faults;
+  for (int j = 0; j < kJoints; ++j) {
+    if (!machine.chain.layout.has(j)) continue;
+    if (start[j] >= machine.nc.lower[j] && start[j] <= machine.nc.upper[j]) continue;
+    const bool linear = j < kLinearJoints;
+    const double unit = linear ? mm : deg;
+    faults.push_back(
+        {scenario.program.start_place,
+         fmt::format("program.start: {} = {:.4f} {} with all work offsets, outside the travel; "
+                     "must be >= {:.4f} and <= {:.4f}",
+                     machine.chain.layout.letter_of(j), start[j] / unit, linear ? "mm" : "deg",
+                     machine.nc.lower[j] / unit, machine.nc.upper[j] / unit)});
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+// A slip of the unit can make a program last for years.
+void refuse_endless(const Scenario& scenario, double duration) {
+  constexpr double kMostSamples = 1e8;  // of some 500 bytes: more than most machines hold
+  const double period = scenario.machine.nc.periods.seconds(scenario.record_period);
+  const double samples = (duration + scenario.settle_time) / period;
+  if (samples <= kMostSamples) return;
+  throw InputError({scenario.program.file},
+                   fmt::format("takes {:.3g} s: {:.3g} samples at record.period_ms = {:g}; must be "
+                               "<= {:g}; check feeds, feed_override and the limits of the axes",
+                               duration, samples, period / ms, kMostSamples));
+}
+
+// Sections that quantities name, among those that the program has.
+void refuse_absent_sections(const Scenario& scenario, const std::vector<std::string>& sections) {
+  std::vector<std::string_view> known;
+  for (const std::string& name : sections) {
+    if (!name.empty()) known.push_back(name);
+  }
+  std::vector<Fault> faults;
+  for (const QuantitySpec& quantity : scenario.quantities) {
+    for (const std::string& name : quantity.sections) {
+      if (std::find(sections.begin(), sections.end(), name) != sections.end()) continue;
+      const std::string near = did_you_mean(name, known);
+      faults.push_back(
+          {quantity.sections_place,
+           fmt::format("{} has no section '{}'{}", scenario.program.file, name,
+                       !near.empty()   ? near
+                       : known.empty() ? "; a comment (MSG, NAME) begins one"
+                                       : fmt::format("; there are: {}", fmt::join(known, ", ")))});
+    }
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+// Faults of several cases, each said once; with the case if not all cases have it.
+class CaseFaults {
+ public:
+  void add(const std::string& case_name, const InputError& error) {
+    for (const Fault& fault : error.faults()) {
+      const auto same = std::find_if(found_.begin(), found_.end(), [&](const Found& other) {
+        return other.fault.place == fault.place && other.fault.message == fault.message;
+      });
+      if (same == found_.end()) {
+        found_.push_back({fault, {case_name}});
+      } else {
+        same->cases.push_back(case_name);
+      }
+    }
+  }
+  void report(std::size_t cases) {
+    if (found_.empty()) return;
+    std::vector<Fault> faults;
+    for (Found& one : found_) {
+      const std::string who = fmt::format("case {}: ", fmt::join(one.cases, ", "));
+      if (one.cases.size() < cases && !one.fault.message.starts_with(who)) {
+        one.fault.message = who + one.fault.message;
+      }
+      faults.push_back(std::move(one.fault));
+    }
+    throw InputError(std::move(faults));
+  }
+
+ private:
+  struct Found {
+    Fault fault;
+    std::vector<std::string> cases;
+  };
+  std::vector<Found> found_;
+};
+
+controllers::PathOptions path_options(const Scenario& scenario, const MachineSettings& machine) {
+  controllers::PathOptions options;
+  options.tolerance = machine.nc.path_tolerance;
+  options.rotary_tolerance = machine.nc.rotary_tolerance;
+  options.feed_override = scenario.program.feed_override;
+  return options;
+}
+
+// One case, step by step; every step asks the cache first.
+class Preparation {
+ public:
+  Preparation(const Scenario& scenario, const CaseSpec& spec, PreparationCache& cache)
+      : scenario_(scenario),
+        spec_(spec),
+        machine_(scenario.machine_of(spec)),
+        start_(machine_.chain.layout.joints(machine_start(scenario, spec))),
+        cache_(cache) {}
+
+  SharedProgram program() const {
+    const controllers::ProgramSetup setup = setup_of(scenario_, spec_);
+    MemoKey key;
+    key.add(scenario_.program.text);
+    add(key, setup);
+    return cache_.programs.get(key, [&] {
+      return InterpretedProgram(read_program(scenario_, spec_), setup.start, setup.tools);
+    });
+  }
+
+  SharedModel model(const std::string& name) const {
+    const plant::ErrorModel& errors = errors_of(scenario_, name);
+    MemoKey key;
+    add(key, machine_.chain);
+    add(key, errors);
+    return cache_.models.get(key, [&] { return plant::VolumetricModel(machine_.chain, errors); });
+  }
+
+  SharedStrategy strategy(const StrategySpec& spec, const Eigen::Vector3d& tip) const {
+    const auto gain = [&](std::size_t j) {
+      return spec.entry->reads_gains ? machine_.nc.cascade[j].Kv
+                                     : std::numeric_limits<double>::quiet_NaN();
+    };
+    const Eigen::Vector3d Kv = {gain(0), gain(1), gain(2)};
+    MemoKey key;
+    add(key, spec);
+    add(key, machine_.chain);
+    add(key, errors_of(scenario_, spec.model));
+    key.add(tip);
+    key.add(machine_.nc.lower);
+    key.add(machine_.nc.upper);
+    key.add(start_);
+    key.add(Kv);
+    return cache_.strategies.get(key, [&]() -> SharedStrategy {
+      const strategies::Belief belief = {machine_.chain.layout,
+                                         *model(spec.model),
+                                         tip,
+                                         machine_.nc.lower,
+                                         machine_.nc.upper,
+                                         start_,
+                                         Kv};
+      try {
+        return spec.entry->make(spec.parameters, spec.sign, belief);
+      } catch (const InputError& error) {  // a strategy knows what is wrong, not where it stands
+        const std::string& why = error.faults().front().message;
+        throw InputError(place_in(spec, why), fmt::format("case {}: strategy {}: {}", spec_.name,
+                                                          spec.entry->name, why));
+      }
+    });
+  }
+
+  std::shared_ptr<const RewrittenProgram> rewritten(const SharedMoves& moves,
+                                                    const SharedStrategy& strategy) const {
+    MemoKey key;
+    key.add_shared(moves.get());
+    key.add_shared(strategy.get());
+    key.add(header_of(scenario_, spec_));
+    add(key, setup_of(scenario_, spec_));
+    add(key, scenario_.machine.chain.layout);
+    return cache_.rewritten.get(key, [&] {
+      RewrittenProgram out{moves, strategy, {}, {}};
+      out.moves = through_text(strategy->rewrite(*moves), scenario_, spec_, out.text);
+      return out;
+    });
+  }
+
+  SharedMotion motion(const SharedMoves& moves) const {
+    const controllers::JointLimits limits = {machine_.nc.v_max, machine_.nc.a_max,
+                                             machine_.nc.j_max};
+    const controllers::PathOptions options = path_options(scenario_, machine_);
+    MemoKey key;
+    key.add_shared(moves.get());
+    add(key, machine_.chain.layout);
+    key.add(start_);
+    key.add(machine_.nc.lower);
+    key.add(machine_.nc.upper);
+    add(key, limits);
+    add(key, options);
+    return cache_.motions.get(key, [&] {
+      auto faults =
+          controllers::travel_faults(*moves, machine_.chain.layout, start_, machine_.nc.lower,
+                                     machine_.nc.upper, scenario_.program.file);
+      if (!faults.empty()) throw InputError(std::move(faults));
+      const auto blocks = std::count_if(moves->begin(), moves->end(),
+                                        [](const Move& move) { return is_motion(move.kind); });
+      return PlannedMotion{
+          moves, controllers::plan(*moves, machine_.chain.layout, start_, limits, options),
+          static_cast<double>(blocks)};
+    });
+  }
+
+  const Joints& start() const { return start_; }
+
+ private:
+  const Scenario& scenario_;
+  const CaseSpec& spec_;
+  const MachineSettings& machine_;
+  Joints start_;
+  PreparationCache& cache_;
+};
+
+}  // namespace
+
+struct PreparedCase::Parts {
+  const Scenario& scenario;
+  const CaseSpec& spec;
+  SharedProgram program;
+  std::vector<SharedStrategy> strategies;
+  std::shared_ptr<const RewrittenProgram> rewritten;  // nullptr: the original program runs
+  SharedMotion motion;
+  SharedModel truth, imposed;
+  const MachineSettings& machine() const { return scenario.machine_of(spec); }
+};
+
+PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, PreparationCache* cache)
+    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}}) {
+  PreparationCache own;
+  const Preparation prepare(scenario, spec, cache != nullptr ? *cache : own);
+  Parts& parts = *parts_;
+  parts.program = prepare.program();
+  if (parts.program->path.size() == 0) throw InputError({scenario.program.file}, "moves no axis");
+  refuse_absent_axes(*parts.program, scenario);
+  refuse_start_outside(scenario, parts.machine(), prepare.start());
+
+  // the strategies, each of which may rewrite what the one before left
+  SharedMoves moves(parts.program, &parts.program->moves);
+  for (const StrategySpec& strategy : spec.strategies) {
+    refuse_unread_scale(strategy, parts.machine(), spec.name);
+    parts.strategies.push_back(prepare.strategy(strategy, parts.program->first_tip));
+    if (!parts.strategies.back()->rewrites()) continue;
+    parts.rewritten = prepare.rewritten(moves, parts.strategies.back());
+    moves = {parts.rewritten, &parts.rewritten->moves};
+  }
+
+  // what the machine can do
+  parts.motion = prepare.motion(moves);
+  refuse_endless(scenario, parts.motion->trajectory.duration());
+  parts.truth = prepare.model(scenario.truth);
+  if (!scenario.imposed.empty()) parts.imposed = prepare.model(scenario.imposed);
+}
+
+PreparedCase::~PreparedCase() = default;
+PreparedCase::PreparedCase(PreparedCase&&) noexcept = default;
+
+CaseInputs PreparedCase::inputs() const {
+  const Parts& p = *parts_;
+  FeedbackHardware hardware = p.scenario.hardware;
+  hardware.connected = p.spec.feedback_hardware;
+  CaseInputs inputs{p.machine(),
+                    *p.truth,
+                    p.imposed.get(),
+                    p.motion->trajectory,
+                    p.program->path,
+                    p.program->tips,
+                    p.spec.servo,
+                    hardware,
+                    {},
+                    nullptr,
+                    p.scenario.record_period,
+                    p.scenario.settle_time};
+  const double model_period = p.machine().nc.periods.seconds(hardware.model_period);
+  for (const auto& strategy : p.strategies) {
+    if (auto part = strategy->set_point()) inputs.set_points.push_back(std::move(part));
+    if (auto part = strategy->feedback(model_period)) inputs.feedback = std::move(part);
+  }
+  return inputs;
+}
+
+CaseOutput PreparedCase::output(CaseResult result) const {
+  const Parts& p = *parts_;
+  CaseOutput out;
+  out.name = p.spec.name;
+  out.result = std::move(result);
+  if (p.rewritten) out.program = p.rewritten->text;
+  out.duration = p.motion->trajectory.duration();
+  out.blocks = p.motion->blocks;
+  out.sections = sections();
+  return out;
+}
+
+CaseOutput PreparedCase::run(const StopFlag& stop, std::atomic<float>& progress) const {
+  CaseInputs given = inputs();
+  CaseOutput out = output(simulate(given, stop, progress));
+  progress = 1.0F;
+  return out;
+}
+
+const CaseSpec& PreparedCase::spec() const { return parts_->spec; }
+
+const std::vector<std::string>& PreparedCase::sections() const {
+  return parts_->program->path.sections();
+}
+
+std::map<std::string, std::vector<Eigen::Vector3d>> PreparedCase::nominal_positions(
+    const std::set<std::string>& sections) const {
+  const Parts& p = *parts_;
+  const MachineSettings& machine = p.machine();
+  const controllers::Trajectory& trajectory = p.motion->trajectory;
+  const ProgramPath& path = p.program->path;
+  const double period = machine.nc.periods.seconds(p.scenario.record_period);
+  std::map<std::string, std::vector<Eigen::Vector3d>> positions;
+  std::vector<std::vector<Eigen::Vector3d>*> of_section;  // by index; nullptr: not asked for
+  for (const std::string& name : path.sections()) {
+    of_section.push_back(sections.contains(name) ? &positions[name] : nullptr);
+  }
+  controllers::Trajectory::Cursor cursor{};
+  std::size_t piece = 0;
+  for (std::size_t n = 0; static_cast<double>(n) * period <= trajectory.duration(); ++n) {
+    const auto now = trajectory.at(static_cast<double>(n) * period, cursor);
+    piece = path.piece_at(now.s, piece);
+    const ProgramPath::Piece& at = path.piece(piece);
+    std::vector<Eigen::Vector3d>* out = of_section[static_cast<std::size_t>(at.section)];
+    if (at.rapid || out == nullptr) continue;
+    Joints Q_prog = machine.chain.layout.joints(path.at(piece, now.s));
+    Q_prog.tail<kJoints - kLinearJoints>() = now.Q_ref.tail<kJoints - kLinearJoints>();
+    out->push_back(plant::forward(machine.chain, Q_prog, p.program->tips.at(at.tool_offset)).p_WT);
+  }
+  return positions;
+}
+
+std::vector<Fault> PreparedCase::circular_faults(PreparationCache* cache) const {
+  const Parts& p = *parts_;
+  const std::set<std::string> names = circular_section_names(p.scenario);
+  if (names.empty()) return {};
+  PreparationCache own;
+  MemoKey key;
+  key.add_shared(p.program.get());
+  key.add_shared(p.motion.get());
+  add(key, p.machine().chain);
+  key.add(p.machine().nc.periods.seconds(p.scenario.record_period));
+  for (const std::string& name : names) key.add(name);
+  const auto look = [&] {
+    SectionsOfMotion out{p.program, p.motion, {}};
+    for (const auto& [name, positions] : nominal_positions(names)) {
+      out.sections.emplace(name, circular_section(positions));
+    }
+    return out;
+  };
+  return sim::circular_faults(p.scenario,
+                              (cache != nullptr ? *cache : own).circles.get(key, look)->sections);
+}
+
+CaseData CaseOutput::data() const {
+  return {name, &result.servo, sections, duration, blocks, result.outcome.finished};
+}
+
+std::vector<Move> read_program(const Scenario& scenario, const CaseSpec& spec) {
+  const ProgramSpec& program = scenario.program;
+  try {
+    return controllers::interpret(program.text, program.file, setup_of(scenario, spec));
+  } catch (const InputError&) {  // stopped at the first fault; the user wants all of them
+    auto faults = controllers::check_program(program.text, program.file, setup_of(scenario, spec));
+    if (faults.empty()) throw;
+    throw InputError(std::move(faults));
+  }
+}
+
+std::vector<PreparedCase> prepare_cases(const Scenario& scenario, PreparationCache* cache) {
+  PreparationCache own;  // the cases of one scenario share much, too
+  if (cache == nullptr) cache = &own;
+  const auto reading_delay = [&](const CaseSpec& spec) {
+    return scenario.machine.scale_delay +
+           (spec.feedback_hardware ? scenario.hardware.signal_delay : 0);
+  };
+  Tick longest = scenario.machine.scale_delay;
+  for (const CaseSpec& spec : scenario.cases) {
+    if (!spec.machine) longest = std::max(longest, reading_delay(spec));
+  }
+  check_stability(scenario.machine, longest, cache);
+  std::vector<PreparedCase> prepared;
+  CaseFaults faults;
+  for (const CaseSpec& spec : scenario.cases) {
+    try {
+      if (spec.machine) check_stability(*spec.machine, reading_delay(spec), cache);
+      prepared.emplace_back(scenario, spec, cache);
+    } catch (const InputError& error) {
+      faults.add(spec.name, error);
+    }
+  }
+  faults.report(scenario.cases.size());
+  refuse_absent_sections(scenario, prepared.front().sections());
+  auto faults_of_circles = prepared.front().circular_faults(cache);
+  if (!faults_of_circles.empty()) throw InputError(std::move(faults_of_circles));
+  return prepared;
+}
+
+}  // namespace servomill::sim
