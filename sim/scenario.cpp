@@ -4,21 +4,19 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <set>
 
 #include "plant/vocabulary/units.h"
 #include "sim/comparison.h"
 #include "sim/config/reader.h"
 #include "sim/read_errors.h"
-#include "sim/read_file.h"
 #include "sim/read_machine.h"
+#include "sim/scenario_document.h"
+#include "sim/scenario_source.h"
 #include "sim/schedule.h"
 
 namespace servomill::sim {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kNoBound = 1e300;           // of a parameter's specification
 constexpr double kLongestPeriod = 60.0;      // s
@@ -26,13 +24,6 @@ constexpr double kLongestSettling = 3600.0;  // s
 constexpr std::array<std::string_view, 2> kSigns = {"generate", "correct"};
 constexpr std::array<std::string_view, 2> kServos = {"cascade", "ideal"};
 constexpr std::array<std::string_view, 4> kKinds = {"identified", "predicted", "chosen", "bound"};
-
-// A path as it stands in a document: relative to that document, or, when it comes from --set, to
-// the folder in which the user is.
-std::string beside(const Place& place, const std::string& path) {
-  if (place.file.starts_with("--set")) return path;
-  return (fs::path(place.file).parent_path() / path).lexically_normal().string();
-}
 
 template <class Names>
 std::string listed(const Names& names) {
@@ -57,11 +48,10 @@ bool must_be_known(Reader& table, std::string_view key, const std::string& name,
 
 class ScenarioReader {
  public:
-  ScenarioReader(Document document, const std::vector<std::string>& changes, Scenario& out)
-      : document_(std::move(document)), changes_(changes), out_(out) {}
+  ScenarioReader(Document document, InputFiles& files, Scenario& out)
+      : document_(std::move(document)), files_(files), out_(out) {}
 
   void read() {
-    load_machine();
     Reader root(document_);
     root.raw("based_on");          // is below this document by now
     root.raw("machine_override");  // is in the machine by now
@@ -91,54 +81,6 @@ class ScenarioReader {
   }
 
  private:
-  // `machine = "file"` is replaced by its contents, `machine_override` laid over them. Changes of
-  // the file's name and of the overrides come before, all others after, so that `machine.nc.Kv`
-  // means the value that counts.
-  void load_machine() {
-    const auto comes_first = [](const std::string& change) {
-      return change.starts_with("machine=") || change.starts_with("machine_override");
-    };
-    for (const std::string& change : changes_) {
-      if (comes_first(change)) document_.set(change);
-    }
-    refuse_machine();
-    const Value* machine = document_.root().find("machine");
-    if (machine != nullptr && machine->type == Value::Type::text) {
-      const std::string path = beside(machine->place, machine->text);
-      out_.machine_text = read_file(path, machine->place, "machine");
-      document_.merge(as_machine(Document::from_text(out_.machine_text, path).root()));
-    }
-    if (const Value* overrides = document_.root().find("machine_override")) {
-      if (overrides->type != Value::Type::table) {
-        throw InputError(overrides->place, fmt::format("machine_override = {}; must be a table",
-                                                       inline_toml(*overrides)));
-      }
-      document_.merge(as_machine(*overrides));
-      // done: read again, the resolved document must not undo what later changes say
-      document_.set("machine_override={}");
-    }
-    for (const std::string& change : changes_) {
-      if (!comes_first(change)) document_.set(change);
-    }
-  }
-
-  // What would make all that follows meaningless.
-  void refuse_machine() const {
-    const Value& root = document_.root();
-    const Value* machine = root.find("machine");
-    if (machine == nullptr && root.find("structure") != nullptr) {
-      throw InputError({document_.name()},
-                       "is a machine, not a scenario; name it in a scenario: machine = \"FILE\"");
-    }
-    if (machine == nullptr || machine->type == Value::Type::text ||
-        machine->type == Value::Type::table) {
-      return;
-    }
-    throw InputError(machine->place,
-                     fmt::format("machine = {}; must be the name of a machine file, or a table",
-                                 inline_toml(*machine)));
-  }
-
   // { program = { text = "..." } }: a resolved document needs no other file.
   Value with_program_text() const {
     Value text;
@@ -154,14 +96,6 @@ class ScenarioReader {
     return root;
   }
 
-  static Value as_machine(Value table) {
-    table.key = "machine";
-    Value root;
-    root.place = table.place;
-    root.children.push_back(std::move(table));
-    return root;
-  }
-
   void read_program(Reader& table) {
     ProgramSpec& program = out_.program;
     program.file = table.text("file");
@@ -170,7 +104,7 @@ class ScenarioReader {
     } else if (!program.file.empty()) {
       const Place at = table.place("file");
       program.file = beside(at, program.file);
-      program.text = read_file(program.file, at, "program");
+      program.text = *files_.text(program.file, at, "program");
     }
     if (table.is("file", Value::Type::text) && table.text("file").empty()) {
       table.fault("file", "must name the program");
@@ -611,72 +545,12 @@ class ScenarioReader {
   }
 
   Document document_;
-  const std::vector<std::string>& changes_;
+  InputFiles& files_;
   Scenario& out_;
   std::vector<std::string> error_models_;        // names, as far as read
   bool cases_are_known_ = true;                  // all have names of their own
   std::map<std::size_t, Value> case_overrides_;  // machine_override, by index of the case
 };
-
-constexpr int kMostBases = 8;
-
-// The cases of two documents: one of the same name takes the place of the other, a new one comes
-// behind them.
-Value merged_cases(Value cases, const Value& above) {
-  const auto name_of = [](const Value& one) {
-    const Value* name = one.find("name");
-    return name == nullptr ? std::string() : name->text;
-  };
-  for (const Value& one : above.children) {
-    const auto known =
-        std::find_if(cases.children.begin(), cases.children.end(),
-                     [&](const Value& other) { return name_of(other) == name_of(one); });
-    if (known == cases.children.end()) {
-      cases.children.push_back(one);
-    } else {
-      *known = one;
-    }
-  }
-  return cases;
-}
-
-// A document laid over the one that it is based on: what it says wins, lists as a whole, but for
-// the cases.
-Document with_base(const std::string& path, int bases_left) {
-  Document document = Document::from_file(path);
-  const Value* base = document.root().find("based_on");
-  if (base == nullptr) return document;
-  if (base->type != Value::Type::text || base->text.empty()) {
-    throw InputError(base->place, "based_on must be the name of a scenario");
-  }
-  if (bases_left == 0) {
-    throw InputError(base->place,
-                     fmt::format("based_on: more than {} scenarios stand on each other; "
-                                 "is one of them based on itself?",
-                                 kMostBases));
-  }
-  const std::string base_path = beside(base->place, base->text);
-  if (!fs::exists(base_path)) {
-    throw InputError(base->place, fmt::format("based_on = \"{}\"; no such file", base->text));
-  }
-  Document below = with_base(base_path, bases_left - 1);
-  Value above = document.root();
-  const Value* cases = below.root().find("case");
-  Value* more = above.find("case");
-  constexpr auto kList = Value::Type::list;
-  if (cases != nullptr && more != nullptr && cases->type == kList && more->type == kList) {
-    *more = merged_cases(*cases, *more);
-  }
-  below.merge(above);
-  return below;
-}
-
-Scenario read(Document document, const std::vector<std::string>& changes, const std::string& name) {
-  Scenario scenario;
-  scenario.name = name;
-  ScenarioReader(std::move(document), changes, scenario).read();
-  return scenario;
-}
 
 }  // namespace
 
@@ -692,14 +566,22 @@ const CaseSpec* Scenario::find_case(std::string_view case_name) const {
   return nullptr;
 }
 
+Scenario read_document(const ScenarioDocument& scenario, const std::string& name,
+                       InputFiles& files) {
+  Scenario out;
+  out.name = name;
+  out.machine_text = scenario.machine_text;
+  ScenarioReader(scenario.document, files, out).read();
+  return out;
+}
+
 Scenario read_scenario(const std::string& path, const std::vector<std::string>& changes) {
-  Scenario scenario = read(with_base(path, kMostBases), changes, fs::path(path).stem().string());
-  scenario.text = read_file(path, {}, "scenario");
-  return scenario;
+  return ScenarioSource(path, changes).at();
 }
 
 Scenario read_resolved_scenario(const std::string& resolved, const std::string& name) {
-  return read(Document::from_text(resolved, name), {}, name);
+  InputFiles files;
+  return read_document(with_machine(Document::from_text(resolved, name), {}, files), name, files);
 }
 
 MachineSettings read_machine_file(const std::string& path) {

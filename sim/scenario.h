@@ -102,6 +102,13 @@ Scenario read_scenario(const std::string& path, const std::vector<std::string>& 
 /// The same from a resolved document (as stored in a result file), program text included.
 Scenario read_resolved_scenario(const std::string& resolved, const std::string& name);
 
+struct ScenarioDocument;
+class InputFiles;
+/// What both have in common: the document with the machine in it (sim/scenario_document.h).
+/// @param files  where the program is looked for
+Scenario read_document(const ScenarioDocument& scenario, const std::string& name,
+                       InputFiles& files);
+
 /// Only a machine, for `check`.
 MachineSettings read_machine_file(const std::string& path);
 
