@@ -391,7 +391,8 @@ CaseInputs PreparedCase::inputs() const {
                     {},
                     nullptr,
                     p.scenario.record_period,
-                    p.scenario.settle_time};
+                    p.scenario.settle_time,
+                    p.scenario.record.format};
   const double model_period = p.machine().nc.periods.seconds(hardware.model_period);
   for (const auto& strategy : p.strategies) {
     if (auto part = strategy->set_point()) inputs.set_points.push_back(std::move(part));

@@ -1,11 +1,16 @@
 #include "sim/recorder.h"
 
+#include <bit>
+#include <cmath>
 #include <string>
+#include <utility>
 
 #include "plant/vocabulary/units.h"
 
 namespace servomill::sim {
 namespace {
+
+constexpr std::size_t kBlockRows = 1024;
 
 constexpr const char* kLinear = "axis_linear";
 constexpr const char* kRotary = "axis_rotary";
@@ -79,21 +84,104 @@ class RowWriter {
   double* next_;
 };
 
-}  // namespace
-
-Recorder::Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
-                   const plant::VolumetricModel* imposed, const ProgramPath& path,
-                   const std::map<int, Eigen::Vector3d>& tips)
-    : machine_(machine), truth_(truth), imposed_(imposed), path_(path), tips_(tips) {
-  for (int joint = 0; joint < kJoints; ++joint) {
-    if (!machine.chain.layout.has(joint)) continue;
-    (joint < kLinearJoints ? linear_ : rotary_).push_back(joint);
-  }
-  series_ =
-      Series(signals(letters(machine, linear_), letters(machine, rotary_), imposed != nullptr));
+// What a resolution of one metre is in the unit of a signal; 0: it is never rounded.
+double per_metre(const Signal& signal) {
+  const std::string& unit = signal.units;
+  constexpr double kArm = 1.0;  // m
+  constexpr double kTime = 10 * ms;
+  constexpr double kStrength = 0.1 / (1 * um);  // A/m and N
+  if (unit == "mm") return 1.0 / mm;
+  if (unit == "um") return 1.0 / um;
+  if (unit == "deg") return 1.0 / (kArm * deg);
+  if (unit == "mm/s") return 1.0 / (mm * kTime);
+  if (unit == "deg/s") return 1.0 / (kArm * deg * kTime);
+  if (unit == "A" || unit == "N m") return kStrength;
+  return signal.scale == kIjk ? 1.0 / kArm : 0.0;
 }
 
-void Recorder::record(const Snapshot& now) {
+void apply(const RecordFormat& format, std::vector<Signal>& signals) {
+  for (Signal& signal : signals) {
+    const double most = format.resolution * per_metre(signal);
+    if (most > 0.0) signal.quantum = std::exp2(std::floor(std::log2(most)));
+    if (per_metre(signal) > 0.0 && signal.name != "s") signal.storage = format.storage;
+  }
+}
+
+// Rounds rows to what is kept of them.
+class Rounding {
+ public:
+  explicit Rounding(const Series& series) {
+    for (const Signal& signal : series.signals()) {
+      for (std::size_t c = 0; c < signal.columns(); ++c) {
+        // in the binade of the shift, the last bit of a double is one quantum
+        shift_.push_back(1.5 * 0x1p52 * signal.quantum);
+        largest_.push_back(signal.quantum > 0.0 ? 0x1p51 * signal.quantum : -1.0);
+        any_single_ |= signal.storage == Storage::float32;
+        single_.push_back(signal.storage == Storage::float32);
+      }
+    }
+  }
+  void apply(double* row) const {
+    for (std::size_t c = 0; c < shift_.size(); ++c) {
+      const double rounded = (row[c] + shift_[c]) - shift_[c];
+      row[c] = std::abs(row[c]) <= largest_[c] ? rounded : row[c];
+    }
+    for (std::size_t c = 0; any_single_ && c < single_.size(); ++c) {
+      if (single_[c]) row[c] = static_cast<double>(static_cast<float>(row[c]));
+    }
+  }
+
+ private:
+  std::vector<double> shift_, largest_;
+  std::vector<bool> single_;
+  bool any_single_ = false;
+};
+
+}  // namespace
+
+class Recorder::Rows {
+ public:
+  Rows(const MachineSettings& machine, const plant::VolumetricModel& truth,
+       const plant::VolumetricModel* imposed, const ProgramPath& path,
+       const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format)
+      : machine_(machine), truth_(truth), imposed_(imposed), path_(path), tips_(tips) {
+    for (int joint = 0; joint < kJoints; ++joint) {
+      if (!machine.chain.layout.has(joint)) continue;
+      (joint < kLinearJoints ? linear_ : rotary_).push_back(joint);
+    }
+    std::vector<Signal> all =
+        signals(letters(machine, linear_), letters(machine, rotary_), imposed != nullptr);
+    apply(format, all);
+    series_ = Series(std::move(all));
+    rounding_ = Rounding(series_);
+  }
+
+  Series& series() { return series_; }
+
+  void add(const std::vector<Snapshot>& block) {
+    double* row = series_.add_rows(block.size());
+    for (const Snapshot& now : block) {
+      make_row(now, row);
+      rounding_.apply(row);
+      row += series_.width();
+    }
+  }
+
+ private:
+  void make_row(const Snapshot& now, double* to);
+
+  const MachineSettings& machine_;
+  const plant::VolumetricModel& truth_;
+  const plant::VolumetricModel* imposed_;
+  const ProgramPath& path_;
+  const std::map<int, Eigen::Vector3d>& tips_;
+  std::vector<int> linear_, rotary_;  // joints that the machine has
+  std::size_t piece_ = 0;
+  Series series_;
+  Rounding rounding_{series_};
+};
+
+void Recorder::Rows::make_row(const Snapshot& now, double* to) {
   // where the original program is
   piece_ = path_.piece_at(now.s, piece_);
   const ProgramPath::Piece& piece = path_.piece(piece_);
@@ -110,7 +198,7 @@ void Recorder::record(const Snapshot& now) {
   const double contour_error =
       Q_equal ? path_.distance(Q_equal->head<3>(), piece_) : (actual.p_WT - nominal.p_WT).norm();
 
-  RowWriter row(series_.add_row());
+  RowWriter row(to);
   row.put(now.time);
   row.put(now.s / mm);
   row.put(piece.line);
@@ -140,6 +228,40 @@ void Recorder::record(const Snapshot& now) {
   row.put(nominal.k_W, 1.0);
   row.put(actual.k_W, 1.0);
   row.put(contour_error / um);
+}
+
+Recorder::Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
+                   const plant::VolumetricModel* imposed, const ProgramPath& path,
+                   const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format)
+    : rows_(std::make_unique<Rows>(machine, truth, imposed, path, tips, format)),
+      working_(std::make_unique<std::vector<Snapshot>>()),
+      background_(std::make_unique<Background>()) {
+  filling_.reserve(kBlockRows);
+}
+
+Recorder::~Recorder() = default;
+Recorder::Recorder(Recorder&&) noexcept = default;
+
+void Recorder::reserve(std::size_t rows) { rows_->series().reserve(rows); }
+
+void Recorder::record(const Snapshot& now) {
+  filling_.push_back(now);
+  if (filling_.size() == kBlockRows) hand_over();
+}
+
+void Recorder::hand_over() {
+  background_->wait();
+  std::swap(filling_, *working_);
+  filling_.reserve(kBlockRows);
+  filling_.clear();
+  background_->post([rows = rows_.get(), block = working_.get()] { rows->add(*block); });
+}
+
+Series Recorder::take() {
+  background_->wait();
+  rows_->add(filling_);
+  filling_.clear();
+  return std::move(rows_->series());
 }
 
 }  // namespace servomill::sim

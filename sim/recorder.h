@@ -3,8 +3,11 @@
 #pragma once
 
 #include <map>
+#include <memory>
+#include <vector>
 
 #include "plant/geometry/volumetric.h"
+#include "sim/background.h"
 #include "sim/machine.h"
 #include "sim/program_path.h"
 #include "sim/series.h"
@@ -25,26 +28,31 @@ struct Snapshot {
   Joints torque = Joints::Zero();
 };
 
+/// Whoever records only copies a Snapshot. Rows are made from blocks of them in a thread of the
+/// recorder, so it waits only if that is slower than the simulation.
 class Recorder {
  public:
+  /// All arguments must outlive it.
   /// @param imposed  model whose displacement at the programmed position is recorded; may be null
   Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
            const plant::VolumetricModel* imposed, const ProgramPath& path,
-           const std::map<int, Eigen::Vector3d>& tips);
+           const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format = {});
+  ~Recorder();
+  Recorder(Recorder&&) noexcept;
 
-  void reserve(std::size_t rows) { series_.reserve(rows); }
+  void reserve(std::size_t rows);
   void record(const Snapshot& now);
-  Series take() { return std::move(series_); }
+  /// All rows; once.
+  Series take();
 
  private:
-  const MachineSettings& machine_;
-  const plant::VolumetricModel& truth_;
-  const plant::VolumetricModel* imposed_;
-  const ProgramPath& path_;
-  const std::map<int, Eigen::Vector3d>& tips_;
-  std::vector<int> linear_, rotary_;  // joints that the machine has
-  std::size_t piece_ = 0;
-  Series series_;
+  class Rows;
+  void hand_over();
+
+  std::unique_ptr<Rows> rows_;
+  std::vector<Snapshot> filling_;
+  std::unique_ptr<std::vector<Snapshot>> working_;  // what the thread turns into rows
+  std::unique_ptr<Background> background_;          // last: its thread uses the others
 };
 
 }  // namespace servomill::sim

@@ -22,6 +22,8 @@ constexpr double kNoBound = 1e300;           // of a parameter's specification
 constexpr double kLongestPeriod = 60.0;      // s
 constexpr double kLongestSettling = 3600.0;  // s
 constexpr std::array<std::string_view, 2> kSigns = {"generate", "correct"};
+constexpr std::array<std::string_view, 2> kStorages = {"float64", "float32"};
+constexpr double kCoarsestResolution = 1 * um;
 constexpr std::array<std::string_view, 2> kServos = {"cascade", "ideal"};
 constexpr std::array<std::string_view, 4> kKinds = {"identified", "predicted", "chosen", "bound"};
 
@@ -235,6 +237,12 @@ class ScenarioReader {
   void read_record(Reader& root) {
     Reader table = root.table_or_empty("record");
     out_.record_period = ticks(table, "period_ms", 1 * ms, 1);
+    RecordSpec& record = out_.record;
+    record.format.storage = static_cast<Storage>(table.choice_or("storage", 0, kStorages));
+    record.format.resolution = table.real_or("resolution_nm", record.format.resolution, kLength,
+                                             {at_least(0.0), at_most(kCoarsestResolution)});
+    record.compression = static_cast<int>(table.integer_or(
+        "compression", record.compression, {at_least(kNoCompression), at_most(kMostCompression)}));
     out_.settle_time =
         table.real_or("settle_ms", 100 * ms, kTime, {at_least(0.0), at_most(kLongestSettling)});
   }

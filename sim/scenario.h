@@ -69,6 +69,12 @@ struct SweepKey {
   Place place = {};
 };
 
+/// What becomes of recorded signals.
+struct RecordSpec {
+  RecordFormat format = {.resolution = 0.01e-9};
+  int compression = 1;  // of the result file, kNoCompression to kMostCompression
+};
+
 struct Scenario {
   std::string name;  // file name without folder and extension
   std::string title, source;
@@ -80,6 +86,7 @@ struct Scenario {
   FeedbackHardware hardware;
   std::vector<CaseSpec> cases;
   Tick record_period = 100;
+  RecordSpec record;
   double settle_time = 0.1;  // s
   std::vector<QuantitySpec> quantities;
   std::vector<SweepKey> sweep;

@@ -11,9 +11,9 @@ Series::Series(std::vector<Signal> signals) : signals_(std::move(signals)) {
   }
 }
 
-double* Series::add_row() {
-  data_.resize(data_.size() + width_, 0.0);
-  return data_.data() + data_.size() - width_;
+double* Series::add_rows(std::size_t count) {
+  data_.resize(data_.size() + count * width_, 0.0);
+  return data_.data() + data_.size() - count * width_;
 }
 
 const Signal* Series::find(std::string_view name) const {

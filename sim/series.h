@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/hdf5/chunk_encoder.h"
+
 namespace servomill::sim {
 
 /// One dataset: `columns` neighbouring numbers of every row.
@@ -17,7 +19,20 @@ struct Signal {
   std::string labels;     // one letter a column ("XYZ"), or empty for a scalar
   std::string scale;      // name of the dimension ("axis_linear"), empty for a scalar
   std::size_t offset = 0;
+  Storage storage = Storage::float64;
+  double quantum = 0.0;  // > 0: a power of two of which all values are multiples
   std::size_t columns() const { return labels.empty() ? 1 : labels.size(); }
+};
+
+/// How exactly recorded signals are kept. A Series holds what a file of it holds, so that a
+/// comparison made from the file gives the same numbers.
+struct RecordFormat {
+  /// Lengths are rounded to multiples of the power of two (of their unit) next below this. Angles
+  /// and directions are rounded as it is seen from 1 m, rates as it is passed in 10 ms, currents
+  /// and torques to that many times 0.1 A (N m) a micrometre. 0: every bit is kept.
+  double resolution = 0.0;  // m
+  /// Of all but time, s and counts, which stay float64.
+  Storage storage = Storage::float64;
 };
 
 /// A table of rows. Storage grows in blocks outside of what a tick does.
@@ -34,8 +49,9 @@ class Series {
   const std::vector<double>& data() const { return data_; }
 
   void reserve(std::size_t rows) { data_.reserve(rows * width_); }
-  /// A new row of zeros to be filled.
-  double* add_row();
+  /// New rows of zeros to be filled; the first of them.
+  double* add_rows(std::size_t count);
+  double* add_row() { return add_rows(1); }
   void assign(std::vector<double> data) { data_ = std::move(data); }
 
   const Signal* find(std::string_view name) const;

@@ -103,7 +103,7 @@ class CaseRun {
         run_(run),
         reference_(reference),
         set_point_(nc_, in.reference, std::move(in.set_points)),
-        recorder_(in.machine, in.truth, in.imposed, in.path, in.tips),
+        recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format),
         last_ticks_(in.machine.joints()) {
     end_ =
         static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
@@ -298,7 +298,7 @@ class IdealRun {
       : in_(in),
         periods_(in.machine.nc.periods),
         set_point_(in.machine.nc, in.reference, std::move(in.set_points)),
-        recorder_(in.machine, in.truth, in.imposed, in.path, in.tips) {}
+        recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format) {}
 
   CaseResult run(const StopFlag& stop, std::atomic<float>& progress) {
     CaseResult result;

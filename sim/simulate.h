@@ -44,6 +44,7 @@ struct CaseInputs {
   std::unique_ptr<strategies::FeedbackPart> feedback;  // may be null
   Tick record_period = 100;
   double settle_time = 0.1;  // s, recorded after the program's end
+  RecordFormat format = {};
 };
 
 /// How a case ended. A machine that stops is an outcome, not an exception.

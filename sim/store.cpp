@@ -57,9 +57,18 @@ void write_errors(Hdf5Group& root, const Scenario& scenario) {
   }
 }
 
-SeriesLayout layout_of(const Series& series, const std::string& index) {
+// Chunks of equal length, so that the last one holds little that is nothing.
+std::size_t chunk_rows(std::size_t rows) {
+  constexpr std::size_t kMostRows = 16384;
+  const std::size_t chunks = std::max<std::size_t>(1, (rows + kMostRows - 1) / kMostRows);
+  return std::max<std::size_t>(1, (rows + chunks - 1) / chunks);
+}
+
+SeriesLayout layout_of(const Series& series, const std::string& index, int compression) {
   SeriesLayout layout;
   layout.index = index;
+  layout.chunk_rows = chunk_rows(series.rows());
+  layout.compression = compression;
   for (const Signal& signal : series.signals()) {
     if (signal.name == index) {
       layout.index_meaning = {signal.units, signal.long_name};
@@ -71,13 +80,13 @@ SeriesLayout layout_of(const Series& series, const std::string& index) {
       layout.labels.push_back({signal.scale, signal.labels, signal.scale});
     }
     layout.channels.push_back(
-        {signal.name, {signal.units, signal.long_name}, signal.scale, Storage::float64});
+        {signal.name, {signal.units, signal.long_name}, signal.scale, signal.storage});
   }
   return layout;
 }
 
-void write_series(Hdf5Group group, const Series& series) {
-  SeriesWriter writer(std::move(group), layout_of(series, "time"));
+void write_series(Hdf5Group group, const Series& series, int compression) {
+  SeriesWriter writer(std::move(group), layout_of(series, "time", compression));
   for (std::size_t row = 0; row < series.rows(); ++row) {
     writer.append({series.row(row), series.width()});
   }
@@ -183,7 +192,7 @@ void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view ki
 }
 
 RunStore::RunStore(const std::string& path, bool force, const Scenario& scenario)
-    : file_(writable_name(path, force), force) {
+    : file_(writable_name(path, force), force), compression_(scenario.record.compression) {
   Hdf5Group root = file_.root();
   write_inputs(root, scenario, "run");
   write_errors(root, scenario);
@@ -192,9 +201,10 @@ RunStore::RunStore(const std::string& path, bool force, const Scenario& scenario
 
 void RunStore::add(const CaseOutput& one) {
   Hdf5Group group = file_.root().group("cases/" + one.name);
-  write_series(group.group("servo"), one.result.servo);
-  if (one.result.last_ticks.rows() > 0)
-    write_series(group.group("last_ticks"), one.result.last_ticks);
+  write_series(group.group("servo"), one.result.servo, compression_);
+  if (one.result.last_ticks.rows() > 0) {
+    write_series(group.group("last_ticks"), one.result.last_ticks, compression_);
+  }
   group.attribute("outcome", one.result.outcome.reason);
   group.attribute("duration_s", one.duration);
   group.attribute("blocks", one.blocks);

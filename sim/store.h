@@ -31,6 +31,7 @@ class RunStore {
 
  private:
   OutputFile file_;
+  int compression_;
 };
 
 /// A run read back.

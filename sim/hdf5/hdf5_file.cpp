@@ -14,6 +14,7 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <mutex>
 #include <type_traits>
 #include <utility>
 
@@ -24,8 +25,20 @@ namespace {
 
 static_assert(std::is_same_v<hid_t, std::int64_t>);
 
-constexpr unsigned kDeflateLevel = 1;
 constexpr unsigned kCreationOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
+
+// Debian's library is not made for threads: whoever works in it holds this.
+class Library {
+ public:
+  Library() : lock_(mutex()) {}
+
+ private:
+  static std::recursive_mutex& mutex() {
+    static std::recursive_mutex one;
+    return one;
+  }
+  std::lock_guard<std::recursive_mutex> lock_;
+};
 
 // The library prints its errors unless told not to, and when the process ends it closes again what
 // it could not close before, which crashes after a failed write.
@@ -152,12 +165,14 @@ Hdf5Handle& Hdf5Handle::operator=(Hdf5Handle&& other) noexcept {
 }
 
 void Hdf5Handle::reset() {
+  const Library library;
   // a file that was closed has closed what was open in it
   if (id_ >= 0 && H5Iis_valid(id_) > 0) H5Idec_ref(id_);
   id_ = -1;
 }
 
 void Hdf5Object::attribute(const std::string& name, std::string_view text) {
+  const Library library;
   assert(text.find('\0') == std::string_view::npos);
   const std::string terminated(text);
   const char* pointer = terminated.c_str();
@@ -166,28 +181,33 @@ void Hdf5Object::attribute(const std::string& name, std::string_view text) {
 }
 
 void Hdf5Object::attribute(const std::string& name, double value) {
+  const Library library;
   const Hdf5Handle space = handle(H5Screate(H5S_SCALAR));
   write_attribute(id_.get(), name, H5T_NATIVE_DOUBLE, space.get(), &value);
 }
 
 void Hdf5Object::attribute(const std::string& name, std::int64_t value) {
+  const Library library;
   const Hdf5Handle space = handle(H5Screate(H5S_SCALAR));
   write_attribute(id_.get(), name, H5T_NATIVE_INT64, space.get(), &value);
 }
 
 void Hdf5Object::attribute(const std::string& name, std::span<const double> values) {
+  const Library library;
   const hsize_t size = values.size();
   const Hdf5Handle space = handle(H5Screate_simple(1, &size, nullptr));
   write_attribute(id_.get(), name, H5T_NATIVE_DOUBLE, space.get(), values.data());
 }
 
 void Hdf5Object::flush_file() {
+  const Library library;
   const Hdf5Handle file(written(H5Iget_file_id(id_.get()), id_.get()));
   announce_end(file.get());
   written(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), file.get());
 }
 
 void Hdf5Object::reserve(std::size_t bytes) {
+  const Library library;
   const Hdf5Handle file(written(H5Iget_file_id(id_.get()), id_.get()));
   const auto size = static_cast<off_t>(file_size(file.get()));
   const int status =
@@ -200,29 +220,31 @@ Hdf5Dataset::Hdf5Dataset(Hdf5Handle id, std::size_t columns, bool has_columns)
     : Hdf5Object(std::move(id)), columns_(columns), has_columns_(has_columns) {}
 
 void Hdf5Dataset::make_scale(const std::string& name) {
+  const Library library;
   written(H5DSset_scale(id_.get(), name.c_str()), id_.get());
 }
 
 void Hdf5Dataset::attach_scale(Hdf5Dataset& scale, unsigned dimension) {
+  const Library library;
   written(H5DSattach_scale(id_.get(), scale.id_.get(), dimension), id_.get());
 }
 
-void Hdf5Dataset::append(const double* rows, std::size_t count) {
-  if (count == 0) return;
-  const int rank = has_columns_ ? 2 : 1;
-  const std::array<hsize_t, 2> begin = {rows_, 0};
-  const std::array<hsize_t, 2> block = {count, columns_};
-  const std::array<hsize_t, 2> size = {rows_ + count, columns_};
+void Hdf5Dataset::append(std::size_t rows, std::span<const std::vector<std::uint8_t>> chunks) {
+  assert(chunks.size() == columns_);
+  const Library library;
+  const std::array<hsize_t, 2> size = {rows_ + rows, columns_};
   written(H5Dset_extent(id_.get(), size.data()), id_.get());
-  const Hdf5Handle in_file(written(H5Dget_space(id_.get()), id_.get()));
-  H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, begin.data(), nullptr, block.data(), nullptr);
-  const Hdf5Handle in_memory = handle(H5Screate_simple(rank, block.data(), nullptr));
-  written(H5Dwrite(id_.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(), H5P_DEFAULT, rows),
-          id_.get());
-  rows_ += count;
+  for (std::size_t column = 0; column < columns_; ++column) {
+    const std::array<hsize_t, 2> begin = {rows_, column};
+    const std::vector<std::uint8_t>& chunk = chunks[column];
+    written(H5Dwrite_chunk(id_.get(), H5P_DEFAULT, 0, begin.data(), chunk.size(), chunk.data()),
+            id_.get());
+  }
+  rows_ += rows;
 }
 
 Hdf5Group Hdf5Group::group(const std::string& path) {
+  const Library library;
   Hdf5Handle here(-1);
   for (std::size_t begin = 0; begin < path.size();) {
     const std::size_t end = std::min(path.find('/', begin), path.size());
@@ -243,7 +265,9 @@ Hdf5Group Hdf5Group::group(const std::string& path) {
 }
 
 Hdf5Dataset Hdf5Group::extendible(const std::string& name, std::size_t columns, bool has_columns,
-                                  std::size_t chunk_rows, Storage storage, const Meaning& meaning) {
+                                  std::size_t chunk_rows, Storage storage, int compression,
+                                  const Meaning& meaning) {
+  const Library library;
   const int rank = has_columns ? 2 : 1;
   const std::array<hsize_t, 2> size = {0, columns};
   const std::array<hsize_t, 2> most = {H5S_UNLIMITED, columns};
@@ -251,8 +275,10 @@ Hdf5Dataset Hdf5Group::extendible(const std::string& name, std::size_t columns, 
   const Hdf5Handle space = handle(H5Screate_simple(rank, size.data(), most.data()));
   const Hdf5Handle creation = handle(H5Pcreate(H5P_DATASET_CREATE));
   H5Pset_chunk(creation.get(), rank, chunk.data());
-  H5Pset_shuffle(creation.get());
-  H5Pset_deflate(creation.get(), kDeflateLevel);
+  if (compression != kNoCompression) {
+    H5Pset_shuffle(creation.get());
+    H5Pset_deflate(creation.get(), static_cast<unsigned>(compression));
+  }
   // a run killed while it extends a dataset must not leave rows that look like values
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   if (storage != Storage::int32) {
@@ -272,6 +298,7 @@ Hdf5Dataset Hdf5Group::extendible(const std::string& name, std::size_t columns, 
 
 Hdf5Dataset Hdf5Group::labels(const std::string& name, std::string_view letters,
                               const std::string& long_name) {
+  const Library library;
   const hsize_t size = letters.size();
   const Hdf5Handle space = handle(H5Screate_simple(1, &size, nullptr));
   Hdf5Handle id(written(H5Dcreate2(id_.get(), name.c_str(), H5T_C_S1, space.get(), H5P_DEFAULT,
@@ -286,6 +313,7 @@ Hdf5Dataset Hdf5Group::labels(const std::string& name, std::string_view letters,
 }
 
 void Hdf5Group::scalar(const std::string& name, double value, const Meaning& meaning) {
+  const Library library;
   const Hdf5Handle space = handle(H5Screate(H5S_SCALAR));
   Hdf5Dataset dataset(
       Hdf5Handle(written(H5Dcreate2(id_.get(), name.c_str(), H5T_IEEE_F64LE, space.get(),
@@ -300,6 +328,7 @@ void Hdf5Group::scalar(const std::string& name, double value, const Meaning& mea
 
 void Hdf5Group::list(const std::string& name, std::span<const double> values,
                      const Meaning& meaning, const std::string& scale) {
+  const Library library;
   const hsize_t size = values.size();
   const Hdf5Handle space = handle(H5Screate_simple(1, &size, nullptr));
   Hdf5Dataset dataset(
@@ -323,6 +352,7 @@ void Hdf5Group::list(const std::string& name, std::span<const double> values,
 
 OutputFile::OutputFile(std::string path, bool force)
     : path_(std::move(path)), partial_path_(path_ + ".partial"), force_(force) {
+  const Library library;
   refuse_existing(path_, "exists");
   refuse_existing(partial_path_, "exists, left by a run that did not end");
   prepare_library();
@@ -345,10 +375,12 @@ void OutputFile::refuse_existing(const std::string& name, std::string_view why) 
 }
 
 Hdf5Group OutputFile::root() {
+  const Library library;
   return Hdf5Group(Hdf5Handle(written(H5Gopen2(file_.get(), "/", H5P_DEFAULT), file_.get())));
 }
 
 void OutputFile::commit() {
+  const Library library;
   assert(file_.get() >= 0);
   written(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), file_.get());
   const herr_t closed = H5Fclose(file_.get());
@@ -367,6 +399,7 @@ void OutputFile::commit() {
 }
 
 InputFile::InputFile(std::string path) : path_(std::move(path)) {
+  const Library library;
   prepare_library();
   const int descriptor = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) fail(fmt::format("cannot be read: {}", system_reason()));
@@ -379,6 +412,7 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
 void InputFile::fail(const std::string& message) const { throw InputError({path_}, message); }
 
 bool InputFile::has(const std::string& object) const {
+  const Library library;
   for (std::size_t end = 0; end != std::string::npos;) {
     end = object.find('/', end + 1);
     const std::string above = object.substr(0, end);
@@ -389,6 +423,7 @@ bool InputFile::has(const std::string& object) const {
 }
 
 Hdf5Handle InputFile::open(const std::string& object) const {
+  const Library library;
   if (!has(object)) fail(fmt::format("has no '{}'", object));
   Hdf5Handle id(H5Oopen(file_.get(), object.c_str(), H5P_DEFAULT));
   if (id.get() < 0) fail(fmt::format("'{}' cannot be read: {}", object, library_reason()));
@@ -396,6 +431,7 @@ Hdf5Handle InputFile::open(const std::string& object) const {
 }
 
 std::vector<std::string> InputFile::children(const std::string& group, bool groups) const {
+  const Library library;
   const Hdf5Handle id = open(group);
   if (H5Iget_type(id.get()) != H5I_GROUP) fail(fmt::format("'{}' is not a group", group));
   H5G_info_t info;
@@ -418,14 +454,17 @@ std::vector<std::string> InputFile::children(const std::string& group, bool grou
 }
 
 std::vector<std::string> InputFile::groups(const std::string& group) const {
+  const Library library;
   return children(group, true);
 }
 
 std::vector<std::string> InputFile::datasets(const std::string& group) const {
+  const Library library;
   return children(group, false);
 }
 
 std::vector<std::size_t> InputFile::shape(const std::string& dataset) const {
+  const Library library;
   const Hdf5Handle id = open(dataset);
   if (H5Iget_type(id.get()) != H5I_DATASET) fail(fmt::format("'{}' is not a dataset", dataset));
   const Hdf5Handle space(H5Dget_space(id.get()));
@@ -435,6 +474,7 @@ std::vector<std::size_t> InputFile::shape(const std::string& dataset) const {
 }
 
 std::vector<double> InputFile::values(const std::string& dataset) const {
+  const Library library;
   std::size_t count = 1;
   for (const std::size_t length : shape(dataset)) count *= length;
   const Hdf5Handle id = open(dataset);
@@ -451,10 +491,12 @@ std::vector<double> InputFile::values(const std::string& dataset) const {
 }
 
 bool InputFile::has_attribute(const std::string& object, const std::string& name) const {
+  const Library library;
   return H5Aexists(open(object).get(), name.c_str()) > 0;
 }
 
 Hdf5Handle InputFile::open_attribute(const std::string& object, const std::string& name) const {
+  const Library library;
   const Hdf5Handle id = open(object);
   Hdf5Handle attribute(H5Aopen(id.get(), name.c_str(), H5P_DEFAULT));
   if (attribute.get() < 0) fail(fmt::format("'{}' has no attribute '{}'", object, name));
@@ -462,6 +504,7 @@ Hdf5Handle InputFile::open_attribute(const std::string& object, const std::strin
 }
 
 std::string InputFile::text(const std::string& object, const std::string& name) const {
+  const Library library;
   const Hdf5Handle attribute = open_attribute(object, name);
   const Hdf5Handle type(H5Aget_type(attribute.get()));
   if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) <= 0) {
@@ -478,6 +521,7 @@ std::string InputFile::text(const std::string& object, const std::string& name) 
 }
 
 std::vector<double> InputFile::numbers(const std::string& object, const std::string& name) const {
+  const Library library;
   const Hdf5Handle attribute = open_attribute(object, name);
   const Hdf5Handle type(H5Aget_type(attribute.get()));
   const H5T_class_t kind = H5Tget_class(type.get());
@@ -493,6 +537,7 @@ std::vector<double> InputFile::numbers(const std::string& object, const std::str
 }
 
 double InputFile::number(const std::string& object, const std::string& name) const {
+  const Library library;
   const std::vector<double> all = numbers(object, name);
   if (all.size() != 1) {
     fail(fmt::format("attribute '{}' of '{}' has {} numbers instead of one", name, object,

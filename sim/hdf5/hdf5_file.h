@@ -2,7 +2,7 @@
 ///
 /// What every dataset has to have so that h5py, xarray, netCDF and Octave open it: attributes
 /// `units` and `long_name`, and a dimension scale for each of its dimensions. Texts are attributes.
-/// Not for several threads at once.
+/// Several threads may use this, but wait for each other: the library takes one at a time.
 #pragma once
 
 #include <cstddef>
@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/hdf5/chunk_encoder.h"
 #include "sim/hdf5/system_error.h"
 
 namespace servomill::sim {
@@ -54,8 +55,6 @@ class Hdf5Object {
   Hdf5Handle id_;
 };
 
-enum class Storage : std::uint8_t { float64, float32, int32 };
-
 /// What a dataset says about itself.
 struct Meaning {
   std::string units;      // as CF has them: "mm", "s", "1"
@@ -69,8 +68,9 @@ class Hdf5Dataset : public Hdf5Object {
   /// Gives the dimension (0 rows, 1 columns) its scale.
   void attach_scale(Hdf5Dataset& scale, unsigned dimension);
 
-  /// Adds rows (count x columns, row by row) at the end of an extendible dataset.
-  void append(const double* rows, std::size_t count);
+  /// Adds rows at the end of an extendible dataset: of each column one chunk, encoded as the
+  /// dataset says. Only the last chunks may hold fewer rows than the chunks are long.
+  void append(std::size_t rows, std::span<const std::vector<std::uint8_t>> chunks);
 
  private:
   friend class Hdf5Group;
@@ -88,9 +88,10 @@ class Hdf5Group : public Hdf5Object {
   Hdf5Group group(const std::string& path);
 
   /// An empty dataset (time) or, with `has_columns`, (time, columns), that grows by whole chunks of
-  /// `chunk_rows` x 1, shuffled and compressed.
+  /// `chunk_rows` x 1, encoded with that compression (ChunkEncoder).
   Hdf5Dataset extendible(const std::string& name, std::size_t columns, bool has_columns,
-                         std::size_t chunk_rows, Storage storage, const Meaning& meaning);
+                         std::size_t chunk_rows, Storage storage, int compression,
+                         const Meaning& meaning);
 
   /// One letter a column, as the scale of the dimension `name`.
   Hdf5Dataset labels(const std::string& name, std::string_view letters,

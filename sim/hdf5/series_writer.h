@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/background.h"
 #include "sim/hdf5/hdf5_file.h"
 
 namespace servomill::sim {
@@ -24,7 +25,6 @@ struct Channel {
   Meaning meaning;
   std::string labels;  // name of its ColumnLabels; empty: one number a row
   Storage storage = Storage::float64;
-  double quantum = 0.0;  // > 0: rounded to multiples of it; a power of two halves the file
 };
 
 /// What a SeriesWriter records. The index is the dimension that all share and the first number of a
@@ -34,12 +34,16 @@ struct SeriesLayout {
   Meaning index_meaning = {"s", "time"};
   std::vector<ColumnLabels> labels;
   std::vector<Channel> channels;
-  std::size_t chunk_rows = 4096;
+  std::size_t chunk_rows = 16384;
+  int compression = 1;   // kNoCompression to kMostCompression
+  unsigned threads = 0;  // that compress; 0: one a core; the file does not depend on it
 };
 
 /// The file must outlive the writer.
 ///
 /// A row is a flat list of numbers: the index, then the channels in the order of the layout.
+/// Whoever appends rows only copies them: a thread of the writer compresses and writes a block
+/// while the next one fills. There are no more than these two.
 class SeriesWriter {
  public:
   /// @pre  every name is there once, every `labels` of a channel exists
@@ -55,34 +59,45 @@ class SeriesWriter {
   std::size_t offset_of(std::string_view channel) const;
 
   /// Adds a row. Neither allocates nor throws, except when it completes a block of `chunk_rows`:
-  /// that is written and flushed and outlives a kill of the process.
-  /// @throws SystemError; the rows of the block are then lost, the file ends with the block before
+  /// that is handed over, when the one before is written, flushed and outlives a kill of the
+  /// process.
+  /// @throws SystemError if a block before could not be written; the file ends with the one before
+  ///         that, and every later call throws the same
   void append(std::span<const double> row);
 
-  /// Writes the rows of a block that is not full. Nothing can be added afterwards.
+  /// Writes the rows of a block that is not full and waits for it. Nothing can be added afterwards.
+  /// @throws SystemError as append
   void finish();
 
  private:
-  struct Column {
+  struct Dataset {
     Hdf5Dataset dataset;
     std::size_t offset;  // in a row
     std::size_t columns;
-    double quantum;
+  };
+  // Columns whose numbers share the cache lines of a row: encoded by one thread.
+  struct Neighbours {
+    std::size_t begin, end;
+    std::vector<double> gathered;  // column by column
+    ChunkEncoder encoder;
   };
 
   void add_channel(const Channel& channel, std::vector<Hdf5Dataset>& scales);
-  void write_block();
-  void gather(const Column& column, std::size_t rows);
+  void hand_over();
+  void write_block(const std::vector<double>& block, std::size_t rows);
+  void encode(Neighbours& columns, const std::vector<double>& block, std::size_t rows);
 
   Hdf5Group group_;
   SeriesLayout layout_;
-  std::vector<Column> columns_;  // the index first
+  std::vector<Dataset> datasets_;  // the index first
+  std::vector<Storage> storage_;   // of each column
+  std::vector<Neighbours> neighbours_;
+  std::vector<std::vector<std::uint8_t>> chunks_;  // of the block, column by column
   std::size_t width_ = 0;
-  std::size_t reserved_bytes_ = 0;  // most that a block can take on the disk
-  std::vector<double> block_;       // chunk_rows x width
-  std::vector<double> gathered_;    // one channel of the block
-  std::size_t rows_ = 0;            // in the block
+  std::vector<double> filling_, writing_;  // chunk_rows x width
+  std::size_t rows_ = 0;                   // in the block that fills
   bool finished_ = false;
+  Background background_;  // last: its thread uses the others
 };
 
 }  // namespace servomill::sim

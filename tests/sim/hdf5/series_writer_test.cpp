@@ -17,7 +17,7 @@
 #include "plant/vocabulary/input_error.h"
 
 namespace {
-std::size_t allocations = 0;
+thread_local std::size_t allocations = 0;  // the writer's thread may allocate
 }
 // not inlined, or the compiler takes malloc and delete for a pair that does not match
 [[gnu::noinline]] void* operator new(std::size_t size) {
@@ -93,28 +93,6 @@ TEST_F(SeriesFile, HasEveryRowWhateverTheBlock) {
   }
 }
 
-TEST_F(SeriesFile, RoundsAChannelToItsQuantum) {
-  constexpr double kQuantum = 0x1p-20;
-  {
-    OutputFile out(path("out.h5"), false);
-    SeriesLayout rounded;
-    rounded.channels = {{"a", {"mm", "rounded"}, "", Storage::float64, kQuantum},
-                        {"b", {"mm", "exact"}, ""}};
-    SeriesWriter writer(out.root().group("servo"), rounded);
-    for (const double value : {0.1, -0.1, 1e6 / 3.0}) writer.append(std::array{0.0, value, value});
-    writer.finish();
-    out.commit();
-  }
-  const InputFile in(path("out.h5"));
-  const auto a = in.values("/servo/a");
-  const auto b = in.values("/servo/b");
-  for (std::size_t n = 0; n < a.size(); ++n) {
-    EXPECT_EQ(std::remainder(a[n], kQuantum), 0.0);
-    EXPECT_LE(std::abs(a[n] - b[n]), kQuantum / 2);
-    EXPECT_NE(a[n], b[n]);
-  }
-}
-
 TEST_F(SeriesFile, WritesTheRestWhenLeftEarly) {
   {
     OutputFile out(path("out.h5"), false);
@@ -160,7 +138,8 @@ TEST_F(SeriesFile, OpensInH5pyAndXarray) {
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
 }
 
-// Appends until it fails; rows of complete blocks before the failure.
+// Appends until it fails: at the block after the one that could not be written. Rows of the blocks
+// before that.
 std::size_t fill(const std::string& path, std::string& message) {
   constexpr std::size_t kBlock = 1024;
   constexpr std::size_t kMostRows = 4'000'000;
@@ -171,7 +150,7 @@ std::size_t fill(const std::string& path, std::string& message) {
       writer.append(row(n));
     } catch (const SystemError& error) {
       message = error.what();
-      return n + 1 - kBlock;
+      return n + 1 - 2 * kBlock;
     }
   }
   return kMostRows;
@@ -223,8 +202,9 @@ TEST_F(SeriesFile, KilledAtAnyMomentKeepsTheBlocksBefore) {
       SeriesWriter writer(out.root().group("servo"), layout(kBlock));
       for (std::size_t n = 0;; ++n) {
         writer.append(row(n));
-        const std::size_t done = n + 1;
-        if (done % kBlock == 0 && write(pipe_ends[1], &done, sizeof done) < 0) _exit(1);
+        if ((n + 1) % kBlock != 0) continue;
+        const std::size_t done = n + 1 - kBlock;  // taking one block, it has written the one before
+        if (write(pipe_ends[1], &done, sizeof done) < 0) _exit(1);
       }
     }
     close(pipe_ends[1]);
