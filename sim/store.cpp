@@ -15,6 +15,7 @@
 namespace servomill::sim {
 namespace {
 
+constexpr const char* kUnfinished = "unfinished";  // group of a case until it is complete
 constexpr std::size_t kErrorSamples = 401;  // points at which error functions are written down
 constexpr double kEndlessRotary = 180 * deg;
 constexpr double kEndlessLinear = 500 * mm;
@@ -196,11 +197,17 @@ RunStore::RunStore(const std::string& path, bool force, const Scenario& scenario
   Hdf5Group root = file_.root();
   write_inputs(root, scenario, "run");
   write_errors(root, scenario);
+  std::size_t longest_name = 0;
+  for (const CaseSpec& one : scenario.cases) longest_name = std::max(longest_name, one.name.size());
+  root.group_with_room("cases", scenario.cases.size(), longest_name);
+  root.group_with_room(kUnfinished, 1, longest_name);
   root.flush_file();
 }
 
 void RunStore::add(const CaseOutput& one) {
-  Hdf5Group group = file_.root().group("cases/" + one.name);
+  Hdf5Group root = file_.root();
+  const std::string unfinished = fmt::format("{}/{}", kUnfinished, one.name);
+  Hdf5Group group = root.group(unfinished);
   write_series(group.group("servo"), one.result.servo, compression_);
   if (one.result.last_ticks.rows() > 0) {
     write_series(group.group("last_ticks"), one.result.last_ticks, compression_);
@@ -210,12 +217,15 @@ void RunStore::add(const CaseOutput& one) {
   group.attribute("blocks", one.blocks);
   group.attribute("sections", fmt::format("{}", fmt::join(one.sections, "\n")));
   if (!one.program.empty()) group.attribute("program", one.program);
-  // last: with it the case is complete
   group.attribute("finished", one.result.outcome.finished ? 1 : 0);
-  group.flush_file();
+  // A kill meanwhile spoils nothing but this case; from now on it is one of the complete ones.
+  root.flush_file();
+  root.move(unfinished, "cases/" + one.name);
+  root.flush_file();
 }
 
 void RunStore::commit(const std::vector<ComparisonRow>& comparison) {
+  file_.root().remove(kUnfinished);
   Hdf5Group table = file_.root().group("comparison");
   for (std::size_t i = 0; i < comparison.size(); ++i) {
     Hdf5Group group = table.group(fmt::format("{:03}", i));

@@ -264,6 +264,30 @@ Hdf5Group Hdf5Group::group(const std::string& path) {
   return Hdf5Group(std::move(here));
 }
 
+Hdf5Group Hdf5Group::group_with_room(const std::string& name, std::size_t children,
+                                     std::size_t longest_name) {
+  constexpr std::size_t kMost = 65535;  // of either number
+  const Library library;
+  const Hdf5Handle creation = group_creation(H5P_GROUP_CREATE);
+  const auto entries = static_cast<unsigned>(std::min(children, kMost));
+  H5Pset_link_phase_change(creation.get(), std::max(entries, 8U), 0);
+  H5Pset_est_link_info(creation.get(), entries,
+                       static_cast<unsigned>(std::min(longest_name, kMost)));
+  return Hdf5Group(Hdf5Handle(written(
+      H5Gcreate2(id_.get(), name.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT), id_.get())));
+}
+
+void Hdf5Group::move(const std::string& from, const std::string& to) {
+  const Library library;
+  written(H5Lmove(id_.get(), from.c_str(), id_.get(), to.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+          id_.get());
+}
+
+void Hdf5Group::remove(const std::string& name) {
+  const Library library;
+  written(H5Ldelete(id_.get(), name.c_str(), H5P_DEFAULT), id_.get());
+}
+
 Hdf5Dataset Hdf5Group::extendible(const std::string& name, std::size_t columns, bool has_columns,
                                   std::size_t chunk_rows, Storage storage, int compression,
                                   const Meaning& meaning) {

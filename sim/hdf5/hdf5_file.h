@@ -87,6 +87,17 @@ class Hdf5Group : public Hdf5Object {
   /// the order in which they were made.
   Hdf5Group group(const std::string& path);
 
+  /// Makes a group for about `children` whose names are no longer than `longest_name`: so many take
+  /// their places by the change of one block of the file, which a kill does not cut in two.
+  Hdf5Group group_with_room(const std::string& name, std::size_t children,
+                            std::size_t longest_name);
+
+  /// Moves what is at a path to another path, both below this group; the groups above are there.
+  void move(const std::string& from, const std::string& to);
+
+  /// Takes an empty group away.
+  void remove(const std::string& name);
+
   /// An empty dataset (time) or, with `has_columns`, (time, columns), that grows by whole chunks of
   /// `chunk_rows` x 1, encoded with that compression (ChunkEncoder).
   Hdf5Dataset extendible(const std::string& name, std::size_t columns, bool has_columns,

@@ -1,0 +1,87 @@
+// Result files of a run: what a kill leaves, and what comes back.
+
+#include "sim/store.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "tests/sim/hdf5/file_snapshots.h"
+#include "tests/sim/small_scenario.h"
+
+namespace servomill::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kProgram = "G1 X1 F1000\nM2\n";
+constexpr std::size_t kCases = 10;  // more than a group holds at its head unless it has room
+
+class RunFile : public testing::Test {
+ protected:
+  RunFile() : folder_(fs::path(testing::TempDir()) / ("run_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~RunFile() override { fs::remove_all(folder_); }
+  std::string path(const std::string& name) const { return folder_ / name; }
+
+  fs::path folder_;
+};
+
+Scenario scenario() {
+  std::string cases;
+  for (std::size_t i = 0; i < kCases; ++i) {
+    cases += "[[case]]\nname = \"case" + std::to_string(i) + "\"\n";
+  }
+  return small_scenario(kProgram, cases);
+}
+
+// Signals that tell their case and their row.
+CaseOutput output(std::size_t number) {
+  constexpr std::size_t kRows = 40;
+  CaseOutput out;
+  out.name = "case" + std::to_string(number);
+  out.sections = {""};
+  out.duration = static_cast<double>(number);
+  out.result.servo = Series({{"time", "s", "time", "", ""},
+                             {"s", "mm", "arc length", "", ""},
+                             {"rapid", "1", "rapid", "", ""},
+                             {"section", "1", "section", "", ""},
+                             {"true_linear", "mm", "position", "XYZ", "axis_linear"}});
+  for (std::size_t n = 0; n < kRows; ++n) {
+    double* row = out.result.servo.add_row();
+    for (std::size_t c = 0; c < out.result.servo.width(); ++c) {
+      row[c] = static_cast<double>(1000 * number + 10 * n + c);
+    }
+  }
+  return out;
+}
+
+TEST_F(RunFile, KilledAtAnyWriteHasEveryCompleteCase) {
+  const Scenario described = scenario();
+  std::atomic<std::size_t> complete = 0;
+  RunStore store(path("out.h5"), false, described);
+  FileSnapshots snapshots(store.partial_path(), folder_ / "snapshots", complete);
+  for (std::size_t i = 0; i < kCases; ++i) {
+    store.add(output(i));
+    ++complete;
+  }
+  store.commit({});
+  EXPECT_GT(snapshots.all().size(), 10 * kCases);
+  for (const FileSnapshots::Snapshot& left : snapshots.all()) {
+    SCOPED_TRACE(left.path);
+    const StoredRun run = read_run(left.path);
+    ASSERT_GE(run.cases.size(), left.promised);
+    ASSERT_LE(run.cases.size(), left.promised + 1);
+    for (std::size_t i = 0; i < run.cases.size(); ++i) {
+      const CaseOutput wanted = output(i);
+      EXPECT_EQ(run.cases[i].name, wanted.name);
+      EXPECT_EQ(run.cases[i].duration, wanted.duration);
+      EXPECT_EQ(run.cases[i].servo->data(), wanted.result.servo.data());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace servomill::sim
