@@ -11,7 +11,7 @@
 namespace servomill::sim {
 
 /// A thread of its own that does one job after the other, in the order in which they were posted.
-/// At most one job waits, so that what the jobs hold stays bounded. For one poster.
+/// None waits in a queue, so that what jobs hold stays bounded. For one poster.
 ///
 /// A job that throws is the last one: the next post() or wait() throws what it threw, those after
 /// it do so too, and no further job is done.

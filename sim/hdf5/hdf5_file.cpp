@@ -146,9 +146,17 @@ hid_t stored_type(Storage storage) {
   return -1;
 }
 
+// The same run gives the same file: no times in it.
+Hdf5Handle dataset_creation() {
+  Hdf5Handle list = handle(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_obj_track_times(list.get(), false);
+  return list;
+}
+
 Hdf5Handle group_creation(hid_t kind) {
   Hdf5Handle list = handle(H5Pcreate(kind));
   H5Pset_link_creation_order(list.get(), kCreationOrder);
+  H5Pset_obj_track_times(list.get(), false);
   return list;
 }
 
@@ -297,7 +305,7 @@ Hdf5Dataset Hdf5Group::extendible(const std::string& name, std::size_t columns, 
   const std::array<hsize_t, 2> most = {H5S_UNLIMITED, columns};
   const std::array<hsize_t, 2> chunk = {chunk_rows, 1};
   const Hdf5Handle space = handle(H5Screate_simple(rank, size.data(), most.data()));
-  const Hdf5Handle creation = handle(H5Pcreate(H5P_DATASET_CREATE));
+  const Hdf5Handle creation = dataset_creation();
   H5Pset_chunk(creation.get(), rank, chunk.data());
   if (compression != kNoCompression) {
     H5Pset_shuffle(creation.get());
@@ -326,7 +334,7 @@ Hdf5Dataset Hdf5Group::labels(const std::string& name, std::string_view letters,
   const hsize_t size = letters.size();
   const Hdf5Handle space = handle(H5Screate_simple(1, &size, nullptr));
   Hdf5Handle id(written(H5Dcreate2(id_.get(), name.c_str(), H5T_C_S1, space.get(), H5P_DEFAULT,
-                                   H5P_DEFAULT, H5P_DEFAULT),
+                                   dataset_creation().get(), H5P_DEFAULT),
                         id_.get()));
   written(H5Dwrite(id.get(), H5T_C_S1, H5S_ALL, H5S_ALL, H5P_DEFAULT, letters.data()), id_.get());
   Hdf5Dataset dataset(std::move(id), 1, false);
@@ -341,7 +349,7 @@ void Hdf5Group::scalar(const std::string& name, double value, const Meaning& mea
   const Hdf5Handle space = handle(H5Screate(H5S_SCALAR));
   Hdf5Dataset dataset(
       Hdf5Handle(written(H5Dcreate2(id_.get(), name.c_str(), H5T_IEEE_F64LE, space.get(),
-                                    H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                                    H5P_DEFAULT, dataset_creation().get(), H5P_DEFAULT),
                          id_.get())),
       1, false);
   written(H5Dwrite(dataset.id_.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value),
@@ -357,7 +365,7 @@ void Hdf5Group::list(const std::string& name, std::span<const double> values,
   const Hdf5Handle space = handle(H5Screate_simple(1, &size, nullptr));
   Hdf5Dataset dataset(
       Hdf5Handle(written(H5Dcreate2(id_.get(), name.c_str(), H5T_IEEE_F64LE, space.get(),
-                                    H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                                    H5P_DEFAULT, dataset_creation().get(), H5P_DEFAULT),
                          id_.get())),
       1, false);
   written(

@@ -60,7 +60,8 @@ class SeriesWriter {
 
   /// Adds a row. Neither allocates nor throws, except when it completes a block of `chunk_rows`:
   /// that is handed over, when the one before is written, flushed and outlives a kill of the
-  /// process.
+  /// process. (Unless the kill comes while the library splits the index of a dataset, as it does
+  /// every 64 chunks or so: that spoils this dataset.)
   /// @throws SystemError if a block before could not be written; the file ends with the one before
   ///         that, and every later call throws the same
   void append(std::span<const double> row);

@@ -12,9 +12,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <new>
 
 #include "plant/vocabulary/input_error.h"
+#include "tests/sim/hdf5/file_snapshots.h"
 
 namespace {
 thread_local std::size_t allocations = 0;  // the writer's thread may allocate
@@ -187,56 +189,121 @@ TEST_F(SeriesFile, BeyondTheLimitOfFileSizeSaysSo) {
               "out.h5.partial: cannot be written: File too large");
 }
 
-TEST_F(SeriesFile, KilledAtAnyMomentKeepsTheBlocksBefore) {
+// Rows of every block that was promised, in a file left by a kill.
+void expect_promised(const InputFile& in, std::size_t promised) {
+  const std::array<std::string, 4> names = {"time", "line", "ref_linear", "contour_error"};
+  constexpr std::array<std::size_t, 4> kOffset = {0, 1, 2, 5};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string name = "/servo/" + names[i];
+    const auto values = in.values(name);
+    const std::size_t columns = in.shape(name).size() == 2 ? 3 : 1;
+    ASSERT_GE(values.size(), promised * columns) << name;
+    for (std::size_t n = 0; n < promised; ++n) {
+      for (std::size_t c = 0; c < columns; ++c) {
+        ASSERT_EQ(values[n * columns + c], row(n)[kOffset[i] + c]) << name << " row " << n;
+      }
+    }
+  }
+}
+
+// As many as the index of a dataset of three columns holds before the library splits it.
+constexpr std::size_t kBlocksInOneNode = 64 / 3;
+
+TEST_F(SeriesFile, KilledAtAnyWriteKeepsTheBlocksBefore) {
+  constexpr std::size_t kBlock = 16;
+  std::atomic<std::size_t> promised = 0;
+  OutputFile out(path("out.h5"), false);
+  SeriesWriter writer(out.root().group("servo"), layout(kBlock));
+  FileSnapshots snapshots(out.partial_path(), folder_ / "snapshots", promised);
+  for (std::size_t n = 0; n < kBlock * kBlocksInOneNode; ++n) {
+    writer.append(row(n));
+    // taking one block, it has written the one before
+    if ((n + 1) % kBlock == 0) promised = n + 1 - kBlock;
+  }
+  writer.finish();
+  EXPECT_GT(snapshots.all().size(), 10 * kBlocksInOneNode);
+  for (const FileSnapshots::Snapshot& left : snapshots.all()) {
+    if (left.promised == 0) continue;  // the first block makes the indexes
+    SCOPED_TRACE(left.path);
+    expect_promised(InputFile(left.path), left.promised);
+    if (HasFatalFailure()) return;
+  }
+}
+
+TEST_F(SeriesFile, KilledIndeedKeepsTheBlocksBefore) {
   constexpr std::size_t kBlock = 64;
-  // A kill while HDF5 splits an index (microseconds) can still spoil a dataset: about one run in
-  // forty with 12 kills under load. More kills are for whoever works on that.
-  const char* more = std::getenv("SERVOMILL_KILLS");
-  const int kills = more == nullptr ? 4 : std::atoi(more);
-  for (int kill_number = 0; kill_number < kills; ++kill_number) {
+  for (std::size_t block : {std::size_t{1}, kBlocksInOneNode / 2, kBlocksInOneNode - 1}) {
     std::array<int, 2> pipe_ends{};
     ASSERT_EQ(pipe(pipe_ends.data()), 0);
     const pid_t child = fork();
     if (child == 0) {
       OutputFile out(path("out.h5"), true);
       SeriesWriter writer(out.root().group("servo"), layout(kBlock));
-      for (std::size_t n = 0;; ++n) {
+      for (std::size_t n = 0; n < kBlock * kBlocksInOneNode; ++n) {
         writer.append(row(n));
         if ((n + 1) % kBlock != 0) continue;
-        const std::size_t done = n + 1 - kBlock;  // taking one block, it has written the one before
+        const std::size_t done = n + 1 - kBlock;
         if (write(pipe_ends[1], &done, sizeof done) < 0) _exit(1);
       }
+      pause();
     }
     close(pipe_ends[1]);
-    std::size_t flushed = 0;
-    const std::size_t wanted = kBlock * static_cast<std::size_t>(1 + 11 * kill_number);
-    while (flushed < wanted) {
-      ASSERT_EQ(read(pipe_ends[0], &flushed, sizeof flushed), ssize_t{sizeof flushed});
+    std::size_t promised = 0;
+    while (promised < block * kBlock) {
+      ASSERT_EQ(read(pipe_ends[0], &promised, sizeof promised), ssize_t{sizeof promised});
     }
-    usleep(static_cast<useconds_t>(100 * kill_number));  // hit other places of a block
     ASSERT_EQ(kill(child, SIGKILL), 0);
     ASSERT_EQ(waitpid(child, nullptr, 0), child);
-    while (read(pipe_ends[0], &flushed, sizeof flushed) > 0) {
+    while (read(pipe_ends[0], &promised, sizeof promised) > 0) {
     }
     close(pipe_ends[0]);
-
     EXPECT_FALSE(fs::exists(path("out.h5")));
-    const InputFile in(path("out.h5.partial"));
-    const std::size_t rows = in.shape("/servo/time").at(0);
-    EXPECT_GE(rows, flushed);
-    for (const char* name : {"time", "line", "ref_linear", "contour_error"}) {
-      const auto values = in.values(std::string("/servo/") + name);
-      const std::size_t columns = in.shape(std::string("/servo/") + name).size() == 2 ? 3 : 1;
-      const std::size_t offset = name == std::string("time") ? 0
-                                                             : (name == std::string("line") ? 1
-                                                                : columns == 3              ? 2
-                                                                                            : 5);
-      for (std::size_t n = 0; n < flushed; ++n) {
-        for (std::size_t c = 0; c < columns; ++c) {
-          ASSERT_EQ(values[n * columns + c], row(n)[offset + c]) << name << " row " << n;
-        }
-      }
+    expect_promised(InputFile(path("out.h5.partial")), promised);
+  }
+}
+
+TEST_F(SeriesFile, IsTheSameForAnyNumberOfThreads) {
+  constexpr std::size_t kChannels = 20;  // three groups of columns
+  const auto written = [&](unsigned threads, int compression) {
+    SeriesLayout wide;
+    wide.threads = threads;
+    wide.compression = compression;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      wide.channels.push_back({"c" + std::to_string(c), {"mm", "signal"}, ""});
     }
+    OutputFile out(path("out.h5"), true);
+    SeriesWriter writer(out.root().group("servo"), wide);
+    std::array<double, kChannels + 1> values{};
+    for (std::size_t n = 0; n < wide.chunk_rows + 100; ++n) {
+      for (std::size_t c = 0; c < values.size(); ++c) {
+        values[c] = std::sin(0.01 * static_cast<double>(n) + static_cast<double>(c));
+      }
+      writer.append(values);
+    }
+    writer.finish();
+    out.commit();
+    std::ifstream file(path("out.h5"), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string one = written(1, 1);
+  EXPECT_TRUE(written(4, 1) == one);
+  const std::string plain = written(1, kNoCompression);
+  EXPECT_TRUE(written(4, kNoCompression) == plain);
+  EXPECT_GT(plain.size(), one.size());
+}
+
+TEST_F(SeriesFile, HoldsTheSameAtEveryLevelOfCompression) {
+  for (int level = kNoCompression; level <= kMostCompression; ++level) {
+    {
+      OutputFile out(path("out.h5"), true);
+      SeriesLayout leveled = layout(7);
+      leveled.compression = level;
+      SeriesWriter writer(out.root().group("servo"), leveled);
+      for (std::size_t n = 0; n < 20; ++n) writer.append(row(n));
+      writer.finish();
+      out.commit();
+    }
+    expect_rows(InputFile(path("out.h5")), "/servo", 20);
   }
 }
 
