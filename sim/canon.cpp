@@ -8,7 +8,7 @@
 #include "sim/read_file.h"
 #include "sim/run.h"
 #include "sim/scenario.h"
-#include "sim/sweep.h"
+#include "sim/sweep/sweep.h"
 
 namespace servomill::sim {
 namespace {
@@ -21,7 +21,7 @@ void check_toml(const std::string& path, const std::vector<std::string>& changes
   }
   const Scenario scenario = read_scenario(path, changes);
   check_scenario(scenario);
-  if (!scenario.sweep.empty()) check_sweep(path, changes);
+  if (!scenario.sweep.empty()) Sweep(path, changes).check();
 }
 
 controllers::ProgramSetup setup_of(const ProgramInputs& inputs) {

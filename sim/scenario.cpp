@@ -14,6 +14,7 @@
 #include "sim/scenario_document.h"
 #include "sim/scenario_source.h"
 #include "sim/schedule.h"
+#include "sim/sweep/read_design.h"
 
 namespace servomill::sim {
 namespace {
@@ -74,7 +75,7 @@ class ScenarioReader {
     for (Reader& table : root.tables_or_none("quantity")) read_quantity(table);
     if (root.has("sweep")) {
       Reader sweep = root.table("sweep");
-      read_sweep(sweep);
+      out_.sweep = read_sweep(sweep);
     }
     root.finish();
     read_case_machines();
@@ -537,19 +538,6 @@ class ScenarioReader {
     std::vector<std::string_view> out;
     for (std::size_t i = 0; i < axes.size(); ++i) out.push_back(axes.substr(i, 1));
     return out;
-  }
-
-  void read_sweep(Reader& table) {
-    for (const std::string& key : table.keys()) {
-      const Value* value = table.raw(key);
-      if (value == nullptr || value->type != Value::Type::list || value->children.empty()) {
-        table.fault(key, "must be a list of at least one value");
-        continue;
-      }
-      SweepKey sweep{key, {}, value->place};
-      for (const Value& one : value->children) sweep.values.push_back(inline_toml(one));
-      out_.sweep.push_back(std::move(sweep));
-    }
   }
 
   Document document_;

@@ -14,6 +14,7 @@
 #include "sim/config/document.h"
 #include "sim/machine.h"
 #include "sim/simulate.h"
+#include "sim/sweep/design.h"
 #include "strategies/registry.h"
 
 namespace servomill::sim {
@@ -62,13 +63,6 @@ struct QuantitySpec {
   std::string kind;       // identified, predicted, chosen, bound or empty
 };
 
-/// One key that a sweep varies.
-struct SweepKey {
-  std::string key;                  // dotted, as --set takes it
-  std::vector<std::string> values;  // as TOML
-  Place place = {};
-};
-
 /// What becomes of recorded signals.
 struct RecordSpec {
   RecordFormat format = {.resolution = 0.01e-9};
@@ -89,7 +83,7 @@ struct Scenario {
   RecordSpec record;
   double settle_time = 0.1;  // s
   std::vector<QuantitySpec> quantities;
-  std::vector<SweepKey> sweep;
+  SweepDesign sweep;
 
   std::string text, machine_text;  // as read
   std::string resolved;            // one TOML document with the machine and all changes in it

@@ -256,8 +256,6 @@ StoredRun read_run(const std::string& path) {
   return run;
 }
 
-namespace {
-
 bool is_hdf5(const std::string& path) {
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
   std::array<char, kSignature.size()> begin{};
@@ -265,8 +263,6 @@ bool is_hdf5(const std::string& path) {
   file.read(begin.data(), begin.size());
   return file && std::string_view(begin.data(), begin.size()) == kSignature;
 }
-
-}  // namespace
 
 std::string writable_name(const std::string& path, bool force) {
   namespace fs = std::filesystem;
@@ -285,43 +281,5 @@ std::string writable_name(const std::string& path, bool force) {
   }
   return path;
 }
-
-SweepStore::SweepStore(const std::string& path, bool force, const Scenario& scenario)
-    : file_(writable_name(path, force), force), keys_(scenario.sweep) {
-  Hdf5Group root = file_.root();
-  write_inputs(root, scenario, "sweep");
-  root.flush_file();
-}
-
-void SweepStore::write(const std::vector<SweepPoint>& points) {
-  Hdf5Group root = file_.root();
-  Hdf5Group table = root.group("sweep");
-  std::vector<double> numbers(points.size());
-  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<double>(i);
-  table.list("point", numbers, {"1", "number of the point"});
-  for (std::size_t key = 0; key < keys_.size(); ++key) {
-    std::vector<std::string> texts;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      texts.push_back(points[i].values[key]);
-      numbers[i] = number_of(points[i].values[key]);
-    }
-    Hdf5Group group = table.group(fmt::format("keys/{}", key));
-    group.attribute("key", keys_[key].key);
-    group.attribute("values", fmt::format("{}", fmt::join(texts, "\n")));
-    group.list("value", numbers, {"1", keys_[key].key + ", NaN where it is no number"});
-  }
-  const std::size_t quantities = points.empty() ? 0 : points.front().rows.size();
-  for (std::size_t q = 0; q < quantities; ++q) {
-    Hdf5Group group = table.group(fmt::format("quantities/{:03}", q));
-    write_row(group, points.front().rows[q]);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      numbers[i] = q < points[i].rows.size() ? points[i].rows[q].value : std::nan("");
-    }
-    group.list("value", numbers, {points.front().rows[q].unit, points.front().rows[q].quantity});
-  }
-  root.flush_file();
-}
-
-void SweepStore::commit() { file_.commit(); }
 
 }  // namespace servomill::sim

@@ -3,11 +3,11 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/hdf5/hdf5_file.h"
 #include "sim/run.h"
-#include "sim/sweep.h"
 
 namespace servomill::sim {
 
@@ -45,25 +45,12 @@ struct StoredRun {
 /// @throws InputError if the file is none of ours or of another schema version
 StoredRun read_run(const std::string& path);
 
+/// Whether a file begins as HDF5 does.
+bool is_hdf5(const std::string& path);
+
 /// `path`, if a result file may be made there: it is no folder, and neither it nor its partial file
 /// exists, or `force` is set and it is a result file (anything else is never overwritten).
 /// @throws InputError
 std::string writable_name(const std::string& path, bool force);
-
-/// Table of a sweep on disk: one list for each key and each quantity, over the points.
-class SweepStore {
- public:
-  /// @throws InputError if the file cannot be had under that name, SystemError
-  SweepStore(const std::string& path, bool force, const Scenario& scenario);
-  /// Writes all points; once.
-  void write(const std::vector<SweepPoint>& points);
-  /// Gives the file its final name.
-  void commit();
-  const std::string& partial_path() const { return file_.partial_path(); }
-
- private:
-  OutputFile file_;
-  std::vector<SweepKey> keys_;
-};
 
 }  // namespace servomill::sim

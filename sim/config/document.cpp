@@ -98,16 +98,14 @@ void replace(Value& old, Value by) {
   old = std::move(by);
 }
 
-Value& item_of(Value& list, const Step& step, const std::string& path, const Place& place) {
-  const std::optional<std::size_t> index = as_index(step.name);
-  if (!index) {
-    throw InputError(place, fmt::format("{} is a list; '{}' is no place in it", path, step.name));
+// What an item of a list of tables is called by: its name, or else its type.
+std::string_view name_of(const Value& item) {
+  if (item.type != Value::Type::table) return {};
+  for (const std::string_view key : {"name", "type"}) {
+    const Value* value = item.find(key);
+    if (value != nullptr && value->type == Value::Type::text) return value->text;
   }
-  if (*index >= list.children.size()) {
-    throw InputError(place, fmt::format("{} is beyond the list, which has {} items counted from 0",
-                                        shown(path, step), list.children.size()));
-  }
-  return list.children[*index];
+  return {};
 }
 
 Value& entry_of(Value& table, const Step& step, const Place& place) {
@@ -116,6 +114,38 @@ Value& entry_of(Value& table, const Step& step, const Place& place) {
   entry.key = step.name;
   entry.key_place = entry.place = place;
   return table.children.emplace_back(std::move(entry));
+}
+
+// An item of a list of tables by its name; of a list of one, what the item has under that name.
+Value& named_item(Value& list, const Step& step, const std::string& path, const Place& place) {
+  const auto is_called = [&](const Value& item) { return name_of(item) == step.name; };
+  auto& items = list.children;
+  const auto item = std::find_if(items.begin(), items.end(), is_called);
+  if (item != items.end()) {
+    if (std::find_if(item + 1, items.end(), is_called) == items.end()) return *item;
+    throw InputError(place, fmt::format("{} has several items called '{}'; name one by its place, "
+                                        "such as {}[{}]",
+                                        path, step.name, path, item - items.begin()));
+  }
+  if (items.size() == 1 && items[0].type == Value::Type::table) {
+    return entry_of(items[0], step, place);
+  }
+  std::vector<std::string_view> names;
+  for (const Value& one : items) {
+    if (!name_of(one).empty()) names.push_back(name_of(one));
+  }
+  throw InputError(place, fmt::format("{} is a list; '{}' is no place in it{}", path, step.name,
+                                      did_you_mean(step.name, names)));
+}
+
+Value& item_of(Value& list, const Step& step, const std::string& path, const Place& place) {
+  const std::optional<std::size_t> index = as_index(step.name);
+  if (!index) return named_item(list, step, path, place);
+  if (*index >= list.children.size()) {
+    throw InputError(place, fmt::format("{} is beyond the list, which has {} items counted from 0",
+                                        shown(path, step), list.children.size()));
+  }
+  return list.children[*index];
 }
 
 Value& descend(Value& from, const Step& step, const std::string& path, const Place& place) {

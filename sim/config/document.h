@@ -16,7 +16,9 @@ class Document {
   static Document from_text(std::string_view text, const std::string& name);
 
   /// Sets one value as `--set KEY=VALUE` does. KEY is a dotted path; an item of a list is `case[2]`
-  /// or `case.2`, counted from 0; names that are not bare are quoted: parameters."#101". Tables
+  /// or `case.2`, counted from 0, or a table called by its `name` or else its `type`:
+  /// case.table.strategy.gcode; the only item of a list need not be named:
+  /// case.table.strategy.spacing_mm. Names that are not bare are quoted: parameters."#101". Tables
   /// that do not exist are made: whether the document knows them is for its reader to say. VALUE is
   /// a TOML value, or else a text as it stands: `--set name=table`, `--set lead_mm="20 um"`.
   /// @throws InputError at the place "--set KEY=VALUE"

@@ -237,6 +237,35 @@ void Hdf5Dataset::attach_scale(Hdf5Dataset& scale, unsigned dimension) {
   written(H5DSattach_scale(id_.get(), scale.id_.get(), dimension), id_.get());
 }
 
+void Hdf5Dataset::write(std::size_t first, std::span<const double> values) {
+  const Library library;
+  const hsize_t begin = first, count = values.size();
+  const Hdf5Handle in_file(written(H5Dget_space(id_.get()), id_.get()));
+  H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, &begin, nullptr, &count, nullptr);
+  const Hdf5Handle in_memory = handle(H5Screate_simple(1, &count, nullptr));
+  written(H5Dwrite(id_.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(), H5P_DEFAULT,
+                   values.data()),
+          id_.get());
+}
+
+void Hdf5Dataset::write_text(std::size_t row, std::string_view text) {
+  const Library library;
+  constexpr std::string_view kCut = "...";
+  std::string room(text.substr(0, columns_));
+  if (text.size() > columns_) {
+    std::size_t end = columns_ - kCut.size();
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // UTF-8
+    room = std::string(text.substr(0, end)) + std::string(kCut);
+  }
+  room.resize(columns_, '\0');
+  const std::array<hsize_t, 2> begin = {row, 0}, block = {1, columns_};
+  const Hdf5Handle in_file(written(H5Dget_space(id_.get()), id_.get()));
+  H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, begin.data(), nullptr, block.data(), nullptr);
+  const Hdf5Handle in_memory = handle(H5Screate_simple(2, block.data(), nullptr));
+  written(H5Dwrite(id_.get(), H5T_C_S1, in_memory.get(), in_file.get(), H5P_DEFAULT, room.data()),
+          id_.get());
+}
+
 void Hdf5Dataset::append(std::size_t rows, std::span<const std::vector<std::uint8_t>> chunks) {
   assert(chunks.size() == columns_);
   const Library library;
@@ -328,6 +357,51 @@ Hdf5Dataset Hdf5Group::extendible(const std::string& name, std::size_t columns, 
   return dataset;
 }
 
+Hdf5Dataset Hdf5Group::fixed(const std::string& name, std::size_t rows, Storage storage,
+                             double fill, const Meaning& meaning) {
+  const Library library;
+  const hsize_t size = rows;
+  const Hdf5Handle space = handle(H5Screate_simple(1, &size, nullptr));
+  const Hdf5Handle creation = handle(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_alloc_time(creation.get(), H5D_ALLOC_TIME_EARLY);
+  H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &fill);
+  Hdf5Handle id(written(H5Dcreate2(id_.get(), name.c_str(), stored_type(storage), space.get(),
+                                   H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+                        id_.get()));
+  Hdf5Dataset dataset(std::move(id), 1, false);
+  dataset.attribute("units", meaning.units);
+  dataset.attribute("long_name", meaning.long_name);
+  return dataset;
+}
+
+Hdf5Dataset Hdf5Group::fixed_texts(const std::string& name, std::size_t rows, std::size_t width,
+                                   const std::string& long_name) {
+  const Library library;
+  const std::array<hsize_t, 2> size = {rows, width};
+  const Hdf5Handle space = handle(H5Screate_simple(2, size.data(), nullptr));
+  const Hdf5Handle creation = handle(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_alloc_time(creation.get(), H5D_ALLOC_TIME_EARLY);
+  H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);  // holes of a file read as zeros
+  Hdf5Handle id(written(H5Dcreate2(id_.get(), name.c_str(), H5T_C_S1, space.get(), H5P_DEFAULT,
+                                   creation.get(), H5P_DEFAULT),
+                        id_.get()));
+  Hdf5Dataset dataset(std::move(id), width, true);
+  dataset.attribute("units", "1");
+  dataset.attribute("long_name", long_name);
+  return dataset;
+}
+
+Hdf5Dataset Hdf5Group::dataset(const std::string& name) {
+  const Library library;
+  Hdf5Handle id(written(H5Dopen2(id_.get(), name.c_str(), H5P_DEFAULT), id_.get()));
+  const Hdf5Handle space(written(H5Dget_space(id.get()), id_.get()));
+  std::array<hsize_t, 2> size = {0, 1};
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  assert(rank == 1 || rank == 2);
+  H5Sget_simple_extent_dims(space.get(), size.data(), nullptr);
+  return {std::move(id), size[1], rank == 2};
+}
+
 Hdf5Dataset Hdf5Group::labels(const std::string& name, std::string_view letters,
                               const std::string& long_name) {
   const Library library;
@@ -396,6 +470,25 @@ OutputFile::OutputFile(std::string path, bool force)
   const unsigned flag = force_ ? H5F_ACC_TRUNC : H5F_ACC_EXCL;
   file_ = Hdf5Handle(H5Fcreate(partial_path_.c_str(), flag, creation.get(), access.get()));
   if (file_.get() < 0) throw SystemError(partial_path_, "cannot be made", library_reason());
+}
+
+OutputFile::OutputFile(std::string path, bool force, Hdf5Handle file)
+    : path_(std::move(path)),
+      partial_path_(path_ + ".partial"),
+      force_(force),
+      file_(std::move(file)) {}
+
+OutputFile OutputFile::resumed(std::string path, bool force) {
+  prepare_library();
+  const Hdf5Handle access = handle(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  Hdf5Handle file(H5Fopen((path + ".partial").c_str(), H5F_ACC_RDWR, access.get()));
+  if (file.get() < 0) {
+    throw InputError({path + ".partial"}, fmt::format("cannot be opened: {}; does another process "
+                                                      "write it?",
+                                                      library_reason()));
+  }
+  return {std::move(path), force, std::move(file)};
 }
 
 OutputFile::~OutputFile() = default;
@@ -518,6 +611,50 @@ std::vector<double> InputFile::values(const std::string& dataset) const {
   std::vector<double> out(count);
   if (H5Dread(id.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0) {
     fail(fmt::format("'{}' cannot be read: {}", dataset, library_reason()));
+  }
+  return out;
+}
+
+std::vector<double> InputFile::values(const std::string& dataset, std::size_t first,
+                                      std::size_t count) const {
+  const Library library;
+  const auto size = shape(dataset);
+  if (size.size() != 1 || first + count > size[0]) {
+    fail(fmt::format("'{}' has not the length it should have", dataset));
+  }
+  const Hdf5Handle id = open(dataset);
+  const hsize_t begin = first, length = count;
+  const Hdf5Handle in_file(H5Dget_space(id.get()));
+  H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, &begin, nullptr, &length, nullptr);
+  const Hdf5Handle in_memory = handle(H5Screate_simple(1, &length, nullptr));
+  std::vector<double> out(count);
+  if (H5Dread(id.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(), H5P_DEFAULT,
+              out.data()) < 0) {
+    fail(fmt::format("'{}' cannot be read: {}", dataset, library_reason()));
+  }
+  return out;
+}
+
+std::vector<std::string> InputFile::texts(const std::string& dataset, std::size_t first,
+                                          std::size_t count) const {
+  const Library library;
+  const auto size = shape(dataset);
+  if (size.size() != 2 || first + count > size[0]) {
+    fail(fmt::format("'{}' has not the length it should have", dataset));
+  }
+  const Hdf5Handle id = open(dataset);
+  const std::array<hsize_t, 2> begin = {first, 0}, block = {count, size[1]};
+  const Hdf5Handle in_file(H5Dget_space(id.get()));
+  H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, begin.data(), nullptr, block.data(), nullptr);
+  const Hdf5Handle in_memory = handle(H5Screate_simple(2, block.data(), nullptr));
+  std::string all(count * size[1], '\0');
+  if (H5Dread(id.get(), H5T_C_S1, in_memory.get(), in_file.get(), H5P_DEFAULT, all.data()) < 0) {
+    fail(fmt::format("'{}' cannot be read: {}", dataset, library_reason()));
+  }
+  std::vector<std::string> out;
+  for (std::size_t row = 0; row < count; ++row) {
+    const std::string text = all.substr(row * size[1], size[1]);
+    out.push_back(text.substr(0, text.find('\0')));
   }
   return out;
 }

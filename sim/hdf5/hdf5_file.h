@@ -68,6 +68,11 @@ class Hdf5Dataset : public Hdf5Object {
   /// Gives the dimension (0 rows, 1 columns) its scale.
   void attach_scale(Hdf5Dataset& scale, unsigned dimension);
 
+  /// Replaces numbers of a dataset of fixed size, from row `first` on.
+  void write(std::size_t first, std::span<const double> values);
+  /// Replaces one row of texts. What is longer than the room ends with "...".
+  void write_text(std::size_t row, std::string_view text);
+
   /// Adds rows at the end of an extendible dataset: of each column one chunk, encoded as the
   /// dataset says. Only the last chunks may hold fewer rows than the chunks are long.
   void append(std::size_t rows, std::span<const std::vector<std::uint8_t>> chunks);
@@ -104,6 +109,18 @@ class Hdf5Group : public Hdf5Object {
                          std::size_t chunk_rows, Storage storage, int compression,
                          const Meaning& meaning);
 
+  /// A dataset of `rows` numbers, all `fill` at first, that are replaced in any order. Its room is
+  /// claimed at once and it never moves: once the file was flushed, rows that are written outlive a
+  /// kill whenever it comes.
+  Hdf5Dataset fixed(const std::string& name, std::size_t rows, Storage storage, double fill,
+                    const Meaning& meaning);
+  /// The same for texts of at most `width` bytes, empty at first: (rows, width) characters, as
+  /// netCDF has them. Rows that stay empty take no room on the disk.
+  Hdf5Dataset fixed_texts(const std::string& name, std::size_t rows, std::size_t width,
+                          const std::string& long_name);
+  /// A dataset that is there.
+  Hdf5Dataset dataset(const std::string& name);
+
   /// One letter a column, as the scale of the dimension `name`.
   Hdf5Dataset labels(const std::string& name, std::string_view letters,
                      const std::string& long_name);
@@ -129,6 +146,10 @@ class OutputFile {
   /// @throws InputError if either exists and `force` is not set
   /// @throws SystemError if the file cannot be made
   OutputFile(std::string path, bool force);
+  /// Goes on with the partial file of `path`.
+  /// @throws InputError if it cannot be opened, as while another process writes it
+  static OutputFile resumed(std::string path, bool force);
+  OutputFile(OutputFile&&) = default;
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -144,6 +165,7 @@ class OutputFile {
   void commit();
 
  private:
+  OutputFile(std::string path, bool force, Hdf5Handle file);
   void refuse_existing(const std::string& name, std::string_view why) const;
 
   std::string path_;
@@ -167,6 +189,13 @@ class InputFile {
   std::vector<std::size_t> shape(const std::string& dataset) const;
   /// All values, row by row.
   std::vector<double> values(const std::string& dataset) const;
+
+  /// The same of some rows of a list.
+  std::vector<double> values(const std::string& dataset, std::size_t first,
+                             std::size_t count) const;
+  /// Some rows of a list of texts.
+  std::vector<std::string> texts(const std::string& dataset, std::size_t first,
+                                 std::size_t count) const;
 
   bool has_attribute(const std::string& object, const std::string& name) const;
   std::string text(const std::string& object, const std::string& name) const;

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/sweep/table.h"
+
 namespace servomill::tools {
 
 /// Exit status of the program.
@@ -32,6 +34,7 @@ int check_command(const Arguments& arguments);
 int canon_command(const Arguments& arguments);
 int list_command(const Arguments& arguments);
 int sweep_command(const Arguments& arguments);
+int merge_command(const Arguments& arguments);
 int bode_command(const Arguments& arguments);
 int step_command(const Arguments& arguments);
 int tune_command(const Arguments& arguments);
@@ -82,6 +85,9 @@ class ProgressBar {
   double begin_;  // s
   std::size_t shown_ = 0;
 };
+
+/// "98 points done, 2 points refused".
+std::string points_by_status(const sim::StatusCounts& counts);
 
 /// What --threads says. @throws InputError
 unsigned thread_count(const Options& options);

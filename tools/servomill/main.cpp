@@ -19,12 +19,13 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 9> kCommands = {{
+constexpr std::array<Command, 10> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
     {"sweep", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
-     "runs a scenario over the grid of its [sweep] table", sweep_command},
+     "runs a scenario at the points of its [sweep] table", sweep_command},
+    {"merge", "SHARD.h5... -o OUT.h5 [--partial]", "joins the shards of a sweep", merge_command},
     {"bode", "SCENARIO.toml --axis Y [--loop LOOP] [-o OUT.h5]",
      "frequency responses of an axis, exact and measured", bode_command},
     {"step", "SCENARIO.toml --axis Y [-o OUT.h5]", "step responses of an axis", step_command},

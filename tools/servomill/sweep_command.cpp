@@ -1,79 +1,159 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
-#include <optional>
+#include <numeric>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/store.h"
-#include "sim/sweep.h"
+#include "sim/hdf5/system_error.h"
+#include "sim/sweep/sweep.h"
+#include "sim/sweep/table.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
 
 namespace servomill::tools {
+namespace {
 
 namespace po = boost::program_options;
 
-int sweep_command(const Arguments& arguments) {
-  Options options(
-      "sweep", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
-      "Runs a scenario over the grid of its [sweep] table (one or two keys), prints the "
-      "comparison at every point and writes the table to one HDF5 file.",
-      "SCENARIO.toml");
+constexpr const char* kSynopsis = "SCENARIO.toml [-o OUT.h5] [--shard I/N] [--set KEY=VALUE]...";
+
+void add_options(Options& options) {
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
-                "result file (default: name of the scenario with _sweep.h5, in this folder)");
+                "result file (default: name of the scenario with _sweep.h5, in this folder); "
+                "OUT.csv is written beside it");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario at all points");
+  options.add()("points", po::value<std::string>()->default_value("")->value_name("A-B"),
+                "runs these points only, counted from 1");
+  options.add()("shard", po::value<std::string>()->value_name("I/N"),
+                "runs one of N parts of the points and writes OUT.I-of-N.h5; see servomill merge");
+  options.add()("series",
+                "keeps the signals of every point: OUT.series/POINT.h5, as servomill run "
+                "writes them");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads (default: one a core); results do not depend on it");
   options.add()("force,f", "replaces the result file if it exists");
   options.add()("json", "prints one JSON object a point and quantity");
+  options.add()("csv", "prints the table as the CSV file has it, at the end");
   options.add()("quiet,q", "prints nothing but faults");
-  if (!options.parse(arguments)) return kDone;
+}
 
-  const std::string path = options.word();
-  const sim::Scenario scenario = sim::read_scenario(path, options.list("set"));
-  const std::string out = output_name(options, scenario.name, "_sweep");
-  sim::writable_name(out, options.has("force"));
-  std::optional<sim::SweepStore> store;
-  const auto& stop = stop_on_interrupt();
-  ProgressBar bar(options.has("quiet"));
-  sim::RunControl control;
-  control.threads = thread_count(options);
-  control.stop = &stop;
-  control.progress = [&](double share) { bar.show(share); };
-  control.prepared = [&] { store.emplace(out, options.has("force"), scenario); };
-  bool finished = true;
-  const auto point_done = [&](const sim::SweepPoint& point) {
-    bar.clear();
-    for (const std::string& why : point.stopped) fmt::print(stderr, "{}\n", why);
-    finished &= point.stopped.empty();
-    if (options.has("quiet")) return;
-    bar.clear();
+sim::Selection selection_of(const Options& options, const sim::Sweep& sweep) {
+  return sim::read_selection(sweep.design().size(), options.get<std::string>("points"),
+                             options.has("shard") ? options.get<std::string>("shard") : "");
+}
+
+// What is told of a point as soon as it is known.
+class Teller {
+ public:
+  Teller(const Options& options, const sim::SweepDesign& design)
+      : json_(options.has("json")),
+        quiet_(options.has("quiet") || options.has("csv")),
+        design_(design) {}
+
+  void tell(const sim::SweepPoint& point) const {
     std::string where;
     for (std::size_t k = 0; k < point.values.size(); ++k) {
-      where += fmt::format("{}{} = {}", k == 0 ? "" : ", ", scenario.sweep[k].key, point.values[k]);
+      where += fmt::format("{}{} = {}", k == 0 ? "" : ", ", design_.keys[k].key, point.values[k]);
     }
-    if (options.has("json")) {
-      for (const auto& row : point.rows) {
+    const sim::BatchResult& result = point.result;
+    if (!result.reason.empty()) {
+      fmt::print(stderr, "point {} ({}): {}: {}\n", point.index + 1, where,
+                 sim::name_of(result.status), result.reason);
+    }
+    if (json_) {
+      for (const auto& row : result.rows) {
         fmt::print("{{\"point\": \"{}\", \"row\": {}}}\n", sim::json_escaped(where),
                    sim::to_json(row));
       }
-    } else {
-      fmt::print("{}\n\n{}\n", where, sim::format_table(point.rows));
+    } else if (!quiet_ && !result.rows.empty()) {
+      fmt::print("{}\n\n{}\n", where, sim::format_table(result.rows));
     }
-    std::fflush(stdout);  // a point is told when it is known, to a pipe, too
+    std::fflush(stdout);  // to a pipe, too
+  }
+
+ private:
+  bool json_, quiet_;
+  const sim::SweepDesign& design_;
+};
+
+int status_of(const sim::StatusCounts& counts) {
+  const auto count = [&](sim::PointStatus status) {
+    return counts[static_cast<std::size_t>(status)];
   };
-  const auto points = sim::run_sweep(path, options.list("set"), control, point_done);
+  return count(sim::PointStatus::done) + count(sim::PointStatus::not_run) ==
+                 std::accumulate(counts.begin(), counts.end(), std::uint64_t{0})
+             ? kDone
+             : kMachineStopped;
+}
+
+}  // namespace
+
+std::string points_by_status(const sim::StatusCounts& counts) {
+  std::string text;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    // done first, then all others that there are
+    const std::size_t status = i == 0 ? 1 : i == 1 ? 0 : i;
+    if (status != 1 && counts[status] == 0) continue;
+    std::string name(sim::name_of(static_cast<sim::PointStatus>(status)));
+    std::replace(name.begin(), name.end(), '_', ' ');
+    text += fmt::format("{}{} points {}", text.empty() ? "" : ", ", counts[status], name);
+  }
+  return text;
+}
+
+int sweep_command(const Arguments& arguments) {
+  Options options("sweep", kSynopsis,
+                  "Runs a scenario at the points of its [sweep] table, prints the comparison at "
+                  "each and writes one row a point to one HDF5 file. What an interrupted or killed "
+                  "sweep has left is gone on with. Exit status 1: at some points the machine "
+                  "stopped or the input was refused; their rows say why.",
+                  "SCENARIO.toml");
+  add_options(options);
+  if (!options.parse(arguments)) return kDone;
+
+  const sim::Sweep sweep(options.word(), options.list("set"));
+  const sim::Selection selection = selection_of(options, sweep);
+  std::string out = output_name(options, sweep.base().name, "_sweep");
+  if (options.has("shard")) out = sim::shard_name(out, selection);
+  const unsigned threads = thread_count(options);
+  sweep.refuse_hopeless();
+
+  sim::SweepTable table(out, options.has("force"), sweep.base(), selection);
+  const bool quiet = options.has("quiet") || options.has("json") || options.has("csv");
+  if (table.is_complete()) {
+    if (!quiet) fmt::print("{} holds all {} points already\n", out, selection.size());
+    return status_of(table.counts());
+  }
+  const std::uint64_t before = selection.size() - table.counts()[0];
+  if (before > 0 && !quiet) {
+    fmt::print("{}: {} of {} points are there already\n", table.partial_path(), before,
+               selection.size());
+  }
+
+  const auto& stop = stop_on_interrupt();
+  ProgressBar bar(options.has("quiet"));
+  const Teller teller(options, sweep.design());
+  sim::SweepControl control;
+  control.threads = threads;
+  control.stop = &stop;
+  control.progress = [&](double share) { bar.show(share); };
+  control.batch_done = [&](std::vector<sim::SweepPoint>&& points) {
+    table.write(points);
+    bar.clear();
+    for (const sim::SweepPoint& point : points) teller.tell(point);
+  };
+  sim::run_sweep(sweep, selection, table.done(), control);
   bar.clear();
-  store->write(points);
-  if (points.size() < sim::grid_of(scenario).size()) {
-    fmt::print(stderr, "interrupted; kept in {}: {} complete points of {}\n", store->partial_path(),
-               points.size(), sim::grid_of(scenario).size());
+  if (table.counts()[0] > 0) {
+    fmt::print(stderr, "interrupted; kept in {}: {} complete points of {}\n", table.partial_path(),
+               selection.size() - table.counts()[0], selection.size());
     return kInterrupted;
   }
-  store->commit();
-  if (!options.has("quiet") && !options.has("json")) fmt::print("written to {}\n", out);
-  return finished ? kDone : kMachineStopped;
+  table.commit();
+  if (!quiet) fmt::print("{}; written to {}\n", points_by_status(table.counts()), out);
+  return status_of(table.counts());
 }
 
 }  // namespace servomill::tools

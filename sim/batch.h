@@ -1,0 +1,52 @@
+/// Several points of a sweep, run together.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/comparison.h"
+#include "sim/run.h"
+#include "sim/scenario.h"
+#include "sim/simulate.h"
+
+namespace servomill::sim {
+
+/// How a point of a sweep ended. The numbers stand in result files.
+enum class PointStatus : std::uint8_t {
+  not_run = 0,  // or interrupted
+  done = 1,
+  stopped = 2,  // ran, but in some case the machine stopped
+  refused = 3,  // the input is wrong there
+  failed = 4,   // the program or the system failed there
+};
+inline constexpr std::size_t kPointStatuses = 5;
+
+/// "not_run", "done", ...
+std::string_view name_of(PointStatus status);
+
+/// What became of one point.
+struct BatchResult {
+  PointStatus status = PointStatus::not_run;
+  std::string reason;                  // why it is not `done`, in one line
+  std::vector<ComparisonRow> rows;     // of what ran: `done` or `stopped`
+  std::vector<CaseOutput> cases = {};  // with their signals, where they are kept
+};
+
+/// What to keep of the cases of a batch.
+enum class Keep : std::uint8_t { comparison, series };
+
+/// Prepares and runs all cases of all points on the calling thread. The result of a point depends
+/// on that point alone, bit for bit. What is wrong with a point is part of its result; nothing is
+/// thrown.
+/// @param stop      points that see it are `not_run`
+/// @param progress  set to the share done of the batch, 0 to 1
+std::vector<BatchResult> run_batch(std::span<const Scenario> points, const StopFlag& stop,
+                                   std::atomic<float>& progress, Keep keep = Keep::comparison);
+
+/// All faults in one line.
+std::string in_one_line(const InputError& error);
+
+}  // namespace servomill::sim

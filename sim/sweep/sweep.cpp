@@ -1,0 +1,335 @@
+#include "sim/sweep/sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "sim/config/document.h"
+
+namespace servomill::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr auto kProgressPeriod = std::chrono::milliseconds(100);
+constexpr std::uint64_t kProbes = 8;          // points tried before all are given up
+constexpr std::uint64_t kMostChecked = 256;   // points that `check` reads
+constexpr std::size_t kBatchesPerThread = 4;  // at least, so that threads end together
+constexpr std::size_t kWaitingPerThread = 2;  // batches that may wait to be written
+
+// Values of these keys name files, which stand beside the scenario.
+bool names_a_file(const std::string& key) { return key == "machine" || key == "program.file"; }
+
+// `count` points of `size`, the first and the last among them, in equal steps.
+std::vector<std::uint64_t> spread(std::uint64_t size, std::uint64_t count) {
+  std::vector<std::uint64_t> points;
+  const std::uint64_t few = std::min(size, count);
+  for (std::uint64_t i = 0; i < few; ++i) {
+    points.push_back(few == 1 ? 0 : i * (size - 1) / (few - 1));
+  }
+  return points;
+}
+
+// The nearest of the names that the scenario has beside a key that it does not know.
+std::string near_key(const std::string& resolved, const std::string& key) {
+  const Document document = Document::from_text(resolved, "");
+  const Value* table = &document.root();
+  std::size_t begin = 0;
+  for (std::size_t dot = key.find('.'); dot != std::string::npos && table != nullptr;
+       dot = key.find('.', begin)) {
+    table = table->find(key.substr(begin, dot - begin));
+    begin = dot + 1;
+  }
+  if (table == nullptr || table->type != Value::Type::table) return {};
+  std::vector<std::string_view> names;
+  for (const Value& entry : table->children) names.push_back(entry.key);
+  return did_you_mean(key.substr(begin), names);
+}
+
+// Without the value in it: the same fault at another point has another one.
+std::string without(std::string message, const std::string& value) {
+  const std::size_t at = message.find(value);
+  return at == std::string::npos ? message : message.erase(at, value.size());
+}
+
+}  // namespace
+
+Sweep::Sweep(std::string scenario_path, std::vector<std::string> changes)
+    : path_(std::move(scenario_path)),
+      changes_(std::move(changes)),
+      base_(read_scenario(path_, changes_)) {
+  if (!base_.sweep.empty()) return;
+  throw InputError({path_},
+                   "has no [sweep] table; add one such as [sweep] "
+                   "\"program.feed_override\" = [0.5, 1.0]");
+}
+
+std::string Sweep::assignment(std::size_t key, const std::string& value) const {
+  const SweepKey& one = design().keys[key];
+  const bool quoted = value.size() >= 2 && (value.front() == '"' || value.front() == '\'');
+  if (!quoted || !names_a_file(one.key) || one.place.file.starts_with("--set")) {
+    return one.key + "=" + value;
+  }
+  const fs::path file = fs::path(one.place.file).parent_path() / value.substr(1, value.size() - 2);
+  return one.key + "=" + quoted_text(file.lexically_normal().string());
+}
+
+// The user wrote a list in the scenario, not --set: faults of its values stand there.
+InputError Sweep::at_the_list(const InputError& error,
+                              const std::vector<std::string>& values) const {
+  std::vector<Fault> faults = error.faults();
+  for (Fault& fault : faults) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (fault.place.file != "--set " + assignment(k, values[k])) continue;
+      const SweepKey& key = design().keys[k];
+      if (fault.message.ends_with("is not known")) {
+        fault.message += near_key(base_.resolved, key.key);
+      }
+      fault.place = key.place;
+      fault.message = fmt::format("sweep.\"{}\": {}", key.key, fault.message);
+    }
+  }
+  return InputError(std::move(faults));
+}
+
+Scenario Sweep::at(std::uint64_t point) const {
+  const std::vector<std::string> values = design().point(point);
+  std::vector<std::string> all = changes_;
+  for (std::size_t k = 0; k < values.size(); ++k) all.push_back(assignment(k, values[k]));
+  try {
+    return read_scenario(path_, all);
+  } catch (const InputError& error) {
+    throw at_the_list(error, values);
+  }
+}
+
+std::vector<ComparisonRow> Sweep::quantities() const { return compare(base_.quantities, {}); }
+
+void Sweep::refuse_hopeless() const {
+  const auto probes = spread(design().size(), kProbes);
+  std::vector<Fault> common;  // faults of all probes so far
+  std::optional<InputError> first;
+  for (const std::uint64_t point : probes) {
+    const std::vector<std::string> values = design().point(point);
+    try {
+      const Scenario scenario = at(point);
+      try {
+        check_scenario(scenario);
+      } catch (const InputError& error) {
+        throw at_the_list(error, values);
+      }
+      return;
+    } catch (const InputError& error) {
+      std::vector<Fault> faults = error.faults();
+      for (Fault& fault : faults) {
+        for (const std::string& value : values) fault.message = without(fault.message, value);
+      }
+      if (!first) {
+        first = error;
+        common = faults;
+      }
+      std::erase_if(common, [&](const Fault& one) {
+        return std::none_of(faults.begin(), faults.end(), [&](const Fault& other) {
+          return one.place == other.place && one.message == other.message;
+        });
+      });
+    }
+  }
+  if (!common.empty() || probes.size() == design().size()) throw *first;
+}
+
+void Sweep::check() const {
+  for (const std::uint64_t point : spread(design().size(), kMostChecked)) {
+    const Scenario scenario = at(point);
+    try {
+      check_scenario(scenario);
+    } catch (const InputError& error) {
+      throw at_the_list(error, design().point(point));
+    }
+  }
+}
+
+namespace {
+
+// Hands out batches of neighbours among the points that are to be run.
+class Todo {
+ public:
+  Todo(const Selection& selection, const std::vector<bool>& done)
+      : selection_(selection), done_(done) {}
+
+  std::uint64_t count() const {
+    return selection_.size() -
+           static_cast<std::uint64_t>(std::count(done_.begin(), done_.end(), true));
+  }
+  std::vector<std::uint64_t> next(std::size_t most) {
+    const std::scoped_lock lock(mutex_);
+    std::vector<std::uint64_t> points;
+    for (; place_ < selection_.size() && points.size() < most; ++place_) {
+      if (!done_.empty() && done_[place_]) continue;
+      points.push_back(selection_.point(place_));
+    }
+    return points;
+  }
+
+ private:
+  const Selection& selection_;
+  const std::vector<bool>& done_;
+  std::mutex mutex_;
+  std::uint64_t place_ = 0;
+};
+
+// Batches on their way from the threads that run them to the one that takes the results.
+class Results {
+ public:
+  explicit Results(std::size_t most) : most_(most) {}
+
+  void put(std::vector<SweepPoint> batch) {
+    std::unique_lock lock(mutex_);
+    room_.wait(lock, [&] { return waiting_.size() < most_ || closed_; });
+    waiting_.push_back(std::move(batch));
+    news_.notify_one();
+  }
+  // Nothing, if there was none within some time.
+  std::optional<std::vector<SweepPoint>> take(std::chrono::milliseconds patience) {
+    std::unique_lock lock(mutex_);
+    if (!news_.wait_for(lock, patience, [&] { return !waiting_.empty(); })) return std::nullopt;
+    std::vector<SweepPoint> batch = std::move(waiting_.front());
+    waiting_.pop_front();
+    room_.notify_one();
+    return batch;
+  }
+  // Nobody takes any more: whoever waits for room goes on.
+  void close() {
+    const std::scoped_lock lock(mutex_);
+    closed_ = true;
+    room_.notify_all();
+  }
+
+ private:
+  std::size_t most_;
+  std::mutex mutex_;
+  std::condition_variable room_, news_;
+  std::deque<std::vector<SweepPoint>> waiting_;
+  bool closed_ = false;
+};
+
+bool same_question(const ComparisonRow& a, const ComparisonRow& b) {
+  return a.case_name == b.case_name && a.quantity == b.quantity && a.axis == b.axis &&
+         a.statistic == b.statistic && a.sections == b.sections && a.unit == b.unit;
+}
+
+// Runs the points of one batch: those that can be read together, the others are refused.
+std::vector<SweepPoint> run_points(const Sweep& sweep, const std::vector<std::uint64_t>& points,
+                                   const StopFlag& stop, std::atomic<float>& progress, Keep keep) {
+  std::vector<SweepPoint> out;
+  std::vector<Scenario> scenarios;
+  std::vector<std::size_t> read;  // place of each scenario in the batch
+  for (const std::uint64_t point : points) {
+    out.push_back({point, sweep.design().point(point), {}});
+    BatchResult& result = out.back().result;
+    try {
+      scenarios.push_back(sweep.at(point));
+      read.push_back(out.size() - 1);
+    } catch (const InputError& error) {
+      result = {PointStatus::refused, in_one_line(error), {}};
+    } catch (const std::exception& error) {
+      result = {PointStatus::failed, error.what(), {}};
+    }
+  }
+  std::vector<BatchResult> results = run_batch(scenarios, stop, progress, keep);
+  const std::vector<ComparisonRow> wanted = sweep.quantities();
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    BatchResult& result = out[read[i]].result;
+    result = std::move(results[i]);
+    if (result.rows.empty()) continue;
+    if (std::equal(wanted.begin(), wanted.end(), result.rows.begin(), result.rows.end(),
+                   same_question)) {
+      continue;
+    }
+    result = {PointStatus::refused,
+              "asks for other quantities or cases than the scenario without its sweep",
+              {}};
+  }
+  return out;
+}
+
+}  // namespace
+
+void run_sweep(const Sweep& sweep, const Selection& selection, const std::vector<bool>& done,
+               const SweepControl& control) {
+  static const StopFlag kNever = false;
+  const StopFlag& stop = control.stop != nullptr ? *control.stop : kNever;
+  Todo todo(selection, done);
+  const std::uint64_t count = todo.count();
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  const std::uint64_t threads = std::clamp<std::uint64_t>(
+      control.threads != 0 ? control.threads : cores, 1, std::max<std::uint64_t>(count, 1));
+  const std::size_t batch =
+      std::clamp<std::size_t>(count / (kBatchesPerThread * threads), 1, control.batch);
+
+  Results results(kWaitingPerThread * threads);
+  std::vector<std::atomic<float>> shares(threads);  // of the batches in work
+  std::atomic<std::uint64_t> running = threads;
+  std::atomic<bool> given_up = false;
+  std::vector<std::exception_ptr> failures(threads);
+  const auto work = [&](std::size_t thread) {
+    try {
+      while (!stop && !given_up) {
+        const std::vector<std::uint64_t> points = todo.next(batch);
+        if (points.empty()) break;
+        auto out = run_points(sweep, points, stop, shares[thread], control.keep);
+        shares[thread] = 0.0F;
+        results.put(std::move(out));
+      }
+    } catch (...) {
+      failures[thread] = std::current_exception();
+    }
+    --running;
+  };
+  std::vector<std::jthread> pool;
+  // should the results not be writable, no further batch begins
+  struct NoMore {
+    std::atomic<bool>& given_up;
+    Results& results;
+    ~NoMore() {
+      given_up = true;
+      results.close();
+    }
+  };
+  {
+    const NoMore no_more{given_up, results};
+    for (std::size_t t = 0; t < threads; ++t) pool.emplace_back(work, t);
+    std::uint64_t ended = 0;
+    for (bool last = false; !last;) {
+      last = running == 0;  // what they put before is there by now
+      while (auto points = results.take(last ? std::chrono::milliseconds(0) : kProgressPeriod)) {
+        ended += points->size();
+        std::erase_if(*points, [](const SweepPoint& one) {
+          return one.result.status == PointStatus::not_run;
+        });
+        if (control.batch_done && !points->empty()) control.batch_done(std::move(*points));
+        if (control.progress)
+          control.progress(static_cast<double>(ended) / static_cast<double>(count));
+      }
+      if (!control.progress || count == 0) continue;
+      double in_work = 0.0;
+      for (const auto& share : shares) in_work += static_cast<double>(batch) * share;
+      control.progress(
+          std::min(1.0, (static_cast<double>(ended) + in_work) / static_cast<double>(count)));
+    }
+  }
+  pool.clear();
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,99 @@
+/// The result table of a sweep on disk: one row a point, filled in any order, resumed after a kill.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/hdf5/hdf5_file.h"
+#include "sim/scenario.h"
+#include "sim/sweep/selection.h"
+#include "sim/sweep/sweep.h"
+
+namespace servomill::sim {
+
+/// Version of the layout of sweep files; a file of another one is refused.
+inline constexpr int kSweepSchemaVersion = 2;
+
+/// Number of points of each status.
+using StatusCounts = std::array<std::uint64_t, kPointStatuses>;
+
+/// One column of numbers.
+struct TableColumn {
+  std::string name;  // of the dataset: letters, digits and '_'
+  Meaning meaning;
+  Storage storage = Storage::float64;
+  double fill = 0.0;                                            // where a point was not run
+  std::vector<std::pair<std::string, std::string>> attributes;  // what it is a column of
+  std::vector<std::string> texts;                               // of a column of their places
+};
+
+/// What the table of a scenario's sweep has beside point, status and reason: a column for each key
+/// of the sweep, then one for each line of the comparison.
+std::vector<TableColumn> columns_of(const Scenario& base);
+
+/// The table under construction. Layout of the file: README, section "Sweeps".
+///
+/// The file has its full length from the beginning and nothing in it moves. A row is written before
+/// its status says so, both flushed: whenever the process is killed, rows whose status says so are
+/// whole.
+class SweepTable {
+ public:
+  /// Makes `path`, goes on with what a sweep of the same scenario, version and selection left of
+  /// it, or finds it complete.
+  /// @throws InputError if there are files that are none of that and `force` does not allow to
+  /// replace them
+  SweepTable(const std::string& path, bool force, const Scenario& base, const Selection& selection);
+
+  /// Which points were run, by place in the selection.
+  const std::vector<bool>& done() const { return done_; }
+  const StatusCounts& counts() const { return counts_; }
+  /// The file has its final name and nothing is left to be done.
+  bool is_complete() const { return !file_; }
+
+  /// Adds points. @pre !is_complete()
+  void write(std::span<const SweepPoint> points);
+  /// Copies rows of another table of the same scenario, those with a status. @pre !is_complete()
+  void copy(const InputFile& from);
+  /// Gives the file its final name and writes the CSV file beside it. @pre !is_complete()
+  void commit();
+  std::string partial_path() const { return path_ + ".partial"; }
+
+ private:
+  void make(const Scenario& base);
+  void take_over(const std::string& name, const Scenario& base);
+  void take_statuses(const InputFile& file);
+  void write_runs(std::span<const std::uint64_t> rows, Hdf5Dataset& to,
+                  std::span<const double> values);
+
+  std::string path_;
+  Selection selection_;
+  std::vector<TableColumn> columns_;
+  std::vector<bool> done_;
+  StatusCounts counts_{};
+  std::optional<OutputFile> file_;
+};
+
+/// What the header of a sweep file says.
+struct SweepHeader {
+  Scenario base;  // as stored
+  std::uint64_t points = 0;
+  Selection selection;
+};
+
+/// @throws InputError if the file is no table of a sweep of this version
+SweepHeader read_sweep_header(const InputFile& file);
+
+/// "OUT.csv" for "OUT.h5".
+std::string csv_name(const std::string& path);
+
+/// The table as comma-separated values: the columns of the HDF5 file, texts in place of their
+/// numbers, statuses by name; numbers so that they read again to the same bits.
+/// @throws SystemError
+void write_csv(const std::string& table, const std::string& csv);
+
+}  // namespace servomill::sim

@@ -1,0 +1,35 @@
+#include <fmt/format.h>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/sweep/merge.h"
+#include "tools/servomill/command.h"
+
+namespace servomill::tools {
+
+namespace po = boost::program_options;
+
+int merge_command(const Arguments& arguments) {
+  Options options("merge", "SHARD.h5... -o OUT.h5 [--partial]",
+                  "Joins the tables that the shards of a sweep have written into the one that a "
+                  "single process would have written.",
+                  "SHARD.h5");
+  options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"), "result file");
+  options.add()("partial", "merges what there is, where shards or points are missing");
+  options.add()("force,f", "replaces the result file if it exists");
+  options.add()("quiet,q", "prints nothing but faults");
+  if (!options.parse(arguments)) return kDone;
+  const Place place{"servomill merge"};
+  if (options.words().empty()) throw InputError(place, "needs at least one SHARD.h5; see --help");
+  if (!options.has("output")) throw InputError(place, "needs the name of the result: -o OUT.h5");
+
+  const auto out = options.get<std::string>("output");
+  const sim::Merged merged =
+      sim::merge_sweeps(options.words(), out, options.has("force"), options.has("partial"));
+  for (const std::string& missing : merged.missing) fmt::print(stderr, "{}: {}\n", out, missing);
+  if (!options.has("quiet")) {
+    fmt::print("{} in {}\n", points_by_status(merged.counts), out);
+  }
+  return kDone;
+}
+
+}  // namespace servomill::tools
