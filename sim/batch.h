@@ -46,7 +46,7 @@ enum class Keep : std::uint8_t { comparison, series };
 std::vector<BatchResult> run_batch(std::span<const Scenario> points, const StopFlag& stop,
                                    std::atomic<float>& progress, Keep keep = Keep::comparison);
 
-/// All faults in one line.
+/// All faults in one line; without their places where these are keys of a sweep.
 std::string in_one_line(const InputError& error);
 
 }  // namespace servomill::sim

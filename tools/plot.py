@@ -20,7 +20,6 @@ from figures.results import InputError, NotInFile, open_result
 FORMATS = ("png", "svg", "pdf")
 # no dates: the same results give the same bytes
 METADATA = {"svg": {"Date": None}, "pdf": {"CreationDate": None, "ModDate": None}}
-SERVO = {"bode", "step"}   # kinds of files about one axis
 PALETTE = 64   # colours of a PNG
 
 
@@ -59,8 +58,8 @@ def draw_all(path, named):
         for figure in FIGURES:
             if named and figure.name not in named:
                 continue
-            if not named and figure.kind != result.kind and {figure.kind, result.kind} & SERVO:
-                continue   # nobody expects motion in a frequency response
+            if not named and figure.kind != result.kind:
+                continue   # nobody expects motion in a frequency response, or a sweep in a run
             try:
                 if figure.kind != result.kind:
                     raise NotInFile(f"the file holds a {result.kind}, not a {figure.kind}")

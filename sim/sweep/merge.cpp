@@ -132,7 +132,8 @@ Merged merge_sweeps(const std::vector<std::string>& paths, const std::string& ou
         {out}, fmt::format("{}; --partial merges what there is", fmt::join(merged.missing, "; ")));
   }
 
-  SweepTable table(writable_name(out, force), force, first.header.base, whole);
+  SweepTable table(writable_name(out, force), force, first.header.base, columns_of(first.file),
+                   whole);
   for (const Shard& shard : shards) table.copy(shard.file);
   merged.counts = table.counts();
   table.commit();

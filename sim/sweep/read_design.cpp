@@ -22,7 +22,9 @@ std::string plain_toml(const Value& value) {
   const bool plain = value.written.find_first_of("_xob") == std::string::npos;
   if (value.type == Value::Type::integer && !plain) return fmt::format("{}", value.integer);
   if (value.type == Value::Type::real && !plain) return fmt::format("{}", value.real);
-  return inline_toml(value);
+  const bool lines =
+      value.type == Value::Type::text && value.written.find('\n') != std::string::npos;
+  return lines ? quoted_text(value.text) : inline_toml(value);
 }
 
 ValueTexts texts_of(const Value& list) {

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <map>
+#include <numeric>
 #include <set>
 
 #include "sim/store.h"
@@ -28,6 +28,16 @@ constexpr std::size_t kReasonBytes = 240;
 constexpr std::size_t kBlockRows = 4096;  // read or written at once
 constexpr std::string_view kCsvBegin = "point,status,";
 const std::string kGroup = "/sweep";
+
+std::vector<std::string> split_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
+}
 
 // Letters, digits and single '_': a name that Octave, netCDF and pandas take.
 std::string plain_name(std::string_view text) {
@@ -57,6 +67,13 @@ class Names {
   std::set<std::string> taken_ = {"point", "status", "reason"};
 };
 
+// What a TOML text says, if it says it without escapes; other values as they are.
+std::string unquoted(const std::string& toml) {
+  const bool is_text = toml.size() >= 2 && (toml.front() == '"' || toml.front() == '\'') &&
+                       toml.back() == toml.front() && toml.find('\\') == std::string::npos;
+  return is_text ? toml.substr(1, toml.size() - 2) : toml;
+}
+
 TableColumn key_column(const SweepDesign& design, std::size_t key, Names& names) {
   const SweepColumn column = design.column(key);
   const std::string& full = design.keys[key].key;
@@ -66,10 +83,12 @@ TableColumn key_column(const SweepDesign& design, std::size_t key, Names& names)
   out.attributes = {{"role", "parameter"}, {"key", full}};
   if (!column.numeric) {
     out.storage = Storage::int32;
-    out.attributes.emplace_back("values", fmt::format("{}", fmt::join(column.texts, "\n")));
+    out.texts = column.texts;
+    std::vector<std::string> shown;
+    for (const std::string& text : column.texts) shown.push_back(unquoted(text));
+    out.attributes.emplace_back("values", fmt::format("{}", fmt::join(shown, "\n")));
   }
   out.fill = column.numeric ? kNone : kNoText;
-  out.texts = column.texts;
   return out;
 }
 
@@ -151,11 +170,35 @@ std::vector<TableColumn> columns_of(const Scenario& base) {
   return columns;
 }
 
+std::vector<TableColumn> columns_of(const InputFile& file) {
+  std::vector<TableColumn> columns;
+  for (const std::string& name : file.datasets(kGroup)) {
+    const std::string path = kGroup + "/" + name;
+    if (!file.has_attribute(path, "role")) continue;  // point, status, reason
+    TableColumn column;
+    column.name = name;
+    column.meaning = {file.text(path, "units"), file.text(path, "long_name")};
+    column.fill = kNone;
+    for (const std::string_view about : {"role", "key", "values", "case", "quantity", "axis",
+                                         "statistic", "sections", "reference", "kind"}) {
+      const std::string attribute(about);
+      if (!file.has_attribute(path, attribute)) continue;
+      column.attributes.emplace_back(attribute, file.text(path, attribute));
+      if (attribute != "values") continue;
+      column.storage = Storage::int32;
+      column.fill = kNoText;
+      column.texts = split_lines(column.attributes.back().second);
+    }
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
 SweepTable::SweepTable(const std::string& path, bool force, const Scenario& base,
-                       const Selection& selection)
+                       std::vector<TableColumn> columns, const Selection& selection)
     : path_(path),
       selection_(selection),
-      columns_(columns_of(base)),
+      columns_(std::move(columns)),
       done_(selection.size(), false) {
   std::error_code ignored;
   if (fs::is_directory(path_, ignored)) writable_name(path_, force);
@@ -215,6 +258,13 @@ void SweepTable::make(const Scenario& base) {
 
   Hdf5Dataset reason = group.fixed_texts("reason", rows, kReasonBytes, "why it is not done");
   reason.attach_scale(point, 0);
+  Hdf5Dataset character = group.fixed("character", kReasonBytes, Storage::int32, 0.0,
+                                      {"1", "place of a character in a text, counted from 1"});
+  character.make_scale("character");
+  numbers.resize(kReasonBytes);
+  std::iota(numbers.begin(), numbers.end(), 1.0);
+  character.write(0, numbers);
+  reason.attach_scale(character, 1);
 
   for (const TableColumn& column : columns_) {
     Hdf5Dataset dataset =
@@ -454,7 +504,7 @@ class CsvFile {
 
 void write_csv(const std::string& table, const std::string& csv) {
   const InputFile file(table);
-  const std::vector<TableColumn> columns = columns_of(read_sweep_header(file).base);
+  const std::vector<TableColumn> columns = columns_of(file);
   CsvFile out(csv);
   out.write(csv_header(columns));
   const std::size_t length = file.shape(kGroup + "/point").at(0);

@@ -36,6 +36,9 @@ struct TableColumn {
 /// of the sweep, then one for each line of the comparison.
 std::vector<TableColumn> columns_of(const Scenario& base);
 
+/// The same of a file that is there. @throws InputError
+std::vector<TableColumn> columns_of(const InputFile& file);
+
 /// The table under construction. Layout of the file: README, section "Sweeps".
 ///
 /// The file has its full length from the beginning and nothing in it moves. A row is written before
@@ -47,7 +50,8 @@ class SweepTable {
   /// it, or finds it complete.
   /// @throws InputError if there are files that are none of that and `force` does not allow to
   /// replace them
-  SweepTable(const std::string& path, bool force, const Scenario& base, const Selection& selection);
+  SweepTable(const std::string& path, bool force, const Scenario& base,
+             std::vector<TableColumn> columns, const Selection& selection);
 
   /// Which points were run, by place in the selection.
   const std::vector<bool>& done() const { return done_; }
@@ -80,7 +84,7 @@ class SweepTable {
 
 /// What the header of a sweep file says.
 struct SweepHeader {
-  Scenario base;  // as stored
+  Scenario base;  // as stored; the keys of its sweep may stand in another order
   std::uint64_t points = 0;
   Selection selection;
 };

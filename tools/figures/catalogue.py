@@ -3,7 +3,7 @@ import dataclasses
 from typing import Callable
 
 from figures import (bode, circular, deviations, error_functions, lag, notches, step, straightness,
-                     volumetric)
+                     sweeps, volumetric)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -30,6 +30,9 @@ FIGURES = (
     Figure("figure15", "run", "top plane of nominal, generated, compensated; differences",
            volumetric.draw_plane),
     Figure("lag", "sweep", "residual and response time against feed", lag.draw),
+    Figure("curves", "sweep", "quantities over one parameter, a line for each case", sweeps.draw_curves),
+    Figure("maps", "sweep", "quantities over two parameters, in colours", sweeps.draw_maps),
+    Figure("samples", "sweep", "quantities over sampled parameters and how they are distributed", sweeps.draw_samples),
     Figure("circular", "run", "circular test: radial deviation as a ball bar shows it", circular.draw),
     Figure("reversals", "run", "circular test: where the axes reverse", circular.draw_reversals),
     Figure("deviations", "run", "following error, tool deviation and contour error over time",

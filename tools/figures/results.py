@@ -3,6 +3,7 @@
 Positions are in mm, differences in um, angles in deg, time in s, as the file's `units` say. The
 definitions are those of `servomill compare` (sim/comparison.h); a test holds the two together.
 """
+import dataclasses
 import pathlib
 import tomllib
 
@@ -10,6 +11,8 @@ import h5py
 import numpy as np
 
 SCHEMA_VERSION = 1
+SWEEP_SCHEMA_VERSION = 2
+DONE = 1   # of the column `status` of a sweep
 UM_PER_MM = 1000.0
 
 
@@ -40,10 +43,11 @@ class ResultFile:
         root = self.h5.attrs
         if "schema_version" not in root or "kind" not in root:
             raise InputError(f"{path}: error: is not a result file of servomill")
-        if int(root["schema_version"]) != SCHEMA_VERSION:
-            raise InputError(f"{path}: error: has schema version {int(root['schema_version'])}; "
-                             f"this program reads version {SCHEMA_VERSION}")
         self.kind = str(root["kind"])          # of KINDS
+        wanted = SWEEP_SCHEMA_VERSION if self.kind == "sweep" else SCHEMA_VERSION
+        if int(root["schema_version"]) != wanted:
+            raise InputError(f"{path}: error: has schema version {int(root['schema_version'])}; "
+                             f"this program reads version {wanted}")
         self.title = str(root.get("title", ""))
         try:
             self.scenario = tomllib.loads(str(self.h5["inputs"].attrs["resolved"]))
@@ -164,19 +168,69 @@ class Run(ResultFile):
                 for name, data in group.items() if name != "position"}
 
 
+@dataclasses.dataclass(frozen=True)
+class Parameter:
+    """One key of a sweep: a number a point, or one of some texts."""
+    key: str
+    unit: str
+    values: np.ndarray        # numbers; of texts their places; NaN where a point was not run
+    texts: tuple = ()
+    sampled: bool = False     # from a distribution, else on the grid
+
+    def label(self):
+        return self.key if self.unit == "1" else f"{self.key}, {self.unit}"
+
+    def distinct(self):
+        """The values that there are, sorted."""
+        return np.unique(self.values[np.isfinite(self.values)])
+
+
 class Sweep(ResultFile):
-    """A file that `servomill sweep` wrote: `keys` {key: values}, `quantities` a list of dicts."""
+    """A file that `servomill sweep` wrote: `parameters`, and `quantities`, a list of dicts. Points
+    that were not run have no row here."""
 
     def __init__(self, path):
         super().__init__(path)
         if self.kind != "sweep":
             raise InputError(f"{path}: error: holds a {self.kind}, not a sweep")
+        if "sweep/status" not in self.h5:
+            raise InputError(f"{path}: error: was left before its table was complete")
         table = self.h5["sweep"]
-        self.keys = {str(g.attrs["key"]): g["value"][:] for g in table.get("keys", {}).values()}
+        self.run = table["status"][:] != 0
+        self.done = table["status"][:][self.run] == DONE
+        columns = [data for data in table.values() if "role" in data.attrs]
+        self.parameters = [self._parameter(data) for data in columns if data.attrs["role"] == "parameter"]
+        self.keys = {one.key: one.values for one in self.parameters}
         self.quantities = [
-            {**{name: str(text) for name, text in g.attrs.items()},
-             "value": g["value"][:], "unit": str(g["value"].attrs["units"])}
-            for g in table.get("quantities", {}).values()]
+            {**{name: str(data.attrs[name]) for name in ("case", "quantity", "axis", "statistic", "sections",
+                                                         "reference", "kind")},
+             "value": data[:][self.run], "unit": str(data.attrs["units"])}
+            for data in columns if data.attrs["role"] == "quantity"]
+
+    def _parameter(self, data):
+        key = str(data.attrs["key"])
+        texts = tuple(str(data.attrs["values"]).split("\n")) if "values" in data.attrs else ()
+        return Parameter(key, str(data.attrs["units"]), data[:][self.run].astype(float), texts,
+                         _is_sampled(self.scenario.get("sweep", {}), key))
+
+    def varied(self, sampled):
+        """Parameters with more than one value: the sampled ones, or those of the grid."""
+        return [one for one in self.parameters if one.sampled == sampled and len(one.distinct()) > 1]
+
+
+DISTRIBUTIONS = {"uniform", "log_uniform", "normal", "one_of"}
+
+
+def _is_sampled(table, key):
+    """Whether the table [sweep] gives this key a distribution, nested or quoted as it may be."""
+    if not isinstance(table, dict):
+        return False
+    for name, value in table.items():
+        if name == key and isinstance(value, dict) and DISTRIBUTIONS & value.keys():
+            return True
+        if key.startswith(name + ".") and _is_sampled(value, key[len(name) + 1:]):
+            return True
+    return False
 
 
 class Responses(ResultFile):

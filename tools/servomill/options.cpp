@@ -17,6 +17,15 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+constexpr double kTellFrom = 0.005;  // share done from which on the rest can be told
+
+std::string time_left(double seconds) {
+  constexpr double kMinute = 60.0, kHour = 3600.0;
+  if (seconds < 2.0 * kMinute) return fmt::format("{:.0f} s left", seconds);
+  if (seconds < 2.0 * kHour) return fmt::format("{:.0f} min left", seconds / kMinute);
+  return fmt::format("{:.1f} h left", seconds / kHour);
+}
+
 // What boost says, and the nearest option of ours.
 std::string unknown_option(const po::unknown_option& error, const po::options_description& known) {
   const std::string given = error.get_option_name();
@@ -84,7 +93,7 @@ void ProgressBar::show(double share) {
   const int full = static_cast<int>(share * kWidth);
   const double gone = now() - begin_;
   const std::string rest =
-      share > 0.02 ? fmt::format("{:.0f} s left", gone * (1.0 - share) / share) : std::string();
+      share > kTellFrom ? time_left(gone * (1.0 - share) / share) : std::string();
   const std::string line = fmt::format("[{}{}] {:3.0f} % {}", std::string(full, '='),
                                        std::string(kWidth - full, ' '), 100.0 * share, rest);
   fmt::print(stderr, "\r{:<{}}", line, shown_);

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
+#include <iostream>
 #include <numeric>
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/hdf5/system_error.h"
+#include "sim/sweep/point_series.h"
 #include "sim/sweep/sweep.h"
 #include "sim/sweep/table.h"
 #include "tools/servomill/command.h"
@@ -78,6 +81,11 @@ class Teller {
   const sim::SweepDesign& design_;
 };
 
+void print_file(const std::string& path) {
+  std::ifstream file(path);
+  std::cout << file.rdbuf() << std::flush;
+}
+
 int status_of(const sim::StatusCounts& counts) {
   const auto count = [&](sim::PointStatus status) {
     return counts[static_cast<std::size_t>(status)];
@@ -116,11 +124,13 @@ int sweep_command(const Arguments& arguments) {
   const sim::Sweep sweep(options.word(), options.list("set"));
   const sim::Selection selection = selection_of(options, sweep);
   std::string out = output_name(options, sweep.base().name, "_sweep");
+  const std::string signals = sim::series_folder(out);
   if (options.has("shard")) out = sim::shard_name(out, selection);
   const unsigned threads = thread_count(options);
   sweep.refuse_hopeless();
 
-  sim::SweepTable table(out, options.has("force"), sweep.base(), selection);
+  sim::SweepTable table(out, options.has("force"), sweep.base(), sim::columns_of(sweep.base()),
+                        selection);
   const bool quiet = options.has("quiet") || options.has("json") || options.has("csv");
   if (table.is_complete()) {
     if (!quiet) fmt::print("{} holds all {} points already\n", out, selection.size());
@@ -138,8 +148,10 @@ int sweep_command(const Arguments& arguments) {
   sim::SweepControl control;
   control.threads = threads;
   control.stop = &stop;
+  control.keep = options.has("series") ? sim::Keep::series : sim::Keep::comparison;
   control.progress = [&](double share) { bar.show(share); };
   control.batch_done = [&](std::vector<sim::SweepPoint>&& points) {
+    for (const sim::SweepPoint& point : points) sim::write_point_series(signals, sweep, point);
     table.write(points);
     bar.clear();
     for (const sim::SweepPoint& point : points) teller.tell(point);
@@ -152,6 +164,7 @@ int sweep_command(const Arguments& arguments) {
     return kInterrupted;
   }
   table.commit();
+  if (options.has("csv")) print_file(sim::csv_name(out));
   if (!quiet) fmt::print("{}; written to {}\n", points_by_status(table.counts()), out);
   return status_of(table.counts());
 }

@@ -1,0 +1,18 @@
+/// The signals of single points of a sweep.
+#pragma once
+
+#include <string>
+
+#include "sim/sweep/sweep.h"
+
+namespace servomill::sim {
+
+/// "OUT.series" for "OUT.h5": where the points' files lie.
+std::string series_folder(const std::string& path);
+
+/// Writes the signals of a point as `servomill run` would with its values: FOLDER/NUMBER.h5,
+/// counted from 1. Replaces what an earlier try left there. Nothing, where the point has none.
+/// @throws SystemError
+void write_point_series(const std::string& folder, const Sweep& sweep, const SweepPoint& point);
+
+}  // namespace servomill::sim

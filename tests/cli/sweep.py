@@ -1,0 +1,260 @@
+#!/usr/bin/python3
+"""Sweeps as their users meet them: the table, a kill and what comes after, shards and their merge.
+sweep.py SERVOMILL"""
+import csv
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SERVOMILL = os.path.abspath(sys.argv.pop(1))
+SCENARIO = os.path.join(HERE, "gallery", "scenario.toml")
+PATIENCE = 60  # s, far more than anything here takes
+# 40 points: feed x response time, the third response time is refused
+POINTS = ('sweep={program.feed_override=[1.0,2.0,3.0,4.0,5.0],case.table.strategy.entry=["position_command",'
+          '"feed_forward"],case.table.strategy.response_time_ms=[0.0,10.0,-1.0,20.0]}')
+SLOW = 'program.parameters."#101"=300.0'  # mm/min: some hundredths of a second a point
+
+
+def servomill(*arguments, status=0):
+    done = subprocess.run([SERVOMILL, *arguments], capture_output=True, text=True, timeout=PATIENCE, check=False)
+    assert status in (None, done.returncode), f"{arguments}: {done.returncode}\n{done.stderr}"
+    return done
+
+
+def columns(path):
+    """All columns of a table: {name: bytes}."""
+    with h5py.File(path) as file:
+        return {name: data[:].tobytes() for name, data in file["sweep"].items()}
+
+
+class Sweeps(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def read(self, name):
+        with open(self.path(name), encoding="utf-8") as file:
+            return file.read()
+
+    def sweep(self, name, *more, status=1, points=POINTS):
+        return servomill("sweep", SCENARIO, "-q", "-o", self.path(name), "--set", points, *more, status=status)
+
+    def refused(self, message, *arguments):
+        done = servomill(*arguments, status=2)
+        self.assertEqual(done.stderr.replace(self.folder + "/", ""), message + "\n")
+
+    def expect_same_table(self, one, other):
+        self.assertEqual(columns(self.path(one)), columns(self.path(other)))
+        csv_of = [self.read(name.replace(".h5", ".csv")) for name in (one, other)]
+        self.assertEqual(*csv_of)
+
+
+class Table(Sweeps):
+    def test_has_a_row_a_point(self):
+        done = self.sweep("out.h5")
+        self.assertEqual(len(done.stderr.splitlines()), 10)
+        with h5py.File(self.path("out.h5")) as file:
+            table = file["sweep"]
+            self.assertEqual(table["point"][:].tolist(), list(range(1, 41)))
+            self.assertEqual(table["status"][:].tolist(), [1, 1, 3, 1] * 10)
+            self.assertEqual(table["status"].attrs["flag_meanings"], "not_run done stopped refused failed")
+            feed = table["program_feed_override"]
+            self.assertEqual(feed.attrs["key"], "program.feed_override")
+            self.assertEqual(sorted(set(feed[:])), [1.0, 2.0, 3.0, 4.0, 5.0])
+            entry = table["case_table_strategy_entry"]
+            self.assertEqual(entry.attrs["values"], "position_command\nfeed_forward")
+            self.assertEqual(sorted(set(entry[:])), [0, 1])
+            residual = table["table_imposed_curve_residual_Y_max_flank"]
+            self.assertEqual(residual.attrs["units"], "um")
+            self.assertEqual(residual.attrs["case"], "table")
+            np.testing.assert_array_equal(np.isnan(residual[:]), table["status"][:] == 3)
+            reason = b"".join(table["reason"][2]).decode()
+            self.assertIn("response_time_ms = -1.0; must be >= 0", reason)
+            for name, data in table.items():
+                self.assertIn("units", data.attrs)
+                self.assertIn("long_name", data.attrs)
+                if name not in ("point", "character"):
+                    self.assertEqual(data.dims[0][0].name, "/sweep/point")
+
+    def test_says_in_csv_what_it_says_in_hdf5(self):
+        self.sweep("out.h5")
+        with open(self.path("out.csv"), encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        with h5py.File(self.path("out.h5")) as file:
+            table = file["sweep"]
+            residual = [float(row["table_imposed_curve_residual_Y_max_flank [um]"] or "nan") for row in rows]
+            np.testing.assert_array_equal(residual, table["table_imposed_curve_residual_Y_max_flank"][:])
+            self.assertEqual([row["status"] for row in rows[:4]], ["done", "done", "refused", "done"])
+            self.assertEqual({row["case_table_strategy_entry"] for row in rows}, {"position_command", "feed_forward"})
+
+    def test_is_the_same_for_any_number_of_threads(self):
+        self.sweep("one.h5", "-j1")
+        self.sweep("two.h5", "-j2")
+        self.expect_same_table("one.h5", "two.h5")
+
+    def test_opens_with_xarray(self):
+        try:
+            import xarray
+        except ImportError:
+            self.skipTest("no xarray")
+        self.sweep("out.h5")
+        with xarray.open_dataset(self.path("out.h5"), group="sweep", engine="h5netcdf") as table:
+            self.assertEqual(table.sizes["point"], 40)
+            self.assertEqual(table["table_imposed_curve_residual_Y_max_flank"].dims, ("point",))
+
+    def test_keeps_the_points_that_are_asked_for(self):
+        self.sweep("all.h5")
+        self.sweep("some.h5", "--points", "5-9")
+        with h5py.File(self.path("all.h5")) as everything, h5py.File(self.path("some.h5")) as some:
+            self.assertEqual(some["sweep/point"][:].tolist(), [5, 6, 7, 8, 9])
+            for name, data in some["sweep"].items():
+                if name == "character":
+                    continue
+                self.assertEqual(data[:].tobytes(), everything["sweep"][name][4:9].tobytes(), name)
+
+
+class Resume(Sweeps):
+    def start(self, name, *more):
+        return subprocess.Popen([SERVOMILL, "sweep", SCENARIO, "-j1", "-o", self.path(name), "--set", POINTS, "--set", SLOW,
+                                 *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def finished(self, name):
+        with h5py.File(self.path(name)) as file:
+            return np.count_nonzero(file["sweep/status"][:])
+
+    def end_after(self, what, name):
+        """Sends a signal when the first points are told of."""
+        process = self.start(name)
+        process.stdout.readline()
+        process.send_signal(what)
+        _, stderr = process.communicate(timeout=PATIENCE)
+        return process.returncode, stderr
+
+    def test_goes_on_behind_a_kill(self):
+        self.sweep("whole.h5", "--set", SLOW)
+        done = []
+        while True:
+            status, _ = self.end_after(signal.SIGKILL, "out.h5")
+            if status != -signal.SIGKILL or len(done) == 3:
+                break
+            done.append(self.finished("out.h5.partial"))
+        self.assertGreaterEqual(len(done), 2, "it was too quick to be killed")
+        self.assertEqual(done, sorted(done))
+        self.assertGreater(done[0], 0)
+        if os.path.exists(self.path("out.h5.partial")):
+            again = servomill("sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, "--set", SLOW, status=1)
+            self.assertRegex(again.stdout, r"out\.h5\.partial: \d+ of 40 points are there already")
+        self.expect_same_table("out.h5", "whole.h5")
+        self.assertFalse(os.path.exists(self.path("out.h5.partial")))
+
+    def test_goes_on_behind_an_interrupt(self):
+        status, stderr = self.end_after(signal.SIGTERM, "out.h5")
+        self.assertEqual(status, 130)
+        kept = self.finished("out.h5.partial")
+        self.assertIn(f"interrupted; kept in {self.path('out.h5.partial')}: {kept} complete points of 40\n", stderr)
+        self.sweep("out.h5", "--set", SLOW)
+        self.sweep("whole.h5", "--set", SLOW)
+        self.expect_same_table("out.h5", "whole.h5")
+
+    def test_does_nothing_when_all_is_done(self):
+        self.sweep("out.h5")
+        before = os.stat(self.path("out.h5"))
+        again = servomill("sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, status=1)
+        self.assertEqual(again.stdout.replace(self.folder + "/", ""), "out.h5 holds all 40 points already\n")
+        self.assertEqual(os.stat(self.path("out.h5")).st_mtime_ns, before.st_mtime_ns)
+
+    def test_refuses_another_sweep(self):
+        self.sweep("out.h5")
+        again = ["sweep", SCENARIO, "-o", self.path("out.h5")]
+        self.refused("out.h5: error: holds a sweep of this scenario as it was before it changed; use --force to overwrite",
+                     *again, "--set", POINTS, "--set", SLOW)
+        self.refused("out.h5: error: holds points 1 to 40, shard 1 of 1 of the sweep; asked for are points 1 to 3, shard 1 "
+                     "of 1; use --force to overwrite", *again, "--set", POINTS, "--points", "1-3")
+        servomill(*again, "-q", "--force", "--set", POINTS, "--points", "1-2")
+
+    def test_refuses_what_another_version_wrote(self):
+        self.sweep("out.h5")
+        for name, value, message in (
+                ("servomill_version", "0.0.1", "was written by servomill 0.0.1, this is "),
+                ("schema_version", 1, "exists; use --force to overwrite")):
+            with h5py.File(self.path("out.h5"), "r+") as file:
+                file.attrs[name] = value
+            done = servomill("sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, status=2)
+            self.assertIn(f"out.h5: error: {message}", done.stderr)
+
+    def test_two_processes_do_not_share_a_file(self):
+        process = self.start("out.h5")
+        process.stdout.readline()
+        done = servomill("sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, "--set", SLOW, status=2)
+        process.kill()
+        process.communicate()
+        self.assertIn("out.h5.partial: error: cannot be", done.stderr)
+
+
+class Merge(Sweeps):
+    def shards(self, count, *more):
+        for shard in range(1, count + 1):
+            self.sweep("out.h5", "--shard", f"{shard}/{count}", *more, status=None)
+        return [self.path(f"out.{shard}-of-{count}.h5") for shard in range(1, count + 1)]
+
+    def test_gives_the_table_of_one_process(self):
+        self.sweep("single.h5")
+        for count in (1, 3, 8):
+            shards = self.shards(count)
+            done = servomill("merge", *reversed(shards), "-o", self.path("merged.h5"), "--force")
+            self.assertEqual(done.stdout.replace(self.folder + "/", ""), "30 points done, 10 points refused in merged.h5\n")
+            self.expect_same_table("merged.h5", "single.h5")
+
+    def test_names_what_is_missing(self):
+        shards = self.shards(4)
+        out = ["-o", self.path("merged.h5")]
+        self.refused("merged.h5: error: shards 2, 4 of 4 are missing; --partial merges what there is",
+                     "merge", shards[0], shards[2], *out)
+        done = servomill("merge", shards[0], shards[2], *out, "--partial")
+        self.assertEqual(done.stderr.replace(self.folder + "/", ""), "merged.h5: shards 2, 4 of 4 are missing\n")
+        with h5py.File(self.path("merged.h5")) as file:
+            self.assertEqual(np.count_nonzero(file["sweep/status"][:]), 20)
+        self.refused("merged.h5: error: lacks 20 of its points; use --force to overwrite",
+                     "sweep", SCENARIO, *out, "--set", POINTS)
+
+    def test_refuses_what_overlaps_or_is_of_another_sweep(self):
+        three, two = self.shards(3), self.shards(2)
+        out = ["-o", self.path("merged.h5")]
+        self.refused("out.1-of-3.h5: error: overlaps out.1-of-3.h5: both hold point 1", "merge", three[0], three[0], *out)
+        self.refused("out.1-of-2.h5: error: overlaps out.1-of-3.h5: both hold point 1", "merge", three[0], two[0], *out)
+        self.sweep("other.h5", "--shard", "2/3", status=None, points=POINTS.replace("10.0", "11.0"))
+        self.refused("other.2-of-3.h5: error: holds a sweep of another scenario than out.1-of-3.h5",
+                     "merge", three[0], self.path("other.2-of-3.h5"), *out)
+        self.sweep("part.h5", "--shard", "2/3", "--points", "1-20", status=None)
+        self.refused("part.2-of-3.h5: error: is of points 1 to 20, others than those of out.1-of-3.h5",
+                     "merge", three[0], self.path("part.2-of-3.h5"), *out)
+        with h5py.File(three[1], "r+") as file:
+            file.attrs["schema_version"] = 1
+        self.refused("out.2-of-3.h5: error: holds a sweep of schema version 1; this program reads version 2",
+                     "merge", *three, *out)
+        with h5py.File(three[1], "r+") as file:
+            file.attrs["schema_version"] = 2
+            file.attrs["servomill_version"] = "0.0.1"
+        self.assertRegex(servomill("merge", *three, *out, status=2).stderr,
+                         r"out.2-of-3.h5: error: was written by servomill 0.0.1, not \S+ as \S+out.1-of-3.h5\n")
+
+    def test_needs_files_and_a_name(self):
+        self.refused("servomill merge: error: needs at least one SHARD.h5; see --help", "merge")
+        self.refused("servomill merge: error: needs the name of the result: -o OUT.h5", "merge", "a.h5")
+        self.refused("nothing.h5: error: cannot be read: No such file or directory", "merge", self.path("nothing.h5"), "-o", "x")
+
+
+if __name__ == "__main__":
+    unittest.main()
