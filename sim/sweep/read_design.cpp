@@ -245,7 +245,10 @@ class DesignReader {
     double points = design_.sampled_dimensions > 0 ? static_cast<double>(design_.samples.count) : 1;
     for (const std::uint64_t length : design_.grid) points *= static_cast<double>(length);
     if (points <= static_cast<double>(kMostPoints)) return;
-    table.fault(fmt::format("has {:.0f} points; must be <= {}", points, kMostPoints));
+    constexpr double kCountable = 1e15;
+    table.fault(points < kCountable
+                    ? fmt::format("has {:.0f} points; must be <= {}", points, kMostPoints)
+                    : fmt::format("has {:.3g} points; must be <= {}", points, kMostPoints));
   }
 
   SweepDesign design_;

@@ -1,9 +1,7 @@
 #include "sim/sweep/sampling.h"
 
-#include <array>
+#include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/seed_seq.hpp>
 #include <boost/random/sobol.hpp>
 #include <cassert>
 #include <cmath>
@@ -12,20 +10,29 @@
 namespace servomill::sim {
 namespace {
 
-using Engine = boost::random::mt19937_64;
+// Mixes all bits of a word with all others (the finaliser of SplitMix64).
+std::uint64_t mixed(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
 
 // What a stream of random numbers is for: streams of different use are never the same.
-enum class Use : std::uint32_t { sample, jitter, permutation, shift };
+enum class Use : std::uint8_t { sample = 1, jitter, permutation, shift };
 
-// The stream of one use, one key (a sample or a dimension) and one seed.
-Engine stream(std::uint64_t seed, Use use, std::uint64_t key) {
-  const auto low = [](std::uint64_t x) { return static_cast<std::uint32_t>(x); };
-  const auto high = [](std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32); };
-  const std::array<std::uint32_t, 5> words = {low(seed), high(seed),
-                                              static_cast<std::uint32_t>(use), low(key), high(key)};
-  boost::random::seed_seq sequence(words.begin(), words.end());
-  return Engine(sequence);
-}
+// SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014), of one
+// seed, one use and one key (a sample or a dimension). The engines of Boost take as long to be
+// seeded as for hundreds of numbers, and here a point takes a few.
+class Stream {
+ public:
+  Stream(std::uint64_t seed, Use use, std::uint64_t key)
+      : state_(mixed(mixed(mixed(seed + kStep) + static_cast<std::uint64_t>(use) * kStep) + key)) {}
+  std::uint64_t operator()() { return mixed(state_ += kStep); }
+
+ private:
+  static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15ULL;
+  std::uint64_t state_;
+};
 
 // The middle of one of 2^53 cells of (0, 1).
 double unit_number(std::uint64_t bits) {
@@ -35,7 +42,7 @@ double unit_number(std::uint64_t bits) {
 
 std::vector<double> random_sample(std::uint64_t seed, Use use, std::uint64_t index,
                                   std::size_t dimensions) {
-  Engine engine = stream(seed, use, index);
+  Stream engine(seed, use, index);
   std::vector<double> sample(dimensions);
   for (double& x : sample) x = unit_number(engine());
   return sample;
@@ -46,7 +53,7 @@ std::vector<double> latin_hypercube_sample(const SampleSettings& settings, std::
   std::vector<double> sample = random_sample(settings.seed, Use::jitter, index, dimensions);
   const auto count = static_cast<double>(settings.count);
   for (std::size_t d = 0; d < dimensions; ++d) {
-    const std::uint64_t key = stream(settings.seed, Use::permutation, d)();
+    const std::uint64_t key = Stream(settings.seed, Use::permutation, d)();
     const auto interval = static_cast<double>(permuted(index, settings.count, key));
     // the rounding of the sum must not leave the interval
     sample[d] =
@@ -62,17 +69,10 @@ std::vector<double> sobol_sample(std::uint64_t seed, std::uint64_t index, std::s
     sequence.seed(index - 1);
     sequence.generate(bits.begin(), bits.end());
   }
-  Engine shift = stream(seed, Use::shift, 0);
+  Stream shift(seed, Use::shift, 0);
   std::vector<double> sample(dimensions);
   for (std::size_t d = 0; d < dimensions; ++d) sample[d] = unit_number(bits[d] ^ shift());
   return sample;
-}
-
-// Mixes all bits of a word with all others (the finaliser of SplitMix64).
-std::uint64_t mixed(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
 }
 
 }  // namespace

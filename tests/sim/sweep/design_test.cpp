@@ -183,7 +183,7 @@ const std::string kForm =
 TEST(ReadSweep, RefusesWhatIsNoDesign) {
   EXPECT_EQ(refusal("a = []\n"), "s.toml:2:5: error: sweep.a = []" + kForm);
   EXPECT_EQ(refusal("a = 1\n"), "s.toml:2:5: error: sweep.a = 1" + kForm);
-  EXPECT_EQ(refusal("a = {}\n"), "s.toml:2:5: error: sweep.a = {}" + kForm);
+  EXPECT_EQ(refusal("a = {}\n"), "s.toml:2:5: error: sweep.a = {...}" + kForm);
   EXPECT_EQ(refusal("a = [1]\n[[sweep.together]]\na = [2]\n"),
             "s.toml:4:5: error: sweep.together[0].a = [2]; is varied twice");
   EXPECT_EQ(
@@ -247,7 +247,7 @@ TEST(ReadSweep, RefusesSamplesWithoutDistributionAndTheOtherWayRound) {
       "s.toml:1:1: error: sweep: samples is missing: keys with a distribution need one such as "
       "samples = { design = \"latin_hypercube\", count = 100 }");
   EXPECT_EQ(refusal("samples = { design = \"sobol\", count = 3 }\na = [1]\n"),
-            "s.toml:2:11: error: sweep.samples = {design = \"sobol\", count = 3}; has nothing to "
+            "s.toml:2:11: error: sweep.samples = {...}; has nothing to "
             "sample: no key has a distribution");
   EXPECT_EQ(refusal("samples = { design = \"sobl\", count = 0 }\na = { normal = [1.0, 0.1] }\n"),
             "s.toml:2:22: error: sweep.samples.design = \"sobl\"; must be one of random, "
@@ -261,7 +261,7 @@ TEST(ReadSweep, RefusesMoreThanTenMillionPoints) {
             "s.toml:1:1: error: sweep: has 10000001 points; must be <= 10000000");
   EXPECT_EQ(refusal("a = { linear = [0, 1], count = 9_000_000_000_000_000 }\n"
                     "b = { linear = [0, 1], count = 9_000_000_000_000_000 }\n"),
-            "s.toml:1:1: error: sweep: has 81000000000000000000000000000000 points; must be <= "
+            "s.toml:1:1: error: sweep: has 8.1e+31 points; must be <= "
             "10000000");
 }
 
