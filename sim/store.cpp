@@ -165,13 +165,13 @@ void check_schema(const InputFile& file, const std::string& path, const std::str
   if (!file.has_attribute("/", "schema_version")) {
     throw InputError({path}, "is not a result file of servomill");
   }
+  if (file.has_attribute("/", "kind") && file.text("/", "kind") != kind) {
+    throw InputError({path}, fmt::format("holds a {}, not a {}", file.text("/", "kind"), kind));
+  }
   const auto version = static_cast<int>(file.number("/", "schema_version"));
   if (version != kSchemaVersion) {
     throw InputError({path}, fmt::format("has schema version {}; this program reads version {}",
                                          version, kSchemaVersion));
-  }
-  if (file.text("/", "kind") != kind) {
-    throw InputError({path}, fmt::format("holds a {}, not a {}", file.text("/", "kind"), kind));
   }
 }
 
