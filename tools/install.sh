@@ -7,6 +7,9 @@ BUILD_PACKAGES=(g++ cmake ninja-build libeigen3-dev libfmt-dev libhdf5-dev libde
 FIGURE_PACKAGES=(python3 python3-numpy python3-h5py python3-matplotlib python3-pil python3-xarray
   python3-h5netcdf)
 TEST_PACKAGES=(git libgtest-dev libbenchmark-dev clang-format clang-tidy hdf5-tools)
+# One-machine Slurm (tools/slurm/local_cluster) and GNU parallel; only the tests with label cluster need them.
+CLUSTER_PACKAGES=(slurmctld slurmd slurm-client munge)
+PARALLEL_PACKAGES=(parallel)
 
 say() { printf '\n== %s\n' "$*"; }
 
