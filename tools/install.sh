@@ -7,21 +7,42 @@ BUILD_PACKAGES=(g++ cmake ninja-build libeigen3-dev libfmt-dev libhdf5-dev libde
 FIGURE_PACKAGES=(python3 python3-numpy python3-h5py python3-matplotlib python3-pil python3-xarray
   python3-h5netcdf)
 TEST_PACKAGES=(git libgtest-dev libbenchmark-dev clang-format clang-tidy hdf5-tools)
-# One-machine Slurm (tools/slurm/local_cluster) and GNU parallel; only the tests with label cluster need them.
+# A Slurm cluster of one machine (tools/slurm/local_cluster) and GNU parallel (tools/parallel).
 CLUSTER_PACKAGES=(slurmctld slurmd slurm-client munge)
 PARALLEL_PACKAGES=(parallel)
 
 say() { printf '\n== %s\n' "$*"; }
 
-install_packages() {
-  local missing=() package
+missing_packages() {
+  local package
   for package in "$@"; do
-    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || echo "$package"
   done
+}
+
+install_packages() {
+  local missing
+  mapfile -t missing < <(missing_packages "$@")
   [ ${#missing[@]} -eq 0 ] && return
   say "Installing: ${missing[*]}"
   local sudo=
   [ "$(id -u)" -eq 0 ] || sudo=sudo
   $sudo apt-get update -q
   $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}"
+}
+
+# For what the suite can do without: as root installs, else and where that fails says what is missing and
+# ends with 77, which CTest takes for skipped.
+install_packages_or_skip() {
+  local missing
+  mapfile -t missing < <(missing_packages "$@")
+  [ ${#missing[@]} -eq 0 ] && return
+  if [ "$(id -u)" -ne 0 ]; then
+    echo "SKIPPED: not installed, and only root could install: ${missing[*]}" >&2
+    exit 77
+  fi
+  (install_packages "${missing[@]}") >&2 || {
+    echo "SKIPPED: cannot be installed: ${missing[*]}" >&2
+    exit 77
+  }
 }
