@@ -6,7 +6,7 @@ BUILD_PACKAGES=(g++ cmake ninja-build libeigen3-dev libfmt-dev libhdf5-dev libde
   libboost-dev libboost-program-options-dev libtomlplusplus-dev libsundials-dev libxsimd-dev)
 FIGURE_PACKAGES=(python3 python3-numpy python3-h5py python3-matplotlib python3-pil python3-xarray
   python3-h5netcdf)
-TEST_PACKAGES=(git libgtest-dev libbenchmark-dev clang-format clang-tidy hdf5-tools)
+TEST_PACKAGES=(git libgtest-dev libbenchmark-dev clang-format clang-tidy hdf5-tools shellcheck)
 # A Slurm cluster of one machine (tools/slurm/local_cluster) and GNU parallel (tools/parallel).
 CLUSTER_PACKAGES=(slurmctld slurmd slurm-client munge)
 PARALLEL_PACKAGES=(parallel)

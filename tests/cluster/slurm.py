@@ -1,0 +1,93 @@
+#!/usr/bin/python3
+"""A sweep as a Slurm job array of which one process and one node are killed.
+tools/slurm/local_cluster -n 4 slurm.py SERVOMILL"""
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import sharded
+
+SERVOMILL = os.path.abspath(sys.argv.pop(1))
+KILLED, LOST = 2, 3  # the shard whose process is killed, the one whose node is lost
+
+
+def kill_process(out):
+    """As the kernel does when memory runs out."""
+    os.kill(sharded.process_of(out, KILLED), signal.SIGKILL)
+
+
+def lose_node(out):
+    """Everything at once, as when the power fails: slurmd, job step, batch script, servomill. Gives its name."""
+    process = sharded.process_of(out, LOST)
+    node = sharded.environment(process)["SLURMD_NODENAME"]
+    script = sharded.parent(process)
+    with open(os.path.join(os.path.dirname(os.environ["SLURM_CONF"]), "run", f"slurmd.{node}.pid"),
+              encoding="utf-8") as file:
+        slurmd = int(file.read())
+    for one in (slurmd, sharded.parent(script), script, process):
+        os.kill(one, signal.SIGKILL)
+    return node
+
+
+def jobs():
+    """What Slurm knows of each job: those of the array by the number of the shard, the merge as 'merge'."""
+    text = subprocess.run(["scontrol", "show", "job", "--oneliner"], stdout=subprocess.PIPE, text=True,
+                          check=True).stdout
+    found = [dict(re.findall(r"(\w+)=(\S*)", line)) for line in text.splitlines()]
+    return {job.get("ArrayTaskId", "merge"): job for job in found}
+
+
+class Array(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.single, cls.out = (os.path.join(folder.name, name) for name in ("single.h5", "out.h5"))
+        sharded.single_process(SERVOMILL, cls.single)
+
+        subprocess.run([os.path.join(sharded.TOOLS, "slurm", "submit"), "--", str(sharded.SHARDS),
+                        sharded.SCENARIO, cls.out], env={**os.environ, "SERVOMILL": SERVOMILL}, check=True)
+        victims = {KILLED: kill_process, LOST: lose_node}
+        cls.kept = {}
+        while victims:
+            shard = sharded.await_("a victim on its way", lambda: next(
+                (shard for shard in victims if sharded.begun(sharded.shard_name(cls.out, shard))), None))
+            cls.lost_node = victims.pop(shard)(cls.out) or getattr(cls, "lost_node", None)
+            cls.kept[shard] = sharded.points(sharded.shard_name(cls.out, shard))
+        sharded.await_("an empty queue", lambda: subprocess.run(
+            ["squeue", "--noheader"], stdout=subprocess.PIPE, check=True).stdout == b"")
+        cls.jobs = jobs()
+
+    def log(self, shard):
+        with open(sharded.shard_name(self.out, shard).replace(".h5", ".log"), encoding="utf-8") as file:
+            return file.read()
+
+    def test_all_shards_and_the_merge_are_completed(self):
+        names = [str(shard) for shard in range(1, sharded.SHARDS + 1)] + ["merge"]
+        self.assertEqual({name: job["JobState"] for name, job in self.jobs.items()}, dict.fromkeys(names, "COMPLETED"))
+
+    def test_shard_whose_process_was_killed_is_queued_again(self):
+        self.assertEqual(self.jobs[str(KILLED)]["Restarts"], "1")
+        self.assertIn(f"sweep.sbatch: shard {KILLED}: servomill ended with status 137; queued again", self.log(KILLED))
+
+    def test_shard_of_a_lost_node_runs_on_another(self):
+        self.assertEqual(self.jobs[str(LOST)]["Restarts"], "1")
+        self.assertNotEqual(self.jobs[str(LOST)]["BatchHost"], self.lost_node)
+
+    def test_finished_points_are_not_run_again(self):
+        for shard in (KILLED, LOST):
+            finished, there = self.kept[shard]
+            self.assertTrue(0 < finished < there, f"{finished} of {there} points when shard {shard} was killed")
+            self.assertIn(f"{finished} points kept", self.log(shard))
+
+    def test_merged_table_is_that_of_a_single_process(self):
+        self.assertEqual(sharded.points(self.out), (512, 512))
+        self.assertEqual(sharded.differences(self.out, self.single), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
