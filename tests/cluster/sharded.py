@@ -66,7 +66,7 @@ def process_of(out, shard):
                 words = file.read().decode().split("\0")
         except OSError:  # has ended
             continue
-        if words[1:2] == ["sweep"] and out in words and f"{shard}/{SHARDS}" in words:
+        if "sweep" in words[1:3] and out in words and f"{shard}/{SHARDS}" in words:
             return int(entry)
     return None
 
