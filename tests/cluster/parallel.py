@@ -10,7 +10,7 @@ import unittest
 import sharded
 
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
-KILLED, CUT = 2, 7  # the shard whose process is killed, the one during which the power fails
+KILLED = 2  # the shard whose process is killed; later the power fails on others
 INSTALL = '. "$0" && install_packages_or_skip "${PARALLEL_PACKAGES[@]}"'
 
 
@@ -19,6 +19,13 @@ def start(out):
     return subprocess.Popen([os.path.join(sharded.TOOLS, "parallel"), "--jobs", "4", "--", str(sharded.SHARDS),
                              sharded.SCENARIO, out], env={**os.environ, "SERVOMILL": SERVOMILL, "SWEEP_OF": out},
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def done(out):
+    """The shards that OUT.joblog calls done."""
+    with open(out.replace(".h5", ".joblog"), encoding="utf-8") as file:
+        rows = [line.split("\t") for line in file.readlines()[1:]]
+    return {int(row[0]) for row in rows if row[6] == "0"}  # sequence number, exit status
 
 
 def power_fails(out):
@@ -45,40 +52,42 @@ class Parallel(unittest.TestCase):
         sharded.single_process(SERVOMILL, cls.single)
 
         first = start(cls.out)
-        killed, cut = (sharded.shard_name(cls.out, shard) for shard in (KILLED, CUT))
-        cls.kept = {}
+        killed = sharded.shard_name(cls.out, KILLED)
         sharded.await_(f"shard {KILLED} on its way", lambda: sharded.begun(killed))
         os.kill(sharded.process_of(cls.out, KILLED), signal.SIGKILL)
-        cls.kept[KILLED] = sharded.points(killed)
-        sharded.await_(f"shard {CUT} on its way", lambda: sharded.begun(cut))
+        cls.kept = sharded.points(killed)
+        sharded.await_(f"shard {KILLED} done", lambda: KILLED in done(cls.out))
+        sharded.await_("another shard on its way", lambda: any(map(cls.begun, range(1, sharded.SHARDS + 1))))
         power_fails(cls.out)
-        cls.kept[CUT] = sharded.points(cut)
         cls.first_said, _ = first.communicate(timeout=sharded.PATIENCE)
-        with open(cls.out.replace(".h5", ".joblog"), encoding="utf-8") as file:
-            cls.done_first = [line.split("\t")[0] for line in file.readlines()[1:] if line.split("\t")[6] == "0"]
+        cls.done_first = done(cls.out)
+        cls.cut = {shard: sharded.points(sharded.shard_name(cls.out, shard))
+                   for shard in range(1, sharded.SHARDS + 1) if cls.begun(shard)}
 
         second = start(cls.out)
         cls.second_said, _ = second.communicate(timeout=sharded.PATIENCE)
         cls.status = second.returncode
 
+    @classmethod
+    def begun(cls, shard):
+        return sharded.begun(sharded.shard_name(cls.out, shard))
+
     def test_it_ends_well(self):
         self.assertEqual(self.status, 0, self.second_said)
 
     def test_killed_shard_is_tried_again_and_keeps_its_finished_points(self):
-        finished, there = self.kept[KILLED]
+        finished, there = self.kept
         self.assertTrue(0 < finished < there, f"{finished} of {there} points when it was killed")
-        self.assertIn(str(KILLED), self.done_first)
-        self.assertIn(f"{finished} points kept", self.first_said)
+        self.assertIn(f"{finished} of {there} points are there already", self.first_said)
 
-    def test_the_same_line_runs_what_the_power_failure_left(self):
-        finished, there = self.kept[CUT]
-        self.assertTrue(0 < finished < there, f"{finished} of {there} points when the power failed")
-        self.assertNotIn(str(CUT), self.done_first)
-        self.assertIn(f"{finished} points kept", self.second_said)
+    def test_the_same_line_goes_on_behind_the_points_that_a_power_failure_left(self):
+        self.assertTrue(self.cut)
+        for finished, there in self.cut.values():
+            self.assertIn(f"{finished} of {there} points are there already", self.second_said)
 
     def test_done_shards_are_not_started_again(self):
         for shard in self.done_first:
-            self.assertNotIn(f"{shard}-of-{sharded.SHARDS}.h5", self.second_said)
+            self.assertNotIn(os.path.basename(sharded.shard_name(self.out, shard)), self.second_said)
 
     def test_merged_table_is_that_of_a_single_process(self):
         self.assertEqual(sharded.points(self.out), (512, 512))

@@ -82,7 +82,7 @@ class Array(unittest.TestCase):
         for shard in (KILLED, LOST):
             finished, there = self.kept[shard]
             self.assertTrue(0 < finished < there, f"{finished} of {there} points when shard {shard} was killed")
-            self.assertIn(f"{finished} points kept", self.log(shard))
+            self.assertIn(f"{finished} of {there} points are there already", self.log(shard))
 
     def test_merged_table_is_that_of_a_single_process(self):
         self.assertEqual(sharded.points(self.out), (512, 512))
