@@ -14,17 +14,22 @@ KILLED = 2  # the shard whose process is killed; later the power fails on others
 INSTALL = '. "$0" && install_packages_or_skip "${PARALLEL_PACKAGES[@]}"'
 
 
-def start(out):
-    """tools/parallel; all that it starts carries OUT in its environment."""
-    return subprocess.Popen([os.path.join(sharded.TOOLS, "parallel"), "--jobs", "4", "--", str(sharded.SHARDS),
-                             sharded.SCENARIO, out], env={**os.environ, "SERVOMILL": SERVOMILL, "SWEEP_OF": out},
-                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+def start(out, says):
+    """tools/parallel; all that it starts carries OUT in its environment. What it says goes to a file."""
+    with open(says, "wb") as file:
+        return subprocess.Popen(
+            [os.path.join(sharded.TOOLS, "parallel"), "--jobs", "4", "--", str(sharded.SHARDS), sharded.SCENARIO, out],
+            env={**os.environ, "SERVOMILL": SERVOMILL, "SWEEP_OF": out}, stdout=file, stderr=subprocess.STDOUT)
+
+
+def text_of(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
 
 
 def done(out):
     """The shards that OUT.joblog calls done."""
-    with open(out.replace(".h5", ".joblog"), encoding="utf-8") as file:
-        rows = [line.split("\t") for line in file.readlines()[1:]]
+    rows = [line.split("\t") for line in text_of(out.replace(".h5", ".joblog")).splitlines()[1:]]
     return {int(row[0]) for row in rows if row[6] == "0"}  # sequence number, exit status
 
 
@@ -51,7 +56,7 @@ class Parallel(unittest.TestCase):
         cls.addClassCleanup(power_fails, cls.out)
         sharded.single_process(SERVOMILL, cls.single)
 
-        first = start(cls.out)
+        first = start(cls.out, cls.out + ".first")
         killed = sharded.shard_name(cls.out, KILLED)
         sharded.await_(f"shard {KILLED} on its way", lambda: sharded.begun(killed))
         os.kill(sharded.process_of(cls.out, KILLED), signal.SIGKILL)
@@ -59,14 +64,14 @@ class Parallel(unittest.TestCase):
         sharded.await_(f"shard {KILLED} done", lambda: KILLED in done(cls.out))
         sharded.await_("another shard on its way", lambda: any(map(cls.begun, range(1, sharded.SHARDS + 1))))
         power_fails(cls.out)
-        cls.first_said, _ = first.communicate(timeout=sharded.PATIENCE)
+        first.wait(sharded.PATIENCE)
+        cls.first_said = text_of(cls.out + ".first")
         cls.done_first = done(cls.out)
         cls.cut = {shard: sharded.points(sharded.shard_name(cls.out, shard))
                    for shard in range(1, sharded.SHARDS + 1) if cls.begun(shard)}
 
-        second = start(cls.out)
-        cls.second_said, _ = second.communicate(timeout=sharded.PATIENCE)
-        cls.status = second.returncode
+        cls.status = start(cls.out, cls.out + ".second").wait(sharded.PATIENCE)
+        cls.second_said = text_of(cls.out + ".second")
 
     @classmethod
     def begun(cls, shard):
