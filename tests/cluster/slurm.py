@@ -15,22 +15,23 @@ SERVOMILL = os.path.abspath(sys.argv.pop(1))
 KILLED, LOST = 2, 3  # the shard whose process is killed, the one whose node is lost
 
 
-def kill_process(out):
+def kill_process(process):
     """As the kernel does when memory runs out."""
-    os.kill(sharded.process_of(out, KILLED), signal.SIGKILL)
+    os.kill(process, signal.SIGKILL)
 
 
-def lose_node(out):
-    """Everything at once, as when the power fails: slurmd, job step, batch script, servomill. Gives its name."""
-    process = sharded.process_of(out, LOST)
-    node = sharded.environment(process)["SLURMD_NODENAME"]
+def lose_node(process):
+    """Everything at once, as when the power fails: slurmd, job step, batch script, servomill."""
     script = sharded.parent(process)
-    with open(os.path.join(os.path.dirname(os.environ["SLURM_CONF"]), "run", f"slurmd.{node}.pid"),
-              encoding="utf-8") as file:
+    pid_file = os.path.join(os.path.dirname(os.environ["SLURM_CONF"]), "run", f"slurmd.{node_of(process)}.pid")
+    with open(pid_file, encoding="utf-8") as file:
         slurmd = int(file.read())
     for one in (slurmd, sharded.parent(script), script, process):
         os.kill(one, signal.SIGKILL)
-    return node
+
+
+def node_of(process):
+    return sharded.environment(process)["SLURMD_NODENAME"]
 
 
 def jobs():
@@ -47,17 +48,18 @@ class Array(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.single, cls.out = (os.path.join(folder.name, name) for name in ("single.h5", "out.h5"))
-        sharded.single_process(SERVOMILL, cls.single)
-
         subprocess.run([os.path.join(sharded.TOOLS, "slurm", "submit"), "--", str(sharded.SHARDS),
                         sharded.SCENARIO, cls.out], env={**os.environ, "SERVOMILL": SERVOMILL}, check=True)
         victims = {KILLED: kill_process, LOST: lose_node}
-        cls.kept = {}
+        cls.kept, cls.node = {}, {}
         while victims:
             shard = sharded.await_("a victim on its way", lambda: next(
                 (shard for shard in victims if sharded.begun(sharded.shard_name(cls.out, shard))), None))
-            cls.lost_node = victims.pop(shard)(cls.out) or getattr(cls, "lost_node", None)
+            process = sharded.process_of(cls.out, shard)
+            cls.node[shard] = node_of(process)
+            victims.pop(shard)(process)
             cls.kept[shard] = sharded.points(sharded.shard_name(cls.out, shard))
+        sharded.single_process(SERVOMILL, cls.single)  # Slurm takes 15 s to miss the node
         sharded.await_("an empty queue", lambda: subprocess.run(
             ["squeue", "--noheader"], stdout=subprocess.PIPE, check=True).stdout == b"")
         cls.jobs = jobs()
@@ -76,7 +78,7 @@ class Array(unittest.TestCase):
 
     def test_shard_of_a_lost_node_runs_on_another(self):
         self.assertEqual(self.jobs[str(LOST)]["Restarts"], "1")
-        self.assertNotEqual(self.jobs[str(LOST)]["BatchHost"], self.lost_node)
+        self.assertNotEqual(self.jobs[str(LOST)]["BatchHost"], self.node[LOST])
 
     def test_finished_points_are_not_run_again(self):
         for shard in (KILLED, LOST):
