@@ -2,22 +2,114 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <exception>
 #include <utility>
 
+#include "sim/preparation_cache.h"
+
 namespace servomill::sim {
 namespace {
 
-BatchResult run_point(const Scenario& scenario, const StopFlag& stop, std::atomic<float>& share,
-                      Keep keep) {
-  std::vector<PreparedCase> prepared = prepare_cases(scenario);
-  BatchResult result;
+// Recorded signals that a batch may hold; points beyond wait for their turn.
+constexpr double kMostRows = 1e6;  // of some 500 bytes
+
+BatchResult failure(std::exception_ptr error) {
+  try {
+    std::rethrow_exception(std::move(error));
+  } catch (const InputError& refused) {
+    return {PointStatus::refused, in_one_line(refused), {}};
+  } catch (const std::bad_alloc&) {
+    return {PointStatus::failed, "not enough memory", {}};
+  } catch (const std::exception& failed) {
+    return {PointStatus::failed, failed.what(), {}};
+  }
+}
+
+// A point with its cases on the way to their results.
+struct Point {
+  const Scenario* scenario;
+  std::vector<PreparedCase> cases;
+  std::vector<CaseInputs> inputs;
+  std::vector<CaseResult> results;
+  std::exception_ptr error;
+
+  double rows() const {
+    double sum = 0.0;
+    for (const CaseInputs& in : inputs) {
+      sum += (in.reference.duration() + in.settle_time) /
+             in.machine.nc.periods.seconds(in.record_period);
+    }
+    return sum;
+  }
+};
+
+Point prepared(const Scenario& scenario, PreparationCache* cache) {
+  Point point{&scenario, {}, {}, {}, nullptr};
+  try {
+    point.cases = prepare_cases(scenario, cache);
+    point.inputs.reserve(point.cases.size());
+    for (const PreparedCase& one : point.cases) point.inputs.push_back(one.inputs());
+    point.results.resize(point.cases.size());
+  } catch (...) {
+    point.error = std::current_exception();
+  }
+  return point;
+}
+
+// One case of one point.
+struct Run {
+  Point* point;
+  std::size_t number;
+
+  CaseInputs& inputs() const { return point->inputs[number]; }
+};
+
+// Runs that share lanes, at most eight; case after case, so that neighbours are alike.
+std::vector<std::vector<Run>> groups_of(std::span<Point> points) {
+  std::vector<std::vector<Run>> groups;
+  std::size_t most_cases = 0;
+  for (const Point& point : points) most_cases = std::max(most_cases, point.inputs.size());
+  for (std::size_t number = 0; number < most_cases; ++number) {
+    for (Point& point : points) {
+      if (point.error || number >= point.inputs.size()) continue;
+      const Run run{&point, number};
+      const auto open = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
+        return group.size() < kLaneWidth && share_lanes(group.front().inputs(), run.inputs());
+      });
+      if (open == groups.end()) {
+        groups.push_back({run});
+      } else {
+        open->push_back(run);
+      }
+    }
+  }
+  return groups;
+}
+
+void simulate_group(std::span<const Run> group, const StopFlag& stop, std::atomic<float>& progress,
+                    PreparationCache* cache) {
+  std::vector<CaseInputs*> together;
+  for (const Run& run : group) together.push_back(&run.inputs());
+  try {
+    std::vector<CaseResult> results =
+        simulate(together, stop, progress, cache != nullptr ? &cache->drives : nullptr);
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      group[k].point->results[group[k].number] = std::move(results[k]);
+    }
+  } catch (...) {
+    for (const Run& run : group) run.point->error = std::current_exception();
+  }
+}
+
+BatchResult result_of(Point& point, Keep keep) {
+  if (point.error) return failure(point.error);
   std::vector<CaseOutput> outputs;
-  outputs.reserve(prepared.size());
-  for (PreparedCase& one : prepared) outputs.push_back(one.run(stop, share));
-  if (stop) return result;  // half a point is none
+  for (std::size_t k = 0; k < point.cases.size(); ++k) {
+    outputs.push_back(point.cases[k].output(std::move(point.results[k])));
+  }
   std::vector<CaseData> data;
   std::vector<std::string> stopped;
   for (const CaseOutput& output : outputs) {
@@ -26,7 +118,12 @@ BatchResult run_point(const Scenario& scenario, const StopFlag& stop, std::atomi
     if (outcome.finished) continue;
     stopped.push_back(fmt::format("case {} stopped: {}", output.name, outcome.reason));
   }
-  result.rows = compare(scenario.quantities, data);
+  BatchResult result;
+  try {
+    result.rows = compare(point.scenario->quantities, data);
+  } catch (...) {
+    return failure(std::current_exception());
+  }
   result.status = stopped.empty() ? PointStatus::done : PointStatus::stopped;
   result.reason = fmt::format("{}", fmt::join(stopped, "; "));
   if (keep == Keep::series) result.cases = std::move(outputs);
@@ -44,35 +141,35 @@ std::string_view name_of(PointStatus status) {
 std::string in_one_line(const InputError& error) {
   std::vector<std::string> lines;
   for (const Fault& fault : error.faults()) {
-    // of a key of the sweep the message says where it stands
-    const bool swept = fault.message.starts_with("sweep.");
-    const std::string place = swept ? "" : to_string(fault.place) + ": ";
-    lines.push_back(place + fault.message);
+    lines.push_back(fmt::format("{}: {}", to_string(fault.place), fault.message));
   }
   return fmt::format("{}", fmt::join(lines, "; "));
 }
 
 std::vector<BatchResult> run_batch(std::span<const Scenario> points, const StopFlag& stop,
-                                   std::atomic<float>& progress, Keep keep) {
+                                   std::atomic<float>& progress, Keep keep,
+                                   PreparationCache* cache) {
   std::vector<BatchResult> results;
   results.reserve(points.size());
-  std::atomic<float> share = 0.0F;
-  for (const Scenario& point : points) {
-    if (stop) {
-      results.emplace_back();
-      continue;
+  for (std::size_t next = 0; next < points.size() && !stop;) {
+    std::vector<Point> together;
+    for (double rows = 0.0; next < points.size() && rows < kMostRows; ++next) {
+      together.push_back(prepared(points[next], cache));
+      rows += together.back().rows();
     }
-    try {
-      results.push_back(run_point(point, stop, share, keep));
-    } catch (const InputError& error) {
-      results.push_back({PointStatus::refused, in_one_line(error), {}});
-    } catch (const std::bad_alloc&) {
-      results.push_back({PointStatus::failed, "not enough memory", {}});
-    } catch (const std::exception& error) {
-      results.push_back({PointStatus::failed, error.what(), {}});
+    std::atomic<float> share = 0.0F;
+    const auto groups = groups_of(together);
+    for (std::size_t g = 0; g < groups.size() && !stop; ++g) {
+      simulate_group(groups[g], stop, share, cache);
+      progress = (static_cast<float>(results.size()) + static_cast<float>(together.size()) *
+                                                           static_cast<float>(g + 1) /
+                                                           static_cast<float>(groups.size())) /
+                 static_cast<float>(points.size());
     }
-    progress = static_cast<float>(results.size()) / static_cast<float>(points.size());
+    if (stop) break;  // half a point is none
+    for (Point& point : together) results.push_back(result_of(point, keep));
   }
+  results.resize(points.size());
   return results;
 }
 

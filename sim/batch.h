@@ -38,13 +38,15 @@ struct BatchResult {
 /// What to keep of the cases of a batch.
 enum class Keep : std::uint8_t { comparison, series };
 
-/// Prepares and runs all cases of all points on the calling thread. The result of a point depends
-/// on that point alone, bit for bit. What is wrong with a point is part of its result; nothing is
-/// thrown.
+/// Prepares and runs all cases of all points on the calling thread, in lockstep where they share
+/// lanes (sim/simulate.h). The result of a point depends on that point alone, bit for bit. What is
+/// wrong with a point is part of its result; nothing is thrown.
 /// @param stop      points that see it are `not_run`
 /// @param progress  set to the share done of the batch, 0 to 1
+/// @param cache     what preparing points shares, with other batches too; may be nullptr
 std::vector<BatchResult> run_batch(std::span<const Scenario> points, const StopFlag& stop,
-                                   std::atomic<float>& progress, Keep keep = Keep::comparison);
+                                   std::atomic<float>& progress, Keep keep = Keep::comparison,
+                                   PreparationCache* cache = nullptr);
 
 /// All faults in one line; without their places where these are keys of a sweep.
 std::string in_one_line(const InputError& error);

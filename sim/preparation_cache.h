@@ -9,6 +9,7 @@
 
 #include "controllers/gcode/interpreter.h"
 #include "controllers/path/trajectory.h"
+#include "plant/drives/prepared_drives.h"
 #include "plant/geometry/volumetric.h"
 #include "sim/circular_sections.h"
 #include "sim/machine.h"
@@ -63,6 +64,7 @@ struct PreparationCache {
   static constexpr std::size_t kMoves = 200'000;  // kept in each form: some 100 MB
   static constexpr std::size_t kModels = 1'000;
   static constexpr std::size_t kRadii = 20'000;
+  static constexpr std::size_t kDrives = 500;
 
   PreparationCache();
 
@@ -73,6 +75,7 @@ struct PreparationCache {
   Memo<plant::VolumetricModel> models;
   Memo<strategies::Strategy> strategies;
   Memo<double> spectral_radii;
+  plant::PreparedDrives drives{kDrives};
 };
 
 // Inputs as parts of keys, complete: a member that is added to one of these does not compile here.

@@ -28,10 +28,6 @@ struct RunOutput {
 /// @throws InputError before anything is simulated
 RunOutput run_scenario(const Scenario& scenario, const RunControl& control);
 
-/// Every case of a scenario, ready to be simulated.
-/// @throws InputError with the faults of all cases
-std::vector<PreparedCase> prepare_cases(const Scenario& scenario);
-
 /// Prepares every case as for a run.
 /// @throws InputError with the faults of all cases
 void check_scenario(const Scenario& scenario);

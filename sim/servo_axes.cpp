@@ -66,13 +66,14 @@ const ServoKernel& servo_kernel() {
 }
 
 ServoAxes::ServoAxes(std::vector<const MachineSettings*> machines, std::vector<int> joints,
-                     const std::vector<Instant>& schedule)
+                     const std::vector<Instant>& schedule, plant::PreparedDrives* kept)
     : machines_(std::move(machines)),
       joints_(std::move(joints)),
       params_(params_of(machines_, joints_)),
       drives_(
           params_, machines_[0]->nc.periods.base,
-          machines_[0]->integrator == Integrator::exact ? steps_of(schedule) : std::vector<Tick>()),
+          machines_[0]->integrator == Integrator::exact ? steps_of(schedule) : std::vector<Tick>(),
+          kept),
       state_(params_.size()),
       input_(params_.size()),
       servos_(blocks_of(params_.size())),

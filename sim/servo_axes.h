@@ -52,8 +52,9 @@ class ServoAxes {
   /// @param machines  one a run; must outlive this. All have the same periods and integrator
   /// @param joints    those that take part; the others stand at zero
   /// @param schedule  its steps are what `advance` may be asked for
+  /// @param kept      drives prepared for other axes, and where those of these are kept
   ServoAxes(std::vector<const MachineSettings*> machines, std::vector<int> joints,
-            const std::vector<Instant>& schedule);
+            const std::vector<Instant>& schedule, plant::PreparedDrives* kept = nullptr);
   ServoAxes(const MachineSettings& machine, std::vector<int> joints,
             const std::vector<Instant>& schedule)
       : ServoAxes(std::vector{&machine}, std::move(joints), schedule) {}

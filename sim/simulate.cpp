@@ -202,9 +202,9 @@ class CaseRun {
 // Machines with their loops, stepped together from instant to instant of one static schedule.
 class Lockstep {
  public:
-  explicit Lockstep(std::span<CaseInputs* const> together)
+  Lockstep(std::span<CaseInputs* const> together, plant::PreparedDrives* kept)
       : schedule_(make_schedule(rates_of(*together.front()))),
-        axes_(machines_of(together), together.front()->machine.joints(), schedule_) {
+        axes_(machines_of(together), together.front()->machine.joints(), schedule_, kept) {
     for (std::size_t run = 0; run < together.size(); ++run) {
       CaseInputs& in = *together[run];
       runs_.push_back(std::make_unique<CaseRun>(in, axes_, run, reference_of(in.reference)));
@@ -356,13 +356,13 @@ bool share_lanes(const CaseInputs& a, const CaseInputs& b) {
 }
 
 std::vector<CaseResult> simulate(std::span<CaseInputs* const> together, const StopFlag& stop,
-                                 std::atomic<float>& progress) {
+                                 std::atomic<float>& progress, plant::PreparedDrives* kept) {
   const auto begin = std::chrono::steady_clock::now();
   std::vector<CaseResult> results;
   if (together.front()->servo == ServoModel::ideal) {
     results.push_back(IdealRun(*together.front()).run(stop, progress));
   } else {
-    results = Lockstep(together).run(stop, progress);
+    results = Lockstep(together, kept).run(stop, progress);
   }
   const double wall_time =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

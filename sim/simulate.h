@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "controllers/path/trajectory.h"
+#include "plant/drives/prepared_drives.h"
 #include "plant/geometry/volumetric.h"
 #include "sim/machine.h"
 #include "sim/program_path.h"
@@ -77,8 +78,10 @@ bool share_lanes(const CaseInputs& a, const CaseInputs& b);
 ///                  alone
 /// @param stop      looked at once a hyperperiod
 /// @param progress  set to the simulated share, 0 to 1, as often
+/// @param kept      drives prepared for other runs, and where those of these are kept
 std::vector<CaseResult> simulate(std::span<CaseInputs* const> together, const StopFlag& stop,
-                                 std::atomic<float>& progress);
+                                 std::atomic<float>& progress,
+                                 plant::PreparedDrives* kept = nullptr);
 CaseResult simulate(CaseInputs& inputs, const StopFlag& stop, std::atomic<float>& progress);
 
 }  // namespace servomill::sim

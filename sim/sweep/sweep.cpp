@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "sim/config/document.h"
+#include "sim/preparation_cache.h"
 
 namespace servomill::sim {
 namespace {
@@ -65,7 +66,8 @@ std::string without(std::string message, const std::string& value) {
 Sweep::Sweep(std::string scenario_path, std::vector<std::string> changes)
     : path_(std::move(scenario_path)),
       changes_(std::move(changes)),
-      base_(read_scenario(path_, changes_)) {
+      source_(path_, changes_),
+      base_(source_.at()) {
   if (!base_.sweep.empty()) return;
   throw InputError({path_},
                    "has no [sweep] table; add one such as [sweep] "
@@ -102,10 +104,10 @@ InputError Sweep::at_the_list(const InputError& error,
 
 Scenario Sweep::at(std::uint64_t point) const {
   const std::vector<std::string> values = design().point(point);
-  std::vector<std::string> all = changes_;
-  for (std::size_t k = 0; k < values.size(); ++k) all.push_back(assignment(k, values[k]));
+  std::vector<std::string> changes;
+  for (std::size_t k = 0; k < values.size(); ++k) changes.push_back(assignment(k, values[k]));
   try {
-    return read_scenario(path_, all);
+    return source_.at(changes);
   } catch (const InputError& error) {
     throw at_the_list(error, values);
   }
@@ -228,7 +230,8 @@ bool same_question(const ComparisonRow& a, const ComparisonRow& b) {
 
 // Runs the points of one batch: those that can be read together, the others are refused.
 std::vector<SweepPoint> run_points(const Sweep& sweep, const std::vector<std::uint64_t>& points,
-                                   const StopFlag& stop, std::atomic<float>& progress, Keep keep) {
+                                   const StopFlag& stop, std::atomic<float>& progress, Keep keep,
+                                   PreparationCache& cache) {
   std::vector<SweepPoint> out;
   std::vector<Scenario> scenarios;
   std::vector<std::size_t> read;  // place of each scenario in the batch
@@ -244,7 +247,7 @@ std::vector<SweepPoint> run_points(const Sweep& sweep, const std::vector<std::ui
       result = {PointStatus::failed, error.what(), {}};
     }
   }
-  std::vector<BatchResult> results = run_batch(scenarios, stop, progress, keep);
+  std::vector<BatchResult> results = run_batch(scenarios, stop, progress, keep, &cache);
   const std::vector<ComparisonRow> wanted = sweep.quantities();
   for (std::size_t i = 0; i < results.size(); ++i) {
     BatchResult& result = out[read[i]].result;
@@ -275,6 +278,7 @@ void run_sweep(const Sweep& sweep, const Selection& selection, const std::vector
   const std::size_t batch =
       std::clamp<std::size_t>(count / (kBatchesPerThread * threads), 1, control.batch);
 
+  PreparationCache cache;
   Results results(kWaitingPerThread * threads);
   std::vector<std::atomic<float>> shares(threads);  // of the batches in work
   std::atomic<std::uint64_t> running = threads;
@@ -285,7 +289,7 @@ void run_sweep(const Sweep& sweep, const Selection& selection, const std::vector
       while (!stop && !given_up) {
         const std::vector<std::uint64_t> points = todo.next(batch);
         if (points.empty()) break;
-        auto out = run_points(sweep, points, stop, shares[thread], control.keep);
+        auto out = run_points(sweep, points, stop, shares[thread], control.keep, cache);
         shares[thread] = 0.0F;
         results.put(std::move(out));
       }

@@ -8,6 +8,7 @@
 
 #include "sim/batch.h"
 #include "sim/scenario.h"
+#include "sim/scenario_source.h"
 #include "sim/sweep/design.h"
 #include "sim/sweep/selection.h"
 
@@ -46,6 +47,7 @@ class Sweep {
 
   std::string path_;
   std::vector<std::string> changes_;
+  ScenarioSource source_;
   Scenario base_;
 };
 
