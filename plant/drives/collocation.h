@@ -13,12 +13,12 @@
 namespace servomill::plant {
 
 /// Integrals of the parabolas that are 1 at one of 0, 1/2, 1 and 0 at the others: from 0 to 1/4,
-/// 1/2, 3/4, 1; and their values at 1/4, 3/4.
-inline constexpr double kIntegral[4][3] = {{1.0 / 6.0, 5.0 / 48.0, -1.0 / 48.0},
-                                           {5.0 / 24.0, 1.0 / 3.0, -1.0 / 24.0},
-                                           {3.0 / 16.0, 9.0 / 16.0, 0.0},
-                                           {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0}};
-inline constexpr double kQuarter[2][3] = {{0.375, 0.75, -0.125}, {-0.125, 0.75, 0.375}};
+/// 1/2, 3/4, 1; and their values at 1/4, 3/4. (Not inline: kernels share no data, either.)
+constexpr double kIntegral[4][3] = {{1.0 / 6.0, 5.0 / 48.0, -1.0 / 48.0},
+                                    {5.0 / 24.0, 1.0 / 3.0, -1.0 / 24.0},
+                                    {3.0 / 16.0, 9.0 / 16.0, 0.0},
+                                    {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0}};
+constexpr double kQuarter[2][3] = {{0.375, 0.75, -0.125}, {-0.125, 0.75, 0.375}};
 
 /// Sum of three values by their weights.
 template <class T>
@@ -111,6 +111,13 @@ T missed(const T& a, const T& b, const T (&nodes)[3], const T& cubic, const T& q
   constexpr double kCubic = 0.5 * 8.0 / 45.0, kQuartic = 0.5 * 32.0 / 45.0;
   const T A = a - parabola(kQuarter[0], nodes), B = b - parabola(kQuarter[1], nodes);
   return T(kCubic) * cubic * max(A - B, B - A) + T(kQuartic) * quartic * max(A + B, -(A + B));
+}
+
+/// The most that `missed` returns if the parabola misses no more than `most` at h/4 and 3h/4.
+template <class T>
+T missed_at_most(const T& most, const T& cubic, const T& quartic) {
+  constexpr double kCubic = 8.0 / 45.0, kQuartic = 32.0 / 45.0;
+  return most * max(T(kCubic) * cubic, T(kQuartic) * quartic);
 }
 
 }  // namespace servomill::plant

@@ -3,74 +3,139 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cmath>
 
 namespace servomill::plant {
+namespace {
+
+// Bounds of the derivatives of regularised friction, the first to the third: of the Stribeck term
+// alone (0.86, 2, 4 over powers of vs, times its height D) and with tanh (1, 0.77, 2 over powers of
+// v0, times Fs).
+struct SlopeBounds {
+  std::array<double, 3> steep, gentle;
+
+  explicit SlopeBounds(const FrictionParams& f) {
+    const double D = std::max(f.Fs_positive - f.Fc_positive, f.Fs_negative - f.Fc_negative);
+    const double A = std::max(f.Fs_positive, f.Fs_negative), a = 1.0 / f.vs, b = 1.0 / f.v0;
+    gentle = {0.86 * D * a, 2.0 * D * a * a, 4.0 * D * a * a * a};
+    steep = {
+        gentle[0] + A * b, gentle[1] + 2.0 * gentle[0] * b + 0.77 * A * b * b,
+        gentle[2] + 3.0 * gentle[1] * b + 3.0 * 0.77 * gentle[0] * b * b + 2.0 * A * b * b * b};
+  }
+};
+
+}  // namespace
 
 DriveBank::DriveBank(std::span<const FeedDriveParams> lanes, double base_period,
                      std::span<const Tick> steps, PreparedDrives* kept)
     : kernel_(at_simd_level(simd_level(),
                             []<SimdLevel level>() { return make_drive_kernel<level>(); })) {
-  std::vector<Tick> distinct(steps.begin(), steps.end());
-  std::sort(distinct.begin(), distinct.end());
-  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-  assert(distinct.empty() || distinct.front() > 0);
-  for (const Tick& step : distinct) {
-    index_of_step_.resize(static_cast<std::size_t>(step) + 1, -1);
-    index_of_step_.back() = static_cast<int>(&step - distinct.data());
+  steps_.assign(steps.begin(), steps.end());
+  std::sort(steps_.begin(), steps_.end());
+  steps_.erase(std::unique(steps_.begin(), steps_.end()), steps_.end());
+  assert(steps_.empty() || steps_.front() > 0);
+  for (std::size_t n = 0; n < steps_.size(); ++n) {
+    index_of_step_.resize(static_cast<std::size_t>(steps_[n]) + 1, -1);
+    index_of_step_.back() = static_cast<int>(n);
   }
   PreparedDrives own(lanes.size());
   for (const FeedDriveParams& params : lanes) {
-    drives_.push_back((kept != nullptr ? *kept : own).get(params, base_period, distinct));
+    drives_.push_back((kept != nullptr ? *kept : own).get(params, base_period, steps_));
     inverse_r_.push_back(1.0 / params.r);
   }
   constants_.resize(blocks_of(lanes.size()));
-  holds_.resize(distinct.size() * constants_.size());
+  holds_.resize(steps_.size() * constants_.size());
+  parabolas_.resize(constants_.size());
   for (std::size_t block = 0; block < constants_.size(); ++block) prepare_block(block);
 }
 
 void DriveBank::prepare_block(std::size_t block) {
-  DriveConstants& c = constants_[block];
-  c.glide_speed.fill(-1.0);  // linear, as are the lanes that fill the last block: all zero
+  constants_[block].glide_speed.fill(-1.0);  // linear, as are the lanes that fill the last block
   const std::size_t first = block * kLaneWidth;
   for (std::size_t j = 0; j < std::min(kLaneWidth, lanes() - first); ++j) {
-    const PreparedDrive& drive = *drives_[first + j];
-    c.F_load[j] = drive.params.F_load;
-    if (drive.exact) {
-      const Gliding& gliding = drive.exact->gliding();
-      c.glide_speed[j] = gliding.speed;
-      c.Fc_positive[j] = gliding.Fc_positive;
-      c.Fc_negative[j] = gliding.Fc_negative;
-      c.sigma0[j] = gliding.sigma0;
-      c.has_bristles |= gliding.sigma0 != 0.0;
-      if (drive.params.friction.kind == FrictionKind::set_valued) {
-        c.has_slide_mode |= static_cast<LaneBits>(1U << j);
+    prepare_lane(block, j, *drives_[first + j]);
+  }
+}
+
+void DriveBank::prepare_lane(std::size_t block, std::size_t j, const PreparedDrive& drive) {
+  DriveConstants& c = constants_[block];
+  const FeedDriveParams& p = drive.params;
+  c.F_load[j] = p.F_load;
+  for (std::size_t step = 0; step < steps_.size(); ++step) {
+    HoldBlock& hold = holds_[step * constants_.size() + block];
+    const PreparedDrive::Hold& from = drive.hold[step];
+    // without the position, which nothing depends on and which is counted from where it was
+    constexpr Eigen::Index kColumn[] = {0, 1, 2, 3, 5, 6};
+    for (std::size_t column = 0; column < HoldBlock::kColumns; ++column) {
+      for (std::size_t row = 0; row < HoldBlock::kRows; ++row) {
+        hold.end[row * HoldBlock::kColumns + column][j] =
+            from.end(static_cast<Eigen::Index>(row), kColumn[column]);
+      }
+      hold.middle[column][j] = from.middle(kColumn[column]);
+    }
+  }
+  if (!drive.exact) return;
+  c.glide_speed[j] = drive.exact->gliding().speed;
+  const auto bit = static_cast<LaneBits>(1U << j);
+  const FrictionParams& f = p.friction;
+  if (f.kind == FrictionKind::set_valued) c.has_slide_mode |= bit;
+  c.Fc_positive[j] = f.Fc_positive;
+  c.Fc_negative[j] = f.Fc_negative;
+  if (!drive.smooth()) return;
+  (f.kind == FrictionKind::lugre ? c.lugre : c.regularised) |= bit;
+  if (drive.exact->has_kink()) c.has_kink |= bit;
+  c.Fs_positive[j] = f.Fs_positive;
+  c.Fs_negative[j] = f.Fs_negative;
+  c.inverse_vs[j] = 1.0 / f.vs;
+  c.inverse_v0[j] = 1.0 / f.v0;
+  c.sigma0[j] = f.sigma0;
+  c.sigma1[j] = f.sigma1;
+  c.inverse_mass[j] = 1.0 / p.slide_mass();
+  c.tolerance[j] = drive.exact->resolution().tolerance;
+  c.coarsest[j] = drive.exact->coarsest_log2() + Ladder::kDepth;
+
+  const SlopeBounds bounds(f);
+  for (std::size_t n = 0; n < 3; ++n) {
+    c.steep[n][j] = bounds.steep[n];
+    c.gentle[n][j] = bounds.gentle[n];
+  }
+  c.tanh_end[j] = kTanhEnd * f.v0;
+
+  std::vector<ParabolaBlock>& parabolas = parabolas_[block];
+  parabolas.resize(drive.whole.size() + drive.rungs.size());
+  const auto copy = [&](ParabolaBlock& to, const Propagator& from, double h) {
+    to.h = h;
+    to.speed_tolerance[j] = drive.exact->speed_tolerance();
+    for (std::size_t row = 0; row < ParabolaBlock::kRows; ++row) {
+      for (std::size_t column = 0; column < ParabolaBlock::kColumns; ++column) {
+        to.row[row][column][j] = from.slide[column][row];
       }
     }
-    for (std::size_t step = 0; step < drive.steps.size(); ++step) {
-      HoldBlock& hold = holds_[step * constants_.size() + block];
-      const PreparedDrive::Hold& from = drive.hold[step];
-      // without the position, which nothing depends on and which is counted from where it was
-      constexpr Eigen::Index kColumn[] = {0, 1, 2, 3, 5, 6};
-      for (std::size_t column = 0; column < HoldBlock::kColumns; ++column) {
-        for (std::size_t row = 0; row < HoldBlock::kRows; ++row) {
-          hold.end[row * HoldBlock::kColumns + column][j] =
-              from.end(static_cast<Eigen::Index>(row), kColumn[column]);
-        }
-        hold.middle[column][j] = from.middle(kColumn[column]);
-      }
-    }
+  };
+  ParabolaBlock* to = parabolas.data();
+  for (std::size_t n = 0; n < drive.whole.size(); ++n) {
+    copy(*to++, drive.whole[n], static_cast<double>(steps_[n]) * drive.base_period);
+  }
+  for (std::size_t n = 0; n < drive.rungs.size(); ++n) {
+    copy(*to++, drive.rungs[n],
+         std::ldexp(drive.base_period, static_cast<int>(n) - Ladder::kDepth));
   }
 }
 
 void DriveBank::advance(DriveState& s, const DriveInput& input, Tick step) const {
   assert(static_cast<std::size_t>(step) < index_of_step_.size());
   assert(s.blocks.size() == constants_.size() && input.blocks.size() == constants_.size());
-  const int index = index_of_step_[static_cast<std::size_t>(step)];
-  assert(index >= 0);
+  assert(index_of_step_[static_cast<std::size_t>(step)] >= 0);
+  const auto index = static_cast<std::size_t>(index_of_step_[static_cast<std::size_t>(step)]);
   for (std::size_t block = 0; block < constants_.size(); ++block) {
     const DriveInputBlock& in = input.blocks[block];
+    Ladder ladder{.ticks = static_cast<int>(step)};
+    if (const auto& parabolas = parabolas_[block]; !parabolas.empty()) {
+      ladder.whole = &parabolas[index];
+      ladder.rungs = &parabolas[steps_.size()];
+    }
     LaneBits others = kernel_.advance(
-        s.blocks[block], in, hold(static_cast<std::size_t>(index), block), constants_[block]);
+        s.blocks[block], in, holds_[index * constants_.size() + block], constants_[block], ladder);
     while (others != 0) {
       const auto j = static_cast<std::size_t>(std::countr_zero(others));
       others &= static_cast<LaneBits>(others - 1U);

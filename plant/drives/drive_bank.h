@@ -51,16 +51,17 @@ class DriveBank {
   }
 
  private:
-  const HoldBlock& hold(std::size_t step, std::size_t block) const {
-    return holds_[step * constants_.size() + block];
-  }
   void prepare_block(std::size_t block);
+  void prepare_lane(std::size_t block, std::size_t j, const PreparedDrive& drive);
 
   std::vector<std::shared_ptr<const PreparedDrive>> drives_;  // of each lane
   std::vector<double> inverse_r_;                             // 1/m, of each lane
   std::vector<int> index_of_step_;                            // -1: not prepared
-  std::vector<HoldBlock> holds_;                              // step after step, block after block
-  std::vector<DriveConstants> constants_;                     // of each block
+  std::vector<Tick> steps_;
+  std::vector<HoldBlock> holds_;           // step after step, block after block
+  std::vector<DriveConstants> constants_;  // of each block
+  // of each block with friction that the kernel moves: steps as a whole, then the rungs
+  std::vector<std::vector<ParabolaBlock>> parabolas_;
   DriveKernel kernel_;
 };
 

@@ -1,51 +1,360 @@
 #include "plant/drives/drive_kernel.h"
 
+#include <cstdint>
 #include <cstring>
+#include <limits>
 
+#include "plant/drives/collocation.h"
 #include "plant/vocabulary/pack.h"
 
 namespace servomill::plant {
 namespace {
 
-template <class Arch>
-PackMask<Arch> mask_of(const LaneFlags& flags) {
-  LaneArray numbers;
-  for (std::size_t j = 0; j < kLaneWidth; ++j) numbers[j] = flags[j] ? 1.0 : 0.0;
-  return Pack<Arch>(numbers) != Pack<Arch>(0.0);
-}
-
-template <class Arch>
-LaneBits bits_of(const PackMask<Arch>& mask) {
-  if (!mask.any()) return 0;
-  LaneArray numbers;
-  select(mask, Pack<Arch>(1.0), Pack<Arch>(0.0)).store(numbers);
-  unsigned bits = 0;
-  for (std::size_t j = 0; j < kLaneWidth; ++j) bits |= (numbers[j] != 0.0 ? 1U : 0U) << j;
-  return static_cast<LaneBits>(bits);
-}
-
-bool all_of(const LaneFlags& flags) {
-  constexpr std::uint64_t kAll = 0x0101010101010101;
+LaneBits bits_of(const LaneFlags& flags) {
   std::uint64_t bytes;
   static_assert(sizeof(bytes) == sizeof(flags));
   std::memcpy(&bytes, flags.data(), sizeof(bytes));
-  return bytes == kAll;
+  return static_cast<LaneBits>(bytes * 0x0102040810204080 >> 56);  // byte j to bit j
 }
 
-// The sum over the columns of a row, in their order.
+// e^x for x <= 0, to the last bit or two; below -700 that of -700. Taylor's series about the
+// nearest multiple of ln 2.
 template <class Arch>
-Pack<Arch> product(const LaneArray* row, const Pack<Arch> (&in)[HoldBlock::kColumns]) {
+Pack<Arch> exp_of_negative(const Pack<Arch>& x) {
+  using P = Pack<Arch>;
+  using Bits = xsimd::batch<std::int64_t, Arch>;
+  constexpr double kRound = 6755399441055744.0;  // 3 2^51: its last bit counts ones
+  constexpr double kLog2e = 1.4426950408889634, kLn2 = 0x1.62e42fefa0000p-1;
+  constexpr double kLn2Rest = 0x1.cf79abc9e3b39p-40;
+  const P y = max(x, P(-700.0));
+  const P rounded = fma(y, P(kLog2e), P(kRound)), n = rounded - P(kRound);
+  const P r = fma(n, P(-kLn2Rest), fma(n, P(-kLn2), y));
+  const auto pair = [&](double a, double b) { return fma(P(b), r, P(a)); };
+  const P r2 = r * r, r4 = r2 * r2;
+  const P a = fma(pair(0.5, 1.0 / 6), r2, r + P(1.0));
+  const P b = fma(pair(1.0 / 720, 1.0 / 5040), r2, pair(1.0 / 24, 1.0 / 120));
+  const P c = fma(pair(1.0 / 3628800, 1.0 / 39916800), r2, pair(1.0 / 40320, 1.0 / 362880));
+  const P d(1.0 / 479001600);
+  const P mantissa = fma(fma(fma(d, r4, c), r4, b), r4, a);
+  return P::each([&](std::size_t j) {
+    const Bits power = (xsimd::bitwise_cast<Bits>(rounded.r[j]) << 52) + Bits(0x3ff0000000000000);
+    return mantissa.r[j] * xsimd::bitwise_cast<typename P::Batch>(power);
+  });
+}
+
+// The friction of eight drives, with the members of FrictionParams. What the lanes that are not
+// active have is of no interest.
+template <class Arch>
+struct FrictionPack {
+  using P = Pack<Arch>;
+  using Mask = PackMask<Arch>;
+  P Fc_positive, Fc_negative, Fs_positive, Fs_negative, sigma0, sigma1, inverse_vs, inverse_v0;
+  Mask idle;
+
+  FrictionPack(const DriveConstants& c, LaneBits active)
+      : Fc_positive(c.Fc_positive),
+        Fc_negative(c.Fc_negative),
+        Fs_positive(c.Fs_positive),
+        Fs_negative(c.Fs_negative),
+        sigma0(c.sigma0),
+        sigma1(c.sigma1),
+        inverse_vs(c.inverse_vs),
+        inverse_v0(c.inverse_v0),
+        idle(Mask::of(0xFFU & ~active)) {}
+
+  WithSlope<P> stribeck(const P& v) const {
+    const P q = v * inverse_vs, bump = exp_of_negative(-(q * q));
+    return {bump, P(-2.0) * q * inverse_vs * bump};
+  }
+  // Beyond its end the formula gives 1 and 0 to the bit, so that it need not be computed there.
+  WithSlope<P> saturation(const P& v) const {
+    const P q = v * inverse_v0, one(1.0), zero(0.0);
+    if (((abs(q) > P(kTanhEnd)) | idle).all()) return {select(q > zero, one, -one), zero};
+    const P e = exp_of_negative(P(-2.0) * abs(q)), T = (one - e) / (one + e);
+    return {select(q > zero, T, -T), (one - T * T) * inverse_v0};
+  }
+};
+
+// Eight drives in motion.
+template <class Arch>
+struct Motion {
+  using P = Pack<Arch>;
+  P i, w, delta, v, x, z;
+};
+
+// The sum over the columns of a row, in their order.
+template <class Arch, std::size_t n>
+Pack<Arch> product(const LaneArray* row, const Pack<Arch> (&in)[n]) {
   Pack<Arch> sum = Pack<Arch>(row[0]) * in[0];
 #pragma GCC unroll 8
-  for (std::size_t column = 1; column < HoldBlock::kColumns; ++column) {
+  for (std::size_t column = 1; column < n; ++column) {
     sum = fma(Pack<Arch>(row[column]), in[column], sum);
   }
   return sum;
 }
 
+// One sub-step as ExactStep::attempt makes it, for friction that is a function of v and z.
+template <class Arch, FrictionKind kind>
+class SubStep {
+  using P = Pack<Arch>;
+  using Mask = PackMask<Arch>;
+
+ public:
+  Motion<Arch> end;
+  P error;       // m; infinite if the collocation was not solved
+  P kink = 0.0;  // halvings to before a reversal, 0: there is none
+
+  SubStep(const Motion<Arch>& s, const P& command, const P& load, const FrictionPack<Arch>& p,
+          const DriveConstants& c, const ParabolaBlock& block, const Mask& active)
+      : s_(s), load_(load), p_(p), block_(block), h_(block.h) {
+    const P start[5] = {s.i, s.w, s.delta, s.v, command};
+    begin();
+#pragma GCC unroll 8
+    for (std::size_t row = 0; row < 8; ++row) {
+      y_[row] = fma(weight(row, 5), f_[0], product<Arch>(block.row[row].data(), start));
+    }
+    const Mask solved = collocate(active);
+#pragma GCC unroll 8
+    for (std::size_t row = 0; row < 8; ++row) y_[row] = response(row);
+    end = {y_[4], y_[5], y_[6], y_[3], s.x + y_[7], s.z};
+    if (c.has_kink != 0) find_kink(Mask::of(c.has_kink));
+    estimate_error(c, active);
+    error = select(solved, error, P(kInfinity));
+    if (kind == FrictionKind::lugre) end.z = z_at(3);
+  }
+
+ private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  P weight(std::size_t row, std::size_t column) const { return P(block_.row[row][column]); }
+  P response(std::size_t row) const {
+    return fma(weight(row, 7), f_[2], fma(weight(row, 6), f_[1], y_[row]));
+  }
+  P z_at(int node) const { return fma(h_, parabola(kIntegral[node], dz_), s_.z); }
+
+  // The force at the start, and with its slope the speeds where they would be if it went on so.
+  void begin() {
+    if (kind == FrictionKind::lugre) {
+      dz_[0] = bristle_rate(p_, s_.v, s_.z);
+      f_[0] = load_ + fma(p_.sigma0, s_.z, p_.sigma1 * dz_[0]);
+      slope_ = P(0.0);
+    } else {
+      const WithSlope<P> at = regularised(p_, s_.v);
+      f_[0] = load_ + at.value;
+      slope_ = at.slope;
+    }
+  }
+
+  NodeForces<P> friction_at(const P (&v)[2]) const {
+    if constexpr (kind == FrictionKind::lugre) {
+      return bristles_at(p_, s_.z, dz_[0], h_, v);
+    } else {
+      return regularised_at(p_, v);
+    }
+  }
+
+  // Newton's iteration; a lane that has arrived stays as it is. Returns those that did.
+  Mask collocate(const Mask& active) {
+    constexpr int kMostIterations = 12;
+    constexpr std::size_t kRow[2] = {1, 3};  // of v at h/2 and h
+    const Matrix2<P> C = {weight(1, 6), weight(1, 7), weight(3, 6), weight(3, 7)};
+    const P zero(0.0), tolerance(block_.speed_tolerance);
+    P v[2], dv[2];
+    f_[1] = f_[2] = f_[0];
+    {
+      const P way[2] = {response(1) - s_.v, response(3) - s_.v};
+      newton(C, {slope_, zero, zero, slope_}, way, dv);
+      for (int j = 0; j < 2; ++j) v[j] = s_.v + dv[j];
+    }
+    Mask open = active;
+    for (int n = 0; n < kMostIterations; ++n) {
+      const NodeForces<P> at = friction_at(v);
+      const P f[2] = {load_ + at.f[0], load_ + at.f[1]};
+      P residual[2];
+      for (int j = 0; j < 2; ++j) {
+        const P answer = fma(weight(kRow[j], 7), f[1], fma(weight(kRow[j], 6), f[0], y_[kRow[j]]));
+        residual[j] = answer - v[j];
+      }
+      newton(C, at.df, residual, dv);
+      const P change = max(abs(dv[0]), abs(dv[1]));
+      f_[1] = select(open, f[0] + at.df.a * dv[0] + at.df.b * dv[1], f_[1]);
+      f_[2] = select(open, f[1] + at.df.c * dv[0] + at.df.d * dv[1], f_[2]);
+      for (int j = 0; j < 2; ++j) v[j] = select(open, v[j] + dv[j], v[j]);
+      if (kind == FrictionKind::lugre) {
+        dz_[1] = select(open, at.rate[0] + at.drate.a * dv[0] + at.drate.b * dv[1], dz_[1]);
+        dz_[2] = select(open, at.rate[1] + at.drate.c * dv[0] + at.drate.d * dv[1], dz_[2]);
+      }
+      open = open & !(change <= fma(P(1e-13), abs(v[1]), tolerance));
+      if (!open.any()) break;
+    }
+    return !open;
+  }
+
+  void find_kink(const Mask& may_have) {
+    constexpr double kNoTravel = 1e-14;                   // m: a reversal that moves less is none
+    constexpr double kHalvings[] = {3.0, 2.0, 1.0, 1.0};  // by the node behind it
+    const P zero(0.0), least = P(kNoTravel) / h_;
+    for (int node = 3; node >= 0; --node) {
+      const P& before = node == 0 ? s_.v : y_[node - 1];
+      const Mask crossed = (before * y_[node] < zero) & (abs(y_[node]) > least) & may_have;
+      kink = select(crossed, P(kHalvings[node]), kink);
+    }
+  }
+
+  // Friction need not be computed at h/4 and 3h/4 where a bound of what the parabola misses does.
+  void estimate_error(const DriveConstants& c, const Mask& active) {
+    const P inverse_mass(c.inverse_mass);
+    if (kind == FrictionKind::lugre) {
+      error = error_of(inverse_mass);
+      return;
+    }
+    const P bound = bound_of_error(c, inverse_mass);
+    const Mask small = bound <= P(c.tolerance);
+    error = bound;
+    if ((active & !small).any()) error = select(small, bound, error_of(inverse_mass));
+  }
+
+  // Speed is a parabola q(s) and at h/4 and 3h/4 a little else. The third derivative of f(q(s)) by
+  // s is f_3 q_1^3 + 3 f_2 q_1 q_2, those of f by q and of q by s; s (s - 1/2) (s - 1) / 6 is
+  // 1/128.
+  P bound_of_error(const DriveConstants& c, const P& inverse_mass) const {
+    const P v[3] = {s_.v, y_[1], y_[3]};
+    const P first = v[1] - v[0], second = v[2] - v[1];
+    const P q_2 = P(4.0) * abs(second - first);
+    const P q_1 = P(2.0) * max(abs(first), abs(second)) + q_2;
+    const P other =
+        max(abs(y_[0] - parabola(kQuarter[0], v)), abs(y_[2] - parabola(kQuarter[1], v)));
+    const Mask is_gentle = min(abs(v[0]), min(abs(v[1]), abs(v[2]))) - q_1 > P(c.tanh_end);
+    const auto f = [&](std::size_t n) {
+      return select(is_gentle, P(c.gentle[n - 1]), P(c.steep[n - 1]));
+    };
+    const P third = fma(f(3) * q_1, q_1, P(3.0) * f(2) * q_2) * q_1;
+    const P most = fma(f(1), other, P(1.0 / 128.0) * third);
+    return missed_at_most(most, h_ * inverse_mass * h_, h_ * inverse_mass * P(kMemory));
+  }
+
+  // What the parabola misses at h/4 and 3h/4, as the displacement (m) that it leaves.
+  P error_of(const P& inverse_mass) const {
+    const P impulse = h_ * inverse_mass;
+    if (kind == FrictionKind::regularised) {
+      return missed(load_ + regularised_force(p_, y_[0]), load_ + regularised_force(p_, y_[2]), f_,
+                    impulse * h_, impulse * P(kMemory));
+    }
+    P rate[2], f[2];
+    for (int j = 0; j < 2; ++j) {
+      const P z = z_at(2 * j);
+      rate[j] = bristle_rate(p_, y_[2 * j], z);
+      f[j] = load_ + fma(p_.sigma0, z, p_.sigma1 * rate[j]);
+    }
+    return missed(f[0], f[1], f_, impulse * h_, impulse * P(kMemory)) +
+           missed(rate[0], rate[1], dz_, h_, h_);
+  }
+
+  const Motion<Arch>& s_;
+  const P& load_;
+  const FrictionPack<Arch>& p_;
+  const ParabolaBlock& block_;
+  const P h_;
+  P y_[8];        // v at the four nodes, i, w, delta, and the way of x
+  P f_[3];        // N, at 0, h/2, h
+  P dz_[3] = {};  // m/s, there
+  P slope_;       // N s/m, of f at 0
+};
+
+// Through the zone of friction, lane for lane in sub-steps as ExactStep::advance chooses them;
+// those that want one of the same length make it together. Returns the lanes that need shorter
+// ones.
+template <class Arch, FrictionKind kind>
+[[gnu::flatten, gnu::noinline]] LaneBits through_zone(DriveBlock& s, const DriveInputBlock& input,
+                                                      const DriveConstants& c, const Ladder& ladder,
+                                                      LaneBits lanes) {
+  using P = Pack<Arch>;
+  using Mask = PackMask<Arch>;
+  constexpr int kWhole = 32;  // beyond all rungs
+  const FrictionPack<Arch> p(c, lanes);
+  const P command(input.command), load = P(input.F) + P(c.F_load), tolerance(c.tolerance);
+  const Motion<Arch> start = {P(s.i), P(s.w), P(s.delta), P(s.v), P(s.x), P(s.z)};
+  Motion<Arch> now = start;
+
+  const auto log2_of = [](int n) { return 31 - __builtin_clz(static_cast<unsigned>(n)); };
+  const int all = ladder.ticks << Ladder::kDepth, whole = log2_of(all);
+  int wanted[kLaneWidth], rest[kLaneWidth];  // rungs; lengths of the lowest
+  LaneBits open = lanes, others = 0, at_ease = 0;
+  for (std::size_t j = 0; j < kLaneWidth; ++j) {
+    wanted[j] = c.coarsest[j] - s.control[j].halvings;
+    rest[j] = all;
+    at_ease |= static_cast<LaneBits>((s.control[j].halvings == 0 && wanted[j] >= whole) << j);
+    others |= static_cast<LaneBits>((wanted[j] < 0) << j);
+  }
+  others &= lanes;
+  open &= static_cast<LaneBits>(~others);
+  const auto rung_of = [&](std::size_t j) {
+    if (rest[j] == all && wanted[j] >= whole) return kWhole;
+    const int fits = log2_of(rest[j]);
+    return wanted[j] < fits ? wanted[j] : fits;
+  };
+  while (open != 0) {
+    // whose turn is it?
+    LaneBits turn = open;
+    int rung = kWhole;
+    if ((open & ~at_ease) != 0) {
+      rung = rung_of(static_cast<std::size_t>(__builtin_ctz(open)));
+      for (std::size_t j = 0; j < kLaneWidth; ++j) {
+        if (rung_of(j) != rung) turn &= static_cast<LaneBits>(~(1U << j));
+      }
+    }
+    const ParabolaBlock& block = rung == kWhole ? *ladder.whole : ladder.rungs[rung];
+    const Mask active = Mask::of(turn);
+    const SubStep<Arch, kind> step(now, command, load, p, c, block, active);
+    const Mask good = active & (step.error <= tolerance) & (step.kink == P(0.0));
+    now = {select(good, step.end.i, now.i),         select(good, step.end.w, now.w),
+           select(good, step.end.delta, now.delta), select(good, step.end.v, now.v),
+           select(good, step.end.x, now.x),         select(good, step.end.z, now.z)};
+    const unsigned accepted = good.bits();
+    if (accepted == open && (open & ~at_ease) == 0) break;
+
+    // those that arrived, and how far the others go next
+    at_ease = 0;
+    LaneArray error, kink;
+    step.error.store(error);
+    step.kink.store(kink);
+    const int level = rung == kWhole ? whole : rung;
+    for (std::size_t j = 0; j < kLaneWidth; ++j) {
+      const auto bit = static_cast<LaneBits>(1U << j);
+      if (!(turn & bit)) continue;
+      if (accepted & bit) {
+        rest[j] -= rung == kWhole ? all : 1 << rung;
+        if (rest[j] == 0) open &= static_cast<LaneBits>(~bit);
+        if (level == wanted[j] && error[j] * 64.0 <= c.tolerance[j]) {
+          wanted[j] += error[j] * 4096.0 <= c.tolerance[j] ? 2 : 1;
+          if (wanted[j] > c.coarsest[j]) wanted[j] = c.coarsest[j];
+        }
+      } else {
+        wanted[j] = level - (kink[j] > 0.0 ? static_cast<int>(kink[j]) : 1);
+        if (wanted[j] >= 0) continue;
+        others |= bit;
+        open &= static_cast<LaneBits>(~bit);
+      }
+    }
+  }
+  const LaneBits arrived = lanes & static_cast<LaneBits>(~others);
+  for (std::size_t j = 0; j < kLaneWidth; ++j) {
+    if (arrived >> j & 1U) s.control[j].halvings = c.coarsest[j] - wanted[j];
+  }
+  const Mask moved = Mask::of(arrived);
+  select(moved, now.i, start.i).store(s.i);
+  select(moved, now.w, start.w).store(s.w);
+  select(moved, now.delta, start.delta).store(s.delta);
+  select(moved, now.v, start.v).store(s.v);
+  select(moved, now.x, start.x).store(s.x);
+  select(moved, now.z, start.z).store(s.z);
+  return others;
+}
+
 template <class Arch>
-LaneBits advance(DriveBlock& s, const DriveInputBlock& input, const HoldBlock& hold,
-                 const DriveConstants& c) {
+[[gnu::flatten]] LaneBits advance(DriveBlock& s, const DriveInputBlock& input,
+                                  const HoldBlock& hold, const DriveConstants& c,
+                                  const Ladder& ladder) {
   using P = Pack<Arch>;
   using Mask = PackMask<Arch>;
   constexpr std::size_t kColumns = HoldBlock::kColumns;
@@ -54,49 +363,53 @@ LaneBits advance(DriveBlock& s, const DriveInputBlock& input, const HoldBlock& h
   const P v(s.v), speed(c.glide_speed), zero(0.0);
   const Mask forwards = v > zero;
   const P friction = select(forwards, P(c.Fc_positive), -P(c.Fc_negative));
-  Mask glides = abs(v) > speed;
-  if (c.has_bristles) {
+  const Mask linear = speed < zero;
+  Mask moved = linear | (abs(v) > speed);
+  if (c.lugre != 0) {
     constexpr double kSettled = 1e-10;  // of Fc, as Gliding::holds
-    const P sigma0(c.sigma0);
-    glides = glides & ((sigma0 == zero) |
-                       (abs(fma(sigma0, P(s.z), -friction)) <= P(kSettled) * abs(friction)));
+    moved = moved & (Mask::of(0xFFU & ~c.lugre) |
+                     (abs(fma(P(c.sigma0), P(s.z), -friction)) <= P(kSettled) * abs(friction)));
   }
-
-  const P in[kColumns] = {P(s.i), P(s.w),           P(s.delta),
-                          v,      P(input.command), P(input.F) + P(c.F_load) + friction};
-  const P middle = product<Arch>(hold.middle.data(), in);
-  P out[HoldBlock::kRows];
+  const unsigned active = bits_of(input.active);
+  moved = moved & Mask::of(active);
+  unsigned gone = 0;
+  if (moved.any()) {
+    const P in[kColumns] = {P(s.i), P(s.w),           P(s.delta),
+                            v,      P(input.command), P(input.F) + P(c.F_load) + friction};
+    const P middle = product<Arch>(hold.middle.data(), in);
+    P out[HoldBlock::kRows];
 #pragma GCC unroll 8
-  for (std::size_t row = 0; row < HoldBlock::kRows; ++row) {
-    out[row] = product<Arch>(&hold.end[row * kColumns], in);
-  }
-  out[4] += P(s.x);
-
-  // does it glide all over the step?
-  const P slowest = select(forwards, min(middle, out[3]), -max(middle, out[3]));
-  glides = glides & (slowest > speed);
-  Mask moved = (speed < zero) | glides;
-  LaneBits others = 0;
-  if (!all_of(input.active)) {
-    const Mask active = mask_of<Arch>(input.active);
-    others = bits_of<Arch>(active & !moved);
-    moved = moved & active;
-  } else if (!moved.all()) {
-    others = bits_of<Arch>(!moved);
-  }
-  if (const LaneBits modes = c.has_slide_mode; modes != 0) {
-    const LaneBits up = bits_of<Arch>(moved & forwards), down = bits_of<Arch>(moved & !forwards);
-    for (std::size_t j = 0; j < kLaneWidth; ++j) {
-      if ((modes & up) >> j & 1U) s.slide[j] = SlideMode::positive;
-      if ((modes & down) >> j & 1U) s.slide[j] = SlideMode::negative;
+    for (std::size_t row = 0; row < HoldBlock::kRows; ++row) {
+      out[row] = product<Arch>(&hold.end[row * kColumns], in);
+    }
+    // does it glide all over the step?
+    const P slowest = select(forwards, min(middle, out[3]), -max(middle, out[3]));
+    moved = moved & (linear | (slowest > speed));
+    gone = moved.bits();
+    select(moved, out[0], in[0]).store(s.i);
+    select(moved, out[1], in[1]).store(s.w);
+    select(moved, out[2], in[2]).store(s.delta);
+    select(moved, out[3], v).store(s.v);
+    const P x(s.x);
+    select(moved, x + out[4], x).store(s.x);
+    if (const unsigned modes = c.has_slide_mode & gone; modes != 0) {
+      const unsigned up = forwards.bits();
+      for (std::size_t j = 0; j < kLaneWidth; ++j) {
+        if (!(modes >> j & 1U)) continue;
+        s.slide[j] = up >> j & 1U ? SlideMode::positive : SlideMode::negative;
+      }
     }
   }
-  select(moved, out[0], in[0]).store(s.i);
-  select(moved, out[1], in[1]).store(s.w);
-  select(moved, out[2], in[2]).store(s.delta);
-  select(moved, out[3], v).store(s.v);
-  select(moved, out[4], P(s.x)).store(s.x);
-  return others;
+  const unsigned stay = active & ~gone;
+  if (stay == 0) return 0;
+  unsigned others = stay & ~(c.regularised | c.lugre);
+  if (const auto lanes = static_cast<LaneBits>(stay & c.regularised)) {
+    others |= through_zone<Arch, FrictionKind::regularised>(s, input, c, ladder, lanes);
+  }
+  if (const auto lanes = static_cast<LaneBits>(stay & c.lugre)) {
+    others |= through_zone<Arch, FrictionKind::lugre>(s, input, c, ladder, lanes);
+  }
+  return static_cast<LaneBits>(others);
 }
 
 }  // namespace

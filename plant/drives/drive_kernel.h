@@ -23,20 +23,49 @@ struct HoldBlock {
   std::array<LaneArray, kColumns> middle{};       // v at half the step
 };
 
+/// Eight drives over a sub-step while the force against each slide is a parabola: the rows of
+/// Propagator::slide, each by its columns.
+struct ParabolaBlock {
+  static constexpr std::size_t kRows = 8, kColumns = 8;
+  double h = 0.0;  // s
+  std::array<std::array<LaneArray, kColumns>, kRows> row{};
+  LaneArray speed_tolerance{};  // m/s, of the last correction of Newton's iteration
+};
+
+/// Lengths into which a step may be cut: rung n is 2^(n - kDepth) base periods.
+struct Ladder {
+  static constexpr int kDepth = 4;
+  int ticks = 0;                         // of the step
+  const ParabolaBlock* whole = nullptr;  // the step in one; null: no lane ever needs one
+  const ParabolaBlock* rungs = nullptr;
+};
+
 /// What of eight drives does not depend on the length of the step.
 struct DriveConstants {
   LaneArray F_load{};                      // N
   LaneArray glide_speed{};                 // m/s, struct Gliding; below 0: the drive is linear
-  LaneArray Fc_positive{}, Fc_negative{};  // N
-  LaneArray sigma0{};                      // N/m
-  bool has_bristles = false;               // any of them
-  LaneBits has_slide_mode = 0;             // those with set-valued friction
+  LaneArray Fc_positive{}, Fc_negative{};  // N, FrictionParams
+  LaneArray Fs_positive{}, Fs_negative{};  // N
+  LaneArray inverse_vs{}, inverse_v0{};    // s/m
+  LaneArray sigma0{}, sigma1{};            // N/m, N s/m
+  LaneArray inverse_mass{};                // 1/kg, of the slide
+  LaneArray tolerance{};                   // m, Resolution
+  /// Bounds of regularised friction's derivatives by speed, the first to the third (N s/m, ...):
+  /// everywhere, and where tanh has ended.
+  std::array<LaneArray, 3> steep{}, gentle{};
+  LaneArray tanh_end{};                    // m/s
+  std::array<int, kLaneWidth> coarsest{};  // rung of the longest sub-step
+  LaneBits has_slide_mode = 0;             // lanes with set-valued friction
+  LaneBits regularised = 0, lugre = 0;     // lanes that the kernel moves with their friction
+  LaneBits has_kink = 0;                   // friction is continuous at v = 0, its slope is not
 };
 
 /// Functions that are compiled for each instruction set.
 struct DriveKernel {
-  /// Moves the active lanes that are linear all over the step and returns the others, untouched.
-  LaneBits (*advance)(DriveBlock&, const DriveInputBlock&, const HoldBlock&, const DriveConstants&);
+  /// Moves the active lanes by a step. Returns those that it cannot move, untouched: friction that
+  /// is no function of speed, backlash, cogging; and sub-steps below the lowest rung.
+  LaneBits (*advance)(DriveBlock&, const DriveInputBlock&, const HoldBlock&, const DriveConstants&,
+                      const Ladder&);
 };
 
 template <SimdLevel level>

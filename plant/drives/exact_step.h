@@ -65,6 +65,15 @@ class ExactStep {
   void advance(LaneState& state, double command, double F, Tick step) const;
 
   const Gliding& gliding() const { return gliding_; }
+  const Resolution& resolution() const { return resolution_; }
+  /// Of its longest sub-step in base periods.
+  int coarsest_log2() const {
+    return static_cast<int>(linear_.front().ladder.size()) - 1 - sub_ticks_;
+  }
+  /// Largest last correction of Newton's iteration (m/s).
+  double speed_tolerance() const { return speed_tolerance_; }
+  /// Whether friction is continuous at v = 0 and its slope is not.
+  bool has_kink() const { return has_kink_; }
 
  private:
   static constexpr std::size_t kNodes = Propagator::kNodes, kNone = kNodes;

@@ -5,6 +5,8 @@
 #include <unsupported/Eigen/MatrixFunctions>
 #include <utility>
 
+#include "plant/drives/drive_kernel.h"
+
 namespace servomill::plant {
 namespace {
 
@@ -42,7 +44,23 @@ PreparedDrive::PreparedDrive(const FeedDriveParams& drive, double period, std::v
     const double h = static_cast<double>(step) * base_period;
     hold.push_back({hold_matrix(params, h), hold_matrix(params, 0.5 * h).row(kVelocity)});
   }
-  if (!params.is_linear() && !steps.empty()) exact.emplace(params, base_period, longest);
+  if (params.is_linear() || steps.empty()) return;
+  exact.emplace(params, base_period, longest);
+  if (!smooth()) return;
+  const PropagatorSeries series(drive_equations(params));
+  for (const Tick step : steps) {
+    whole.push_back(series.over(static_cast<long double>(step) * base_period));
+  }
+  for (int n = 0; (1 << n) <= longest << Ladder::kDepth; ++n) {
+    rungs.push_back(
+        series.over(std::ldexp(static_cast<long double>(base_period), n - Ladder::kDepth)));
+  }
+}
+
+bool PreparedDrive::smooth() const {
+  const FrictionKind kind = params.friction.kind;
+  return (kind == FrictionKind::regularised || kind == FrictionKind::lugre) && params.gap == 0.0 &&
+         params.cogging.T == 0.0;
 }
 
 std::shared_ptr<const PreparedDrive> PreparedDrives::get(const FeedDriveParams& params,

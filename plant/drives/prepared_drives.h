@@ -30,6 +30,11 @@ struct PreparedDrive {
   std::vector<Tick> steps;
   std::vector<Hold> hold;          // one for each step
   std::optional<ExactStep> exact;  // of a drive that is not linear
+
+  /// Whether its friction is a smooth function of its state, so that the kernel moves it.
+  bool smooth() const;
+  /// The same as `hold` for a force that is a parabola, of smooth drives; and rungs of the Ladder.
+  std::vector<Propagator> whole, rungs;
 };
 
 /// Keeps prepared drives from one bank to the next: those that were made last. May be shared by

@@ -52,6 +52,46 @@ struct PackMask {
     return result;
   }
   bool all() const { return !(!*this).any(); }
+
+  /// One bit for each lane, lane 0 the lowest.
+  unsigned bits() const {
+    unsigned result = 0;
+#pragma GCC unroll 4
+    for (std::size_t n = 0; n < kRegisters; ++n) result |= bits_of(r[n]) << (n * Batch::size);
+    return result;
+  }
+  static PackMask of(unsigned bits) {
+    PackMask c;
+#pragma GCC unroll 4
+    for (std::size_t n = 0; n < kRegisters; ++n) set(c.r[n], bits >> (n * Batch::size));
+    return c;
+  }
+
+ private:
+  static unsigned bits_of(const Batch& mask) {
+#ifdef __AVX512F__
+    if constexpr (Batch::size == 8) return mask.data;
+#endif
+#ifdef __AVX2__
+    if constexpr (Batch::size == 4) return static_cast<unsigned>(_mm256_movemask_pd(mask.data));
+#endif
+    bool truths[Batch::size];
+    mask.store_unaligned(truths);
+    unsigned result = 0;
+    for (std::size_t j = 0; j < Batch::size; ++j) result |= (truths[j] ? 1U : 0U) << j;
+    return result;
+  }
+  static void set(Batch& mask, unsigned bits) {
+#ifdef __AVX512F__
+    if constexpr (Batch::size == 8) {
+      mask.data = static_cast<__mmask8>(bits);
+      return;
+    }
+#endif
+    bool truths[Batch::size];
+    for (std::size_t j = 0; j < Batch::size; ++j) truths[j] = bits >> j & 1U;
+    mask = Batch::load_unaligned(truths);
+  }
 };
 
 /// Eight doubles.
