@@ -6,12 +6,12 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <optional>
 
-#include "plant/vocabulary/units.h"
-#include "sim/metrology/circular_test.h"
-#include "sim/metrology/section_circle.h"
+#include "sim/case_samples.h"
+#include "sim/circular_quantities.h"
 #include "sim/scenario.h"
 
 namespace servomill::sim {
@@ -91,24 +91,6 @@ class AlongPath {
   std::size_t row_ = 0;
 };
 
-// The samples of a case that a quantity looks at: feed motion in the sections asked for.
-std::vector<std::size_t> samples_of(const CaseData& one, const std::vector<std::string>& sections) {
-  const Series& series = *one.servo;
-  const std::size_t rapid = *series.column("rapid"), section = *series.column("section");
-  std::vector<bool> wanted(one.sections.size(), sections.empty());
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (std::find(sections.begin(), sections.end(), one.sections[i]) != sections.end()) {
-      wanted[i] = true;
-    }
-  }
-  std::vector<std::size_t> rows;
-  for (std::size_t row = 0; row < series.rows(); ++row) {
-    const auto index = static_cast<std::size_t>(series.at(row, section));
-    if (series.at(row, rapid) == 0.0 && index < wanted.size() && wanted[index]) rows.push_back(row);
-  }
-  return rows;
-}
-
 double statistic_of(const std::string& statistic, const std::vector<double>& values) {
   const auto is_none = [](double v) { return std::isnan(v); };
   if (values.empty() || std::any_of(values.begin(), values.end(), is_none)) return kNone;
@@ -171,80 +153,21 @@ double response_time(const CaseData& one, char axis, const std::vector<std::size
   return ee > 0.0 ? -re / ee * kMsPerS : kNone;
 }
 
-// The tool centre point in the workpiece at some samples, m.
-std::vector<Eigen::Vector3d> tool_positions(const CaseData& one, std::string_view name,
-                                            const std::vector<std::size_t>& rows) {
-  std::array<std::optional<std::size_t>, 3> columns;
-  for (std::size_t i = 0; i < 3; ++i) columns[i] = one.servo->column(name, "XYZ"[i]);
-  std::vector<Eigen::Vector3d> out;
-  if (!columns[0] || !columns[1] || !columns[2]) return out;
-  out.reserve(rows.size());
-  for (const std::size_t row : rows) {
-    out.emplace_back(one.servo->at(row, *columns[0]) * mm, one.servo->at(row, *columns[1]) * mm,
-                     one.servo->at(row, *columns[2]) * mm);
-  }
-  return out;
-}
-
-// A section as a circle and the true path there.
-struct Turn {
-  SectionCircle circle;
-  std::vector<Eigen::Vector2d> path;  // m
+// A case with what several quantities look at.
+struct Compared {
+  explicit Compared(const CaseData& data_in) : data(data_in), samples(data_in), circles(samples) {}
+  const CaseData& data;
+  CaseSamples samples;
+  CircularQuantities circles;
 };
 
-std::optional<Turn> turn_of(const CaseData& one, const std::string& section) {
-  const auto rows = samples_of(one, {section});
-  const auto nominal = circle_of_section(tool_positions(one, "tool_position_nominal", rows));
-  const auto* circle = std::get_if<SectionCircle>(&nominal);
-  if (circle == nullptr) return std::nullopt;
-  Turn turn{*circle, circle->in_plane(tool_positions(one, "tool_position_true", rows))};
-  if (why_no_turn(turn.path, circle->nominal)) return std::nullopt;
-  return turn;
-}
-
-// Of the two reversals of an axis the value that is larger by magnitude.
-double larger_at_reversal(const CircularTurn& turn, const SectionCircle& circle, char axis,
-                          double Reversal::*value) {
-  double larger = kNone;
-  for (const Reversal& reversal : turn.reversals) {
-    const int letter = reversal.axis == 0 ? circle.first : circle.second;
-    if ("XYZ"[letter] != axis) continue;
-    if (!(std::abs(reversal.*value) <= std::abs(larger))) larger = reversal.*value;
-  }
-  return larger;
-}
-
-double circular_value(const QuantitySpec& spec, const CaseData& one) {
-  std::vector<Turn> turns;
-  for (const std::string& section : spec.sections) {
-    auto turn = turn_of(one, section);
-    if (!turn) return kNone;
-    turns.push_back(std::move(*turn));
-  }
-  const auto& [circle, path] = turns.front();
-  if (turns.size() == 2) {
-    const BidirectionalCircle both = evaluate_both(path, turns[1].path, circle.nominal);
-    if (spec.name == "bidirectional_circular_deviation") return both.G_b / um;
-    if (spec.name == "mean_bidirectional_radial_deviation") return both.D / um;
-    assert(spec.name == "circle_squareness");
-    return both.squareness / urad;
-  }
-  const CircularTurn turn = evaluate_turn(path, circle.nominal);
-  if (spec.name == "circular_deviation") return turn.G / um;
-  if (spec.name == "circular_deviation_least_squares") return turn.G_least_squares / um;
-  if (spec.name == "radial_deviation_max") return turn.F_max / um;
-  if (spec.name == "radial_deviation_min") return turn.F_min / um;
-  assert(spec.name == "reversal_spike" || spec.name == "reversal_step");
-  const auto value = spec.name == "reversal_spike" ? &Reversal::spike : &Reversal::step;
-  return larger_at_reversal(turn, circle, spec.axis, value) / um;
-}
-
-double evaluate(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
+double evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* base) {
+  const CaseData& one = compared.data;
   if (spec.name == "cycle_time") return one.duration;
   if (spec.name == "blocks") return one.blocks;
   if (!one.finished || (base != nullptr && !base->finished)) return kNone;
-  if (quantity_info(spec.name).circles > 0) return circular_value(spec, one);
-  const auto rows = samples_of(one, spec.sections);
+  if (quantity_info(spec.name).circles > 0) return compared.circles.value(spec);
+  const std::vector<std::size_t>& rows = compared.samples.rows(spec.sections);
   if (spec.name == "following_error") {
     return statistic_of(spec.statistic, column_of(one, "following_error_linear", spec.axis, rows));
   }
@@ -267,9 +190,9 @@ double evaluate(const QuantitySpec& spec, const CaseData& one, const CaseData* b
   return 100.0 * (1.0 - statistic_of("max", difference) / statistic_of("max", imposed));
 }
 
-const CaseData* find(std::span<const CaseData> cases, std::string_view name) {
-  for (const CaseData& one : cases) {
-    if (one.name == name) return &one;
+Compared* find(std::deque<Compared>& cases, std::string_view name) {
+  for (Compared& one : cases) {
+    if (one.data.name == name) return &one;
   }
   return nullptr;
 }
@@ -304,11 +227,13 @@ const QuantityInfo& quantity_info(std::string_view name) {
 
 std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
                                    std::span<const CaseData> cases) {
+  std::deque<Compared> compared;
+  for (const CaseData& one : cases) compared.emplace_back(one);
   std::vector<ComparisonRow> rows;
   for (const QuantitySpec& spec : specs) {
-    const CaseData* base = spec.base.empty() ? nullptr : find(cases, spec.base);
+    const Compared* base = spec.base.empty() ? nullptr : find(compared, spec.base);
     for (const std::string& name : spec.cases) {
-      const CaseData* one = find(cases, name);
+      Compared* one = find(compared, name);
       ComparisonRow row;
       row.case_name = name;
       row.quantity = spec.name;
@@ -319,7 +244,7 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
       row.reference = spec.reference;
       row.kind = spec.kind;
       const bool missing = one == nullptr || (!spec.base.empty() && base == nullptr);
-      row.value = missing ? kNone : evaluate(spec, *one, base);
+      row.value = missing ? kNone : evaluate(spec, *one, base != nullptr ? &base->data : nullptr);
       rows.push_back(std::move(row));
     }
   }

@@ -562,12 +562,11 @@ const CaseSpec* Scenario::find_case(std::string_view case_name) const {
   return nullptr;
 }
 
-Scenario read_document(const ScenarioDocument& scenario, const std::string& name,
-                       InputFiles& files) {
+Scenario read_document(ScenarioDocument scenario, const std::string& name, InputFiles& files) {
   Scenario out;
   out.name = name;
-  out.machine_text = scenario.machine_text;
-  ScenarioReader(scenario.document, files, out).read();
+  out.machine_text = std::move(scenario.machine_text);
+  ScenarioReader(std::move(scenario.document), files, out).read();
   return out;
 }
 

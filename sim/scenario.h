@@ -107,8 +107,7 @@ struct ScenarioDocument;
 class InputFiles;
 /// What both have in common: the document with the machine in it (sim/scenario_document.h).
 /// @param files  where the program is looked for
-Scenario read_document(const ScenarioDocument& scenario, const std::string& name,
-                       InputFiles& files);
+Scenario read_document(ScenarioDocument scenario, const std::string& name, InputFiles& files);
 
 /// Only a machine, for `check`.
 MachineSettings read_machine_file(const std::string& path);

@@ -230,16 +230,25 @@ void Document::set(std::string_view assignment) {
   if (parser.rest().empty()) throw InputError(place, "no value after '='; an empty text is \"\"");
   Value value = value_of(parser.rest(), place);
 
-  Value changed = root_;  // a fault half-way leaves the document as it was
-  Value* at = &changed;
+  // A fault leaves the document as it was: what is missing on the way is made after all that can
+  // be wrong but an index into something new.
+  std::optional<Value> before;
+  if (std::any_of(steps.begin(), steps.end(), [](const Step& one) { return one.in_brackets; })) {
+    before = root_;
+  }
+  Value* at = &root_;
   std::string path;
-  for (const Step& step : steps) {
-    at = &descend(*at, step, path, place);
-    path = at->key.empty() ? fmt::format("{}[{}]", path, step.name) : shown(path, step);
+  try {
+    for (const Step& step : steps) {
+      at = &descend(*at, step, path, place);
+      path = at->key.empty() ? fmt::format("{}[{}]", path, step.name) : shown(path, step);
+    }
+  } catch (const InputError&) {
+    if (before) root_ = std::move(*before);
+    throw;
   }
   value.key_place = place;
   replace(*at, std::move(value));
-  root_ = std::move(changed);
 }
 
 void Document::merge(const Value& overriding) { merge_table(root_, overriding); }

@@ -184,11 +184,15 @@ std::string product_of_base_units(Quantity q) {
   return (above.empty() ? "1" : above) + below;
 }
 
-}  // namespace
+// A product of symbols; nullopt if it is none.
+struct Product {
+  Unit unit;                      // without its spelling
+  std::string_view unknown = {};  // the word that is no symbol; empty: the form is wrong
+  bool is_unit = false;
+};
 
-ParsedUnit parse_unit(std::string_view symbol) {
-  Unit unit{std::string(symbol), {}, 1.0};
-  const std::string complaint = fmt::format("unknown unit '{}'", symbol);
+Product product_of(std::string_view symbol) {
+  Product out;
   int sign = 1;
   bool first = true;
   std::string_view rest = symbol;
@@ -196,24 +200,45 @@ ParsedUnit parse_unit(std::string_view symbol) {
     const std::size_t end = rest.find_first_of(" /");
     std::string_view word = rest.substr(0, end);
     int exponent = 1;
-    if (!split_power(word, exponent) || word.empty()) return {std::nullopt, complaint};
+    if (!split_power(word, exponent) || word.empty()) return out;
     if (!(first && word == "1")) {
       const Symbol* known = find_symbol(word);
-      if (known == nullptr) return {std::nullopt, unknown_symbol(word)};
-      multiply(unit, *known, sign * exponent);
+      if (known == nullptr) {
+        out.unknown = word;
+        return out;
+      }
+      multiply(out.unit, *known, sign * exponent);
     }
-    if (end == std::string_view::npos) return {unit, ""};
+    if (end == std::string_view::npos) {
+      out.is_unit = true;
+      return out;
+    }
     sign = rest[end] == '/' ? -1 : 1;
     rest.remove_prefix(end + 1);
     first = false;
   }
 }
 
+}  // namespace
+
+ParsedUnit parse_unit(std::string_view symbol) {
+  Product product = product_of(symbol);
+  if (product.is_unit) {
+    product.unit.symbol = symbol;
+    return {std::move(product.unit), ""};
+  }
+  return {std::nullopt, product.unknown.empty() ? fmt::format("unknown unit '{}'", symbol)
+                                                : unknown_symbol(product.unknown)};
+}
+
 std::optional<Unit> unit_of_key(std::string_view key, Quantity quantity) {
   for (std::size_t bar = key.find('_'); bar != std::string_view::npos;
        bar = key.find('_', bar + 1)) {
-    ParsedUnit parsed = parse_unit(symbol_of_suffix(key.substr(bar + 1)));
-    if (parsed.unit && parsed.unit->quantity == quantity) return parsed.unit;
+    std::string symbol = symbol_of_suffix(key.substr(bar + 1));
+    Product product = product_of(symbol);  // most endings are none: no word is lost about them
+    if (!product.is_unit || product.unit.quantity != quantity) continue;
+    product.unit.symbol = std::move(symbol);
+    return std::move(product.unit);
   }
   return std::nullopt;
 }
@@ -256,17 +281,18 @@ std::optional<NumberAndUnit> split_quantity(std::string_view text) {
 
 ScaledText scale_text(std::string_view text, Quantity quantity) {
   const auto split = split_quantity(text);
-  const std::string expected =
-      fmt::format("must be {} such as \"3 {}\"", name_of(quantity), example_unit(quantity));
-  if (!split) return {0.0, {}, expected};
-  if (split->unit.empty()) return {0.0, {}, "has no unit; " + expected};
+  const auto expected = [quantity] {
+    return fmt::format("must be {} such as \"3 {}\"", name_of(quantity), example_unit(quantity));
+  };
+  if (!split) return {0.0, {}, expected()};
+  if (split->unit.empty()) return {0.0, {}, "has no unit; " + expected()};
   ParsedUnit parsed = parse_unit(split->unit);
   if (!parsed.unit) return {0.0, {}, parsed.complaint};
   if (parsed.unit->quantity != quantity) {
     return {0.0,
             {},
             fmt::format("'{}' is the unit of {}; {}", split->unit, name_of(parsed.unit->quantity),
-                        expected)};
+                        expected())};
   }
   return {split->number * parsed.unit->factor, *parsed.unit, ""};
 }

@@ -189,7 +189,13 @@ const Value* Reader::require(std::string_view key, Value::Type type) {
   return value;
 }
 
-double Reader::number(const Value& value, std::string_view key, const std::string& name,
+// "path.key" or, for an item of its list, "path.key[2]"
+std::string Reader::name_of(std::string_view key, std::optional<std::size_t> item) const {
+  const std::string name = joined_key(path_, key);
+  return item ? fmt::format("{}[{}]", name, *item) : name;
+}
+
+double Reader::number(const Value& value, std::string_view key, std::optional<std::size_t> item,
                       Quantity quantity, Rules rules) {
   ScaledText scaled;
   const bool from_text = value.type == Value::Type::text && quantity != kNumber;
@@ -211,20 +217,20 @@ double Reader::number(const Value& value, std::string_view key, const std::strin
     scaled.complaint = sentence(rules, scaled.si, scaled.unit, name_unit);
   }
   if (scaled.complaint.empty()) return scaled.si;
-  note(value, name, scaled.complaint);
+  note(value, name_of(key, item), scaled.complaint);
   return 0.0;
 }
 
 double Reader::real(std::string_view key, Quantity quantity, Rules rules) {
   const Value* value = find(key);
-  if (value != nullptr) return number(*value, key, joined_key(path_, key), quantity, rules);
+  if (value != nullptr) return number(*value, key, {}, quantity, rules);
   missing(key);
   return 0.0;
 }
 
 double Reader::real_or(std::string_view key, double fallback, Quantity quantity, Rules rules) {
   const Value* value = find(key);
-  return value == nullptr ? fallback : number(*value, key, joined_key(path_, key), quantity, rules);
+  return value == nullptr ? fallback : number(*value, key, {}, quantity, rules);
 }
 
 std::int64_t Reader::whole(const Value& value, std::string_view key, Rules rules) {
@@ -287,8 +293,7 @@ std::vector<double> Reader::numbers(const Value& list, std::string_view key, Qua
                                     Rules rules) {
   std::vector<double> out;
   for (const Value& item : list.children) {
-    const std::string name = fmt::format("{}[{}]", joined_key(path_, key), out.size());
-    out.push_back(number(item, key, name, quantity, rules));
+    out.push_back(number(item, key, out.size(), quantity, rules));
   }
   return out;
 }
@@ -308,7 +313,7 @@ std::vector<std::string> Reader::strings(const Value& list, std::string_view key
   std::vector<std::string> out;
   for (const Value& item : list.children) {
     if (item.type != Value::Type::text) {
-      note(item, fmt::format("{}[{}]", joined_key(path_, key), out.size()), "must be a text");
+      note(item, name_of(key, out.size()), "must be a text");
     }
     out.push_back(item.text);
   }
@@ -346,7 +351,7 @@ Reader Reader::table_or_empty(std::string_view key) {
 std::vector<Reader> Reader::readers(const Value& list, std::string_view key) {
   std::vector<Reader> out;
   for (const Value& item : list.children) {
-    const std::string name = fmt::format("{}[{}]", joined_key(path_, key), out.size());
+    const std::string name = name_of(key, out.size());
     const bool is_table = item.type == Value::Type::table;
     if (!is_table) note(item, name, "must be a table");
     out.push_back({state_, is_table ? &item : &state_->nothing, name, !is_table});

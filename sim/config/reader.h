@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -132,8 +133,9 @@ class Reader {
   void check_type(const Value*& value, std::string_view key, Value::Type type);
   void missing(std::string_view key);
   Place own_place() const;
+  std::string name_of(std::string_view key, std::optional<std::size_t> item) const;
   void note(const Value& value, const std::string& name, std::string_view rule);
-  double number(const Value& value, std::string_view key, const std::string& name,
+  double number(const Value& value, std::string_view key, std::optional<std::size_t> item,
                 Quantity quantity, Rules rules);
   std::int64_t whole(const Value& value, std::string_view key, Rules rules);
   std::size_t named(const Value& value, std::string_view key,

@@ -26,28 +26,58 @@ bool has_header(const Value& value) {
   return value.type == Value::Type::table || is_list_of_tables(value);
 }
 
+bool is_bare(char c) {
+  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
+         c == '-';
+}
+
+void append_key(std::string& out, std::string_view key) {
+  const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), is_bare);
+  out += bare ? key : quoted_text(key);
+}
+
+void append_inline(std::string& out, const Value& value) {
+  if (value.type != Value::Type::list && value.type != Value::Type::table) {
+    out += value.written;
+    return;
+  }
+  const bool is_table = value.type == Value::Type::table;
+  out += !is_table ? "[" : value.children.empty() ? "{" : "{ ";
+  bool first = true;
+  for (const Value& child : value.children) {
+    if (!first) out += ", ";
+    first = false;
+    if (is_table) {
+      append_key(out, child.key);
+      out += " = ";
+    }
+    append_inline(out, child);
+  }
+  out += !is_table ? "]" : value.children.empty() ? "}" : " }";
+}
+
 void write_table(std::string& out, const Value& table, const std::string& path) {
   // what belongs to the table itself must stand before the first header
   for (const Value& entry : table.children) {
-    if (!has_header(entry)) out += quoted_key(entry.key) + " = " + inline_toml(entry) + "\n";
+    if (has_header(entry)) continue;
+    append_key(out, entry.key);
+    out += " = ";
+    append_inline(out, entry);
+    out += '\n';
   }
   for (const Value& entry : table.children) {
+    if (!has_header(entry)) continue;
     const std::string name = joined_key(path, entry.key);
     if (entry.type == Value::Type::table) {
       out += "\n[" + name + "]\n";
       write_table(out, entry, name);
-    } else if (is_list_of_tables(entry)) {
+    } else {
       for (const Value& item : entry.children) {
         out += "\n[[" + name + "]]\n";
         write_table(out, item, name);
       }
     }
   }
-}
-
-bool is_bare(char c) {
-  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
-         c == '-';
 }
 
 }  // namespace
@@ -106,15 +136,9 @@ std::string_view type_name(Value::Type type) {
 }
 
 std::string inline_toml(const Value& value) {
-  if (value.type != Value::Type::list && value.type != Value::Type::table) return value.written;
   std::string out;
-  for (const Value& child : value.children) {
-    if (!out.empty()) out += ", ";
-    if (value.type == Value::Type::table) out += quoted_key(child.key) + " = ";
-    out += inline_toml(child);
-  }
-  if (value.type == Value::Type::list) return "[" + out + "]";
-  return out.empty() ? "{}" : "{ " + out + " }";
+  append_inline(out, value);
+  return out;
 }
 
 std::string to_toml(const Value& table) {
@@ -124,8 +148,9 @@ std::string to_toml(const Value& table) {
 }
 
 std::string quoted_key(std::string_view key) {
-  const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), is_bare);
-  return bare ? std::string(key) : quoted_text(key);
+  std::string out;
+  append_key(out, key);
+  return out;
 }
 
 std::string quoted_text(std::string_view text) {
@@ -145,7 +170,10 @@ std::string quoted_text(std::string_view text) {
 }
 
 std::string joined_key(std::string_view path, std::string_view key) {
-  return path.empty() ? quoted_key(key) : fmt::format("{}.{}", path, quoted_key(key));
+  std::string out(path);
+  if (!out.empty()) out += '.';
+  append_key(out, key);
+  return out;
 }
 
 }  // namespace servomill::sim

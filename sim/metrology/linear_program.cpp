@@ -10,19 +10,17 @@
 namespace servomill::sim {
 namespace {
 
-using Eigen::VectorXd;
-
 constexpr double kRounding = 1e-13;  // of what is added up, for components of the order of 1
 
 // Whether x lies outside by more than rounding.
-bool cuts_off(const HalfSpace& half, const VectorXd& x) {
+bool cuts_off(const HalfSpace& half, const SmallVector& x) {
   const double size = 1.0 + half.a.cwiseAbs().dot(x.cwiseAbs()) + std::abs(half.b);
   return half.a.dot(x) > half.b + kRounding * size;
 }
 
 // The vector without its component k.
-VectorXd without(const VectorXd& v, Eigen::Index k) {
-  VectorXd out(v.size() - 1);
+SmallVector without(const SmallVector& v, Eigen::Index k) {
+  SmallVector out(v.size() - 1);
   out << v.head(k), v.tail(v.size() - k - 1);
   return out;
 }
@@ -34,15 +32,15 @@ HalfSpace on_edge(const HalfSpace& half, const HalfSpace& edge, Eigen::Index k) 
 }
 
 // x_k with edge.a . x = edge.b, put into its place among the others.
-VectorXd lifted(const VectorXd& others, const HalfSpace& edge, Eigen::Index k) {
-  VectorXd x(others.size() + 1);
+SmallVector lifted(const SmallVector& others, const HalfSpace& edge, Eigen::Index k) {
+  SmallVector x(others.size() + 1);
   x << others.head(k), 0.0, others.tail(others.size() - k);
   x[k] = (edge.b - edge.a.dot(x)) / edge.a[k];
   return x;
 }
 
-std::optional<VectorXd> minimize_on_line(double cost, double low, double high,
-                                         const std::vector<HalfSpace>& constraints) {
+std::optional<SmallVector> minimize_on_line(double cost, double low, double high,
+                                            const std::vector<HalfSpace>& constraints) {
   double size = 1.0 + std::max(std::abs(low), std::abs(high));
   for (const HalfSpace& half : constraints) {
     const double a = half.a[0];
@@ -52,15 +50,15 @@ std::optional<VectorXd> minimize_on_line(double cost, double low, double high,
     if (std::abs(a) <= kRounding && half.b < -kRounding * size) return std::nullopt;
   }
   if (low > high + kRounding * size) return std::nullopt;
-  return VectorXd::Constant(1, cost > 0.0 ? low : high);
+  return SmallVector::Constant(1, cost > 0.0 ? low : high);
 }
 
 // The bounds are the first 2 d constraints, so that there is a best x at any time.
-std::optional<VectorXd> solve(const VectorXd& cost, const VectorXd& bound,
-                              const std::vector<HalfSpace>& constraints) {
+std::optional<SmallVector> solve(const SmallVector& cost, const SmallVector& bound,
+                                 const std::vector<HalfSpace>& constraints) {
   const Eigen::Index d = cost.size();
   if (d == 1) return minimize_on_line(cost[0], -bound[0], bound[0], constraints);
-  VectorXd x(d);
+  SmallVector x(d);
   for (Eigen::Index k = 0; k < d; ++k) x[k] = cost[k] > 0.0 ? -bound[k] : bound[k];
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     const HalfSpace& edge = constraints[i];
@@ -72,10 +70,10 @@ std::optional<VectorXd> solve(const VectorXd& cost, const VectorXd& bound,
     std::vector<HalfSpace> before;
     before.reserve(i + 2);
     for (const double sign : {1.0, -1.0}) {
-      before.push_back(on_edge({sign * VectorXd::Unit(d, k), bound[k]}, edge, k));
+      before.push_back(on_edge({sign * SmallVector::Unit(d, k), bound[k]}, edge, k));
     }
     for (std::size_t j = 0; j < i; ++j) before.push_back(on_edge(constraints[j], edge, k));
-    const auto share = VectorXd(cost - cost[k] / edge.a[k] * edge.a);
+    const auto share = SmallVector(cost - cost[k] / edge.a[k] * edge.a);
     const auto others = solve(without(share, k), without(bound, k), before);
     if (!others) return std::nullopt;
     x = lifted(*others, edge, k);
@@ -85,8 +83,8 @@ std::optional<VectorXd> solve(const VectorXd& cost, const VectorXd& bound,
 
 }  // namespace
 
-std::optional<VectorXd> minimize(const VectorXd& cost, const VectorXd& bound,
-                                 std::vector<HalfSpace> constraints) {
+std::optional<SmallVector> minimize(const SmallVector& cost, const SmallVector& bound,
+                                    std::vector<HalfSpace> constraints) {
   assert(cost.size() >= 1 && cost.size() <= 6 && bound.size() == cost.size());
   boost::random::mt19937 random(1);
   for (std::size_t i = constraints.size(); i > 1; --i) {

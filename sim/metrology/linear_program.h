@@ -7,9 +7,12 @@
 
 namespace servomill::sim {
 
+/// Of up to 6 numbers, which need no memory of their own.
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
+
 /// a . x <= b
 struct HalfSpace {
-  Eigen::VectorXd a;
+  SmallVector a;
   double b = 0.0;
 };
 
@@ -23,7 +26,7 @@ struct HalfSpace {
 /// @param constraints  each a (d), with components of the order of 1
 /// Source: R. Seidel, Small-dimensional linear programming and convex hulls made easy, Discrete
 /// Comput. Geom. 6 (1991), section 2.
-std::optional<Eigen::VectorXd> minimize(const Eigen::VectorXd& cost, const Eigen::VectorXd& bound,
-                                        std::vector<HalfSpace> constraints);
+std::optional<SmallVector> minimize(const SmallVector& cost, const SmallVector& bound,
+                                    std::vector<HalfSpace> constraints);
 
 }  // namespace servomill::sim
