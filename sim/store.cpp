@@ -65,11 +65,10 @@ std::size_t chunk_rows(std::size_t rows) {
   return std::max<std::size_t>(1, (rows + chunks - 1) / chunks);
 }
 
-SeriesLayout layout_of(const Series& series, const std::string& index, int compression) {
+SeriesLayout layout_of(const Series& series, const std::string& index) {
   SeriesLayout layout;
   layout.index = index;
   layout.chunk_rows = chunk_rows(series.rows());
-  layout.compression = compression;
   for (const Signal& signal : series.signals()) {
     if (signal.name == index) {
       layout.index_meaning = {signal.units, signal.long_name};
@@ -84,14 +83,6 @@ SeriesLayout layout_of(const Series& series, const std::string& index, int compr
         {signal.name, {signal.units, signal.long_name}, signal.scale, signal.storage});
   }
   return layout;
-}
-
-void write_series(Hdf5Group group, const Series& series, int compression) {
-  SeriesWriter writer(std::move(group), layout_of(series, "time", compression));
-  for (std::size_t row = 0; row < series.rows(); ++row) {
-    writer.append({series.row(row), series.width()});
-  }
-  writer.finish();
 }
 
 void write_row(Hdf5Group& group, const ComparisonRow& row) {
@@ -192,8 +183,10 @@ void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view ki
   inputs.attribute("resolved", scenario.resolved);
 }
 
-RunStore::RunStore(const std::string& path, bool force, const Scenario& scenario)
-    : file_(writable_name(path, force), force), compression_(scenario.record.compression) {
+RunStore::RunStore(const std::string& path, bool force, const Scenario& scenario, unsigned threads)
+    : file_(writable_name(path, force), force),
+      compression_(scenario.record.compression),
+      threads_(threads) {
   Hdf5Group root = file_.root();
   write_inputs(root, scenario, "run");
   write_errors(root, scenario);
@@ -204,13 +197,24 @@ RunStore::RunStore(const std::string& path, bool force, const Scenario& scenario
   root.flush_file();
 }
 
+void RunStore::write_series(Hdf5Group group, const Series& series) const {
+  SeriesLayout layout = layout_of(series, "time");
+  layout.compression = compression_;
+  layout.threads = threads_;
+  SeriesWriter writer(std::move(group), std::move(layout));
+  for (std::size_t row = 0; row < series.rows(); ++row) {
+    writer.append({series.row(row), series.width()});
+  }
+  writer.finish();
+}
+
 void RunStore::add(const CaseOutput& one) {
   Hdf5Group root = file_.root();
   const std::string unfinished = fmt::format("{}/{}", kUnfinished, one.name);
   Hdf5Group group = root.group(unfinished);
-  write_series(group.group("servo"), one.result.servo, compression_);
+  write_series(group.group("servo"), one.result.servo);
   if (one.result.last_ticks.rows() > 0) {
-    write_series(group.group("last_ticks"), one.result.last_ticks, compression_);
+    write_series(group.group("last_ticks"), one.result.last_ticks);
   }
   group.attribute("outcome", one.result.outcome.reason);
   group.attribute("duration_s", one.duration);

@@ -21,8 +21,9 @@ void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view ki
 /// README, section "The result file".
 class RunStore {
  public:
+  /// @param threads  that compress; 0: one a core; the file does not depend on it
   /// @throws InputError if the file exists and `force` is not set, SystemError
-  RunStore(const std::string& path, bool force, const Scenario& scenario);
+  RunStore(const std::string& path, bool force, const Scenario& scenario, unsigned threads = 0);
   void add(const CaseOutput& one);
   /// Writes the comparison and gives the file its final name.
   void commit(const std::vector<ComparisonRow>& comparison);
@@ -30,8 +31,11 @@ class RunStore {
   const std::string& partial_path() const { return file_.partial_path(); }
 
  private:
+  void write_series(Hdf5Group group, const Series& series) const;
+
   OutputFile file_;
   int compression_;
+  unsigned threads_;
 };
 
 /// A run read back.

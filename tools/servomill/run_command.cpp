@@ -75,7 +75,7 @@ int run_command(const Arguments& arguments) {
     store->add(one);
     (one.result.outcome.interrupted ? incomplete : complete).push_back(one.name);
   };
-  control.prepared = [&] { store.emplace(path, options.has("force"), scenario); };
+  control.prepared = [&] { store.emplace(path, options.has("force"), scenario, control.threads); };
   sim::RunOutput output;
   try {
     output = sim::run_scenario(scenario, control);

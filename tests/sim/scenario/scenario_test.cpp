@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -196,6 +197,48 @@ TEST(Store, ComparesAgainAsTheRunDid) {
   EXPECT_EQ(format_table(compare(stored.quantities, stored.cases)), printed);
   EXPECT_NE(printed.find("20 um"), std::string::npos);
   fs::remove(path);
+}
+
+TEST(Store, KeepsSinglePrecisionAndComparesAgainAsTheRunDid) {
+  const Scenario scenario =
+      read_scenario(kSmall, {"record.storage=\"float32\"", "record.compression=0"});
+  const std::string path = testing::TempDir() + "scenario_test_float32.h5";
+  RunStore store(path, true, scenario);
+  RunControl control;
+  control.case_done = [&](const CaseOutput& one) { store.add(one); };
+  const RunOutput output = run_scenario(scenario, control);
+  store.commit(output.comparison);
+  const StoredRun stored = read_run(path);
+  EXPECT_EQ(format_table(compare(stored.quantities, stored.cases)),
+            format_table(output.comparison));
+  for (std::size_t i = 0; i < stored.cases.size(); ++i) {
+    EXPECT_EQ(stored.cases[i].servo->data(), output.cases[i].result.servo.data());
+  }
+  fs::remove(path);
+}
+
+TEST(Scenario, SaysHowExactlyToRecord) {
+  const Scenario plain = read_scenario(kSmall);
+  EXPECT_EQ(plain.record.format.storage, Storage::float64);
+  EXPECT_EQ(plain.record.format.resolution, 0.01e-9);
+  EXPECT_EQ(plain.record.compression, 1);
+  const Scenario said = read_scenario(
+      kSmall, {"record.storage=\"float32\"", "record.compression=9", "record.resolution_nm=0"});
+  EXPECT_EQ(said.record.format.storage, Storage::float32);
+  EXPECT_EQ(said.record.format.resolution, 0.0);
+  EXPECT_EQ(said.record.compression, 9);
+  for (const auto& [change, complaint] : std::map<std::string, std::string>{
+           {"record.storage=\"float16\"",
+            "record.storage = \"float16\"; must be one of float64, float32"},
+           {"record.compression=10", "record.compression = 10; must be >= 0 and <= 9"},
+           {"record.resolution_nm=-1", "record.resolution_nm = -1; must be >= 0 and <= 1000"}}) {
+    try {
+      read_scenario(kSmall, {change});
+      FAIL() << change;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(complaint), std::string::npos) << error.what();
+    }
+  }
 }
 
 // A folder of its own, removed at the end.
