@@ -21,7 +21,7 @@ import numpy as np
 from PIL import Image
 
 import plot as program
-from figures import circular, lag, notches, results, straightness, style, volumetric
+from figures import circular, lag, notches, results, straightness, style, sweeps, volumetric
 
 SERVOMILL = ""
 AGREE = 1e-7        # um; `compare` prints nine digits of up to 100 um
@@ -30,7 +30,7 @@ SMALLEST_PNG = 5000  # bytes; empty axes of these sizes stay below
 
 def servomill(*arguments, status=0):
     done = subprocess.run([SERVOMILL, *map(str, arguments)], capture_output=True, text=True)
-    assert done.returncode == status, done.stderr
+    assert status in (None, done.returncode), done.stderr
     return done.stdout
 
 
@@ -250,8 +250,7 @@ class Drawing(WithFiles):
         self.assertEqual(done.stderr.splitlines(), [
             "figure12: not drawn, no error functions of Z",
             "figure14: not drawn, no case named generated",
-            "figure15: not drawn, no case named generated",
-            "lag: not drawn, the file holds a run, not a sweep"])
+            "figure15: not drawn, no case named generated"])
         self.assertEqual(sorted(done.stdout.split()), sorted(str(p) for p in self.out.iterdir()))
         for path in self.out.iterdir():
             self.assertGreater(path.stat().st_size, SMALLEST_PNG, path)
@@ -274,12 +273,61 @@ class Drawing(WithFiles):
         for folder, formats in (("first", "png,svg,pdf"), ("again", "png,svg")):
             done = plot(self.sweep, "-o", self.out / folder, "--format", formats)
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertEqual(len(done.stdout.splitlines()), len(formats.split(",")))
+            self.assertEqual(len(done.stdout.splitlines()), 2 * len(formats.split(",")))   # lag, curves
         first, again = self.out / "first", self.out / "again"
-        for name in ("sweep-lag.png", "sweep-lag.svg"):
+        for name in ("sweep-lag.png", "sweep-lag.svg", "sweep-curves.png", "sweep-curves.svg"):
             self.assertEqual((first / name).read_bytes(), (again / name).read_bytes(), name)
         self.assertTrue((first / "sweep-lag.pdf").read_bytes().startswith(b"%PDF"))
         self.assertIn("response time, ms", (first / "sweep-lag.svg").read_text())
+
+    def sweep_of(self, name, table):
+        path = self.out / name
+        servomill("sweep", HERE.parent / "cli" / "gallery" / "scenario.toml", "-q", "-o", path, "--set", f"sweep={{{table}}}",
+                  status=None)
+        return path
+
+    def test_two_parameters_give_maps(self):
+        path = self.sweep_of("two.h5", 'program.feed_override=[1.0,2.0,3.0],case.table.strategy.entry='
+                                       '["position_command","feed_forward"]')
+        with results.open_result(path) as sweep:
+            feed, entry = (next(one for one in sweep.parameters if part in one.key) for part in ("feed", "entry"))
+            value = sweep.quantities[0]["value"]
+            picture = sweeps.as_picture(feed, entry, value)
+            self.assertEqual(entry.texts, ("position_command", "feed_forward"))
+            for x, y, one in zip(feed.values, entry.values, value):
+                self.assertEqual(picture[int(y), int(x) - 1], one)
+        done = plot(path, "-o", self.out, "--format", "svg", "--figures", "maps")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        drawn = (self.out / "two-maps.svg").read_text()
+        for text in ("feed_forward", "program.feed_override", "imposed curve residual"):
+            self.assertIn(text, drawn)
+
+    def test_one_number_and_texts_give_curves(self):
+        path = self.sweep_of("text.h5", 'program.feed_override=[1.0,2.0,3.0],case.table.strategy.entry='
+                                        '["position_command","feed_forward"]')
+        done = plot(path, "-o", self.out, "--format", "svg", "--figures", "curves")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        drawn = (self.out / "text-curves.svg").read_text()
+        self.assertIn("table, feed_forward", drawn)
+
+    def test_samples_give_clouds_and_histograms_and_say_what_failed(self):
+        path = self.sweep_of("random.h5", 'samples={design="random",count=20},'
+                                          'errors.imposed.EYX.harmonic.amplitude_um={normal=[100.0,10.0]},'
+                                          'case.table.strategy.response_time_ms={normal=[10.0,10.0]}')
+        with results.open_result(path) as sweep:
+            self.assertEqual([one.sampled for one in sweep.parameters], [True, True])
+            lost = np.count_nonzero(~sweep.done)
+            self.assertGreater(lost, 0)
+        done = plot(path, "-o", self.out, "--format", "svg,png", "--figures", "samples")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        drawn = (self.out / "random-samples.svg").read_text()
+        self.assertIn("harmonic.amplitude_um", drawn)
+        self.assertIn(f"{lost} of 20 points not done", drawn)
+        self.fails(f"{path}: error: curves: the sweep samples its parameters", path, "--figures", "curves")
+
+    def fails(self, message, *arguments):
+        done = plot(*arguments, "-o", self.out)
+        self.assertEqual((done.stderr, done.stdout, done.returncode), (message + "\n", "", 2))
 
     def test_a_case_that_stopped_is_shown_over_time_and_left_out_of_comparisons(self):
         done = plot(self.stopped, "-o", self.out, "--format", "svg",
@@ -318,7 +366,7 @@ class Drawing(WithFiles):
         done = subprocess.run([PLOT, "--list"], capture_output=True, text=True)
         self.assertEqual([line.split()[0] for line in done.stdout.splitlines()],
                          ["figure6", "figure9", "figure10", "figure11", "figure12", "figure14",
-                          "figure15", "lag", "circular", "reversals", "deviations", "position", "velocity",
+                          "figure15", "lag", "curves", "maps", "samples", "circular", "reversals", "deviations", "position", "velocity",
                           "compliance", "step"])
 
 
@@ -356,7 +404,7 @@ class Mistakes(WithFiles):
         self.fails(f"{missing}: error: no such file", missing)
         self.fails(f"{text}: error: is not an HDF5 file", text)
         self.fails(f"{foreign}: error: is not a result file of servomill", foreign)
-        self.fails(f"{newer}: error: has schema version 99; this program reads version 1", newer)
+        self.fails(f"{newer}: error: has schema version 99; this program reads version 2", newer)
 
     def test_a_damaged_file(self):
         cut, hollow = self.root / "cut.h5", self.root / "hollow.h5"
