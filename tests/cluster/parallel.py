@@ -95,7 +95,7 @@ class Parallel(unittest.TestCase):
             self.assertNotIn(os.path.basename(sharded.shard_name(self.out, shard)), self.second_said)
 
     def test_merged_table_is_that_of_a_single_process(self):
-        self.assertEqual(sharded.points(self.out), (512, 512))
+        self.assertEqual(sharded.points(self.out), (sharded.POINTS, sharded.POINTS))
         self.assertEqual(sharded.differences(self.out, self.single), [])
 
 

@@ -9,6 +9,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 TOOLS = os.path.join(HERE, "..", "..", "tools")
 SCENARIO = os.path.join(HERE, "sweep.toml")
 SHARDS = 8
+POINTS = 384  # that sweep.toml has; 3 batches of 16 in a shard
 PATIENCE = 120  # s, for what takes 10 s on an idle machine
 
 

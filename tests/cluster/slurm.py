@@ -87,7 +87,7 @@ class Array(unittest.TestCase):
             self.assertIn(f"{finished} of {there} points are there already", self.log(shard))
 
     def test_merged_table_is_that_of_a_single_process(self):
-        self.assertEqual(sharded.points(self.out), (512, 512))
+        self.assertEqual(sharded.points(self.out), (sharded.POINTS, sharded.POINTS))
         self.assertEqual(sharded.differences(self.out, self.single), [])
 
 
