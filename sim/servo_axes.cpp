@@ -112,6 +112,17 @@ void ServoAxes::describe(std::size_t l) {
   servo.current.Ki_Ti[place(l)] = current.Ki_Ti;
   servo.current.u_max[place(l)] = current.u_max;
 
+  const controllers::SupervisionParams& supervision = functions.supervision;
+  const bool rigid = params_[l].is_rigid();  // the motor turns as the slide moves
+  set(&ServoBlock::most_following_error, supervision.following_error);
+  set(&ServoBlock::most_speed,
+      std::min(machine.scale[j].fastest(),
+               rigid ? params_[l].r * machine.motor[j].fastest() : controllers::kNoLimit));
+  set(&ServoBlock::most_motor_speed, rigid ? controllers::kNoLimit : machine.motor[j].fastest());
+  always_looked_at_.push_back(supervision.standstill < controllers::kNoLimit ||
+                              supervision.encoder_difference < controllers::kNoLimit ||
+                              machine.marks[j].has_value());
+
   if (!machine.motor[j].is_plain() || !machine.screw[j].is_zero()) own_motor_reading_.push_back(l);
   if (!machine.scale[j].is_plain()) own_scale_reading_.push_back(l);
   if (machine.marks[j]) marked_.push_back(l);
@@ -255,7 +266,7 @@ void ServoAxes::run_position_loops() {
       at(&ServoBlock::v_add, l) = ramp.rate;
     }
   }
-  kernel_.position_loops(servos_.data(), servos_.size());
+  kernel_.position_loops(servos_.data(), state_.blocks.data(), servos_.size());
 }
 
 void ServoAxes::run_current_loops() {
@@ -310,7 +321,12 @@ Joints ServoAxes::speed_error(std::size_t run) const {
 
 std::optional<ServoAxes::Fault> ServoAxes::supervise(std::size_t run) {
   for (const int j : joints_) {
-    if (auto reason = fault_of(lane(run, j))) return Fault{j, std::move(*reason)};
+    const std::size_t l = lane(run, j);
+    if (!always_looked_at_[l] && at(&ServoBlock::suspect, l) == 0.0 &&
+        plant::DriveBank::unresolved(state_, l) == 0) {
+      continue;
+    }
+    if (auto reason = fault_of(l)) return Fault{j, std::move(*reason)};
   }
   return std::nullopt;
 }

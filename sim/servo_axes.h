@@ -182,6 +182,7 @@ class ServoAxes {
   std::vector<ServoBlock> servos_;
   std::vector<Functions> functions_;  // by lane
   // lanes that need more than the kernel does
+  std::vector<bool> always_looked_at_;  // by supervision
   std::vector<std::size_t> own_motor_reading_, own_scale_reading_, marked_, with_backlash_,
       with_friction_;
   const ServoKernel& kernel_;

@@ -97,6 +97,12 @@ class Encoder {
   /// The NC's input cannot follow the signals.
   bool too_fast(double velocity) const { return signal_frequency(velocity) > frequency_limit_; }
 
+  /// Velocity (m/s or rad/s) up to which it can; infinite without a limit.
+  double fastest() const {
+    return periods_per_unit_ > 0.0 ? frequency_limit_ / periods_per_unit_
+                                   : std::numeric_limits<double>::infinity();
+  }
+
   double step() const { return step_; }
   double frequency_limit() const { return frequency_limit_; }
   bool is_noisy() const { return noisy_; }

@@ -1,6 +1,6 @@
 /// The reference problem, from the blocks of which scenarios are built, next to a straightforward
-/// loop in C (plain.c). What counts is `ns_per_tick`, nanoseconds of processor time for one run and
-/// one tick of 10 us of five axes; tools/bench makes ratios of it.
+/// loop in C (plain.c). What counts is `ns_per_item`, nanoseconds of processor time for one run and
+/// one tick of 10 us of five axes, or for one pose; tools/bench makes ratios of it.
 
 #include <benchmark/benchmark.h>
 
@@ -76,11 +76,14 @@ PlainProblem read_plain(const std::string& name, bool friction) {
   return problem;
 }
 
-void count(benchmark::State& state, std::size_t runs) {
-  state.counters["ns_per_tick"] = benchmark::Counter(
-      1e-9 * static_cast<double>(kTicks) * static_cast<double>(runs),
-      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+// Nanoseconds an item; Google Benchmark would print rates.
+void count(benchmark::State& state, double items_an_iteration) {
+  state.counters["ns_per_item"] =
+      benchmark::Counter(1e-9 * items_an_iteration, benchmark::Counter::kIsIterationInvariantRate |
+                                                        benchmark::Counter::kInvert);
 }
+
+constexpr auto kTicksAsNumber = static_cast<double>(kTicks);
 
 void BM_Plain(benchmark::State& state, const char* file, bool friction) {
   const PlainProblem problem = read_plain(file, friction);
@@ -89,7 +92,7 @@ void BM_Plain(benchmark::State& state, const char* file, bool friction) {
     plain_run(problem.axes.data(), problem.vol, friction ? 1 : 0, kTicks, log.data());
     benchmark::DoNotOptimize(log.data());
   }
-  count(state, 1);
+  count(state, kTicksAsNumber);
 }
 
 // Forty signals a row, as the plain loop takes them.
@@ -126,7 +129,7 @@ void BM_Servomill(benchmark::State& state, const char* file, bool friction) {
     });
     benchmark::DoNotOptimize(log.data());
   }
-  count(state, runs);
+  count(state, static_cast<double>(runs) * kTicksAsNumber);
 }
 
 #define REFERENCE(variant, file, friction)                                             \
@@ -139,6 +142,53 @@ REFERENCE(L, "axes.csv", false);
 REFERENCE(N, "axes.csv", true);
 REFERENCE(N_sharp, "axes_sharp.csv", true);
 #undef REFERENCE
+
+// Poses all over the machine.
+std::vector<Joints> poses() {
+  std::vector<Joints> all(1024, Joints::Zero());
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const double s = 0.37 * static_cast<double>(n);
+    all[n].head<3>() << 0.05 * std::sin(s), 0.05 * std::cos(1.3 * s), 0.12 * std::sin(0.7 * s);
+  }
+  return all;
+}
+const Eigen::Vector3d kTip(0.0, 0.0, -0.15);
+
+void BM_PlainVolumetric(benchmark::State& state) {
+  const PlainProblem problem = read_plain("axes.csv", false);
+  const std::vector<Joints> Q = poses();
+  for (auto _ : state) {
+    for (const Joints& at : Q) {
+      double e[3];
+      plain_volumetric(problem.vol, at[0], at[1], at[2], e);
+      benchmark::DoNotOptimize(e);
+    }
+  }
+  count(state, static_cast<double>(Q.size()));
+}
+BENCHMARK(BM_PlainVolumetric);
+
+void BM_Volumetric(benchmark::State& state) {
+  const plant::VolumetricModel model = read_volumetric();
+  const std::vector<Joints> Q = poses();
+  for (auto _ : state) {
+    for (const Joints& at : Q) benchmark::DoNotOptimize(model.error(at, kTip).dp_W);
+  }
+  count(state, static_cast<double>(Q.size()));
+}
+BENCHMARK(BM_Volumetric);
+
+void BM_VolumetricBatch(benchmark::State& state) {
+  const plant::VolumetricModel model = read_volumetric();
+  const std::vector<Joints> Q = poses();
+  std::vector<Eigen::Vector3d> offset(Q.size());
+  for (auto _ : state) {
+    model.joint_offsets(Q, kTip, offset);
+    benchmark::DoNotOptimize(offset.data());
+  }
+  count(state, static_cast<double>(Q.size()));
+}
+BENCHMARK(BM_VolumetricBatch);
 
 }  // namespace
 }  // namespace servomill::reference_problem
