@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "controllers/path/fair_spline.h"
+
 namespace servomill::controllers {
 namespace {
 
@@ -13,6 +15,10 @@ constexpr double kLeastPiece = 1e-12;  // m, knots closer than this are one
 constexpr double kArcMargin = 0.9;     // of the tolerance: room for moving arc points outward
 constexpr double kFits = 1e-9;         // rounding of the deviation, of the tolerance
 constexpr double kShrink = 0.85;       // step of the search for a window
+constexpr double kDense = 1.5;         // chords in a window, above which a spline pays
+constexpr std::size_t kLeastRun = 16;  // vertices that are worth a spline
+constexpr std::size_t kBlock = 512;    // vertices of one spline
+constexpr std::size_t kOverlap = 48;   // of them are done again with the next
 constexpr int kArcPasses = 3;          // each leaves (w/R)^2 of the error before
 
 struct Deviation {
@@ -24,7 +30,8 @@ double rotary_norm(const Joints& u) { return u.tail<kJoints - kLinearJoints>().n
 
 class Smoother {
  public:
-  explicit Smoother(std::vector<PathVertex> vertices) : v_(std::move(vertices)), n_(v_.size() - 1) {
+  Smoother(std::vector<PathVertex> vertices, const Joints& jerk)
+      : v_(std::move(vertices)), n_(v_.size() - 1), jerk_(jerk.cwiseMax(1e-12)) {
     for (const PathVertex& v : v_) target_.push_back(v.u);
     measure();
   }
@@ -157,23 +164,40 @@ class Smoother {
     return ratio;
   }
 
-  // Narrows the windows until the deviation is within `share` of the tolerance everywhere.
+  // Narrows the windows until the deviation is within `share` of the tolerance everywhere. From the
+  // second pass on only what a changed window covers is looked at.
   void fit_windows(double share) {
-    std::vector<double> scale(n_ + 1);
-    for (bool fits = false; !fits;) {
+    std::vector<double> scale(n_ + 1), before;
+    std::vector<std::size_t> changes(n_ + 1);  // windows 0..i-1 that the last pass has changed
+    for (bool fits = false, first_pass = true; !fits; first_pass = false) {
       fits = true;
       std::fill(scale.begin(), scale.end(), 1.0);
+      std::size_t first_before = 1, last_before = 1;
       for_each_piece(
           [&](double from, double to, std::size_t segment, std::size_t first, std::size_t last) {
+            const double middle = 0.5 * (from + to);
+            if (!first_pass) {
+              while (first_before < n_ && s_[first_before] + before[first_before] <= middle) {
+                ++first_before;
+              }
+              while (last_before < n_ && s_[last_before] - before[last_before] < middle)
+                ++last_before;
+              // the windows have become narrower: what covers the piece now has covered it before
+              if (changes[std::max(first_before, last_before)] == changes[first_before]) return;
+            }
             const double ratio =
-                excess(deviation(from, 0.5 * (from + to), first, last), to - from, segment) / share;
+                excess(deviation(from, middle, first, last), to - from, segment) / share;
             if (ratio <= 1.0 + kFits) return;
             fits = false;
             const double factor = std::max(0.5, 0.99 / std::sqrt(ratio));
             for (std::size_t i = first; i < last; ++i) scale[i] = std::min(scale[i], factor);
           });
+      if (fits) return;
+      before = w_;
       for (std::size_t i = 0; i <= n_; ++i) w_[i] *= scale[i];
       limit_slope();
+      for (std::size_t i = 0; i < n_; ++i)
+        changes[i + 1] = changes[i] + (w_[i] != before[i] ? 1 : 0);
     }
   }
 
@@ -213,31 +237,158 @@ class Smoother {
     return x * x * (3.0 - 2.0 * x);
   }
 
-  SmoothPath build() const {
+  // Place, direction and curvature of the smoothed polyline at s, on chord k.
+  FairSpline::State state_at(double s, std::size_t k) const {
+    std::size_t first = k + 1, last = k + 1;
+    while (first > 1 && s_[first - 1] + w_[first - 1] > s) --first;
+    while (last < n_ && s_[last] - w_[last] < s) ++last;
+    const Deviation D = deviation(s, s, first, last);
+    return {s, v_[k].u + d_[k] * (s - s_[k]) + D.d0, d_[k] + D.d1, D.d2, k};
+  }
+
+  // Is the window at vertex i wide enough to cover its neighbours?
+  bool is_dense(std::size_t i) const {
+    if (v_[i].arc >= 0 || v_[i + 1].arc >= 0) return false;
+    return w_[i] > kDense * std::min(s_[i] - s_[i - 1], s_[i + 1] - s_[i]);
+  }
+
+  // Splines through runs of short chords.
+  struct Faired {
+    double from = 0.0, to = 0.0;      // m
+    std::size_t first = 0, last = 0;  // pieces
+  };
+
+  void fair() {
+    for (std::size_t i = 1; i < n_;) {
+      if (!is_dense(i)) {
+        ++i;
+        continue;
+      }
+      std::size_t j = i;
+      while (j + 1 < n_ && is_dense(j + 1)) ++j;
+      if (j - i >= kLeastRun) fair_run(i, j);
+      i = j + 1;
+    }
+  }
+
+  void accept(std::size_t count) {
+    const std::vector<CubicPiece>& pieces = spline_.pieces();
+    fair_.insert(fair_.end(), pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+
+  // Windows outside the run that reach into it are left alone.
+  void fair_run(std::size_t i, std::size_t j) {
+    const double a = std::clamp(s_[i - 1] + w_[i - 1], std::max(s_[i] - w_[i], s_[i - 1]), s_[i]);
+    const double b = std::clamp(s_[j + 1] - w_[j + 1], s_[j], std::min(s_[j] + w_[j], s_[j + 1]));
+    const FairSpline::State end = state_at(b, j);
+    FairSpline::State begin = state_at(a, i - 1);
+    std::vector<CubicPiece> tail;  // of the spline before, beyond where the next begins
+    double tail_end = 0.0;
+    std::size_t length = kBlock;
+    while (i <= j) {
+      const std::size_t to = std::min(i + length, j);
+      if (to - i < kLeastRun) break;
+      const FairSpline::State stop = to == j ? end : state_at(s_[to], to);
+      if (spline_.fit(v_, s_, w_, jerk_, begin, stop)) {
+        open(begin.s);
+        const auto& pieces = spline_.pieces();
+        std::size_t cut = pieces.size();
+        if (to != j) {
+          while (pieces[cut - 1].s > s_[to - std::min(kOverlap, (to - i) / 2)]) --cut;
+          --cut;
+        }
+        accept(cut);
+        if (to == j) {
+          close(b);
+          return;
+        }
+        begin = spline_.state_at(cut);
+        close(begin.s);
+        tail.assign(pieces.begin() + static_cast<std::ptrdiff_t>(cut), pieces.end());
+        tail_end = stop.s;
+        i = begin.chord + 1;
+        length = kBlock;
+        continue;
+      }
+      if (!tail.empty()) {
+        fair_.insert(fair_.end(), tail.begin(), tail.end());
+        close(tail_end);
+        tail.clear();
+        while (s_[i] <= tail_end) ++i;
+        begin = state_at(tail_end, i - 1);
+      } else if (to - i > 2 * kLeastRun) {
+        length = (to - i) / 2;
+      } else {
+        i = to + 1;
+        if (i > j) break;
+        begin = state_at(s_[to], to);
+        length = kBlock;
+      }
+    }
+    if (!tail.empty()) {
+      fair_.insert(fair_.end(), tail.begin(), tail.end());
+      close(tail_end);
+    }
+  }
+
+  void open(double s) {
+    if (faired_.empty() || faired_.back().to != s) {
+      faired_.push_back({s, s, fair_.size(), fair_.size()});
+    }
+  }
+  void close(double s) {
+    faired_.back().to = s;
+    faired_.back().last = fair_.size();
+  }
+
+  SmoothPath build() {
+    fair();
     SmoothPath path;
     path.s = s_;
-    path.pieces.reserve(3 * n_);
-    for_each_piece([&](double from, double to, std::size_t k, std::size_t first, std::size_t last) {
-      const Deviation D = deviation(from, 0.5 * (from + to), first, last);
-      assert(excess(D, to - from, k) <= 1.0 + kFits);
+    path.pieces.reserve(fair_.size());
+    std::size_t next = 0;
+    const auto add = [&](double from, double middle, std::size_t k, std::size_t first,
+                         std::size_t last) {
+      const Deviation D = deviation(from, middle, first, last);
       path.pieces.push_back(
           {from, v_[k].u + d_[k] * (from - s_[k]) + D.d0, d_[k] + D.d1, D.d2, D.d3, k});
+    };
+    for_each_piece([&](double from, double to, std::size_t k, std::size_t first, std::size_t last) {
+      const double middle = 0.5 * (from + to);
+      while (next < faired_.size() && faired_[next].to <= from + kLeastPiece) ++next;
+      double at = from;
+      for (; next < faired_.size() && faired_[next].from < to; ++next) {
+        const Faired& run = faired_[next];
+        if (run.from > at + kLeastPiece) add(at, middle, k, first, last);
+        if (run.from >= from) {
+          path.pieces.insert(path.pieces.end(),
+                             fair_.begin() + static_cast<std::ptrdiff_t>(run.first),
+                             fair_.begin() + static_cast<std::ptrdiff_t>(run.last));
+        }
+        at = run.to;
+        if (run.to > to - kLeastPiece) break;
+      }
+      if (at < to - kLeastPiece) add(at, middle, k, first, last);
     });
     return path;
   }
 
   std::vector<PathVertex> v_;
   std::size_t n_;  // chords
+  Joints jerk_;
   std::vector<Joints> target_;
   std::vector<double> s_, w_;
   std::vector<Joints> d_, dd_;
+  FairSpline spline_;
+  std::vector<CubicPiece> fair_;
+  std::vector<Faired> faired_;
 };
 
 }  // namespace
 
-SmoothPath smooth(std::vector<PathVertex> vertices) {
+SmoothPath smooth(std::vector<PathVertex> vertices, const Joints& jerk) {
   assert(vertices.size() >= 2);
-  return Smoother(std::move(vertices)).run();
+  return Smoother(std::move(vertices), jerk).run();
 }
 
 }  // namespace servomill::controllers

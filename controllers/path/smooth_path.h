@@ -31,6 +31,7 @@ struct PathVertex {
   Joints u = Joints::Zero();      // m
   double tolerance_linear = 0.0;  // m, on the way to this vertex
   double tolerance_rotary = 0.0;  // m
+  double speed = 0.0;             // m/s along the path, programmed on the way to this vertex
   int arc = -1;  // interior point of that arc: may be moved outward so that the curve passes it
 };
 
@@ -50,9 +51,13 @@ struct SmoothPath {
   }
 };
 
+/// Runs of many short chords, where windows cover several vertices, are then replaced by splines of
+/// less third derivative (fair_spline.h).
+///
 /// @param vertices  at least two, neighbours apart
+/// @param jerk      limit of each joint (scaled like the path; > 0 for joints that move)
 /// Law: begins and ends exactly in the first and last vertex, with zero curvature; the distance to
 /// the polyline (of arcs: to the circle) is within the tolerance of the chord.
-SmoothPath smooth(std::vector<PathVertex> vertices);
+SmoothPath smooth(std::vector<PathVertex> vertices, const Joints& jerk);
 
 }  // namespace servomill::controllers

@@ -59,6 +59,24 @@ StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimit
   return out;
 }
 
+double straight_speed(const CubicPiece& piece, double h, const JointLimits& limits,
+                      const FeedLimit& feed) {
+  const Joints &t0 = piece.c1, t1 = piece.c1 + piece.c2 * (0.5 * h);
+  const Joints t2 = piece.c1 + piece.c2 * h + piece.c3 * (0.5 * h * h);
+  const auto largest = [&](auto part) { return std::max({part(t0), part(t1), part(t2)}); };
+  const double linear = largest([](const Joints& t) { return t.head<kLinearJoints>().norm(); });
+  const double rotary =
+      largest([](const Joints& t) { return t.tail<kJoints - kLinearJoints>().norm(); });
+  const Joints d1 = t0.cwiseAbs().cwiseMax(t1.cwiseAbs()).cwiseMax(t2.cwiseAbs());
+  double v = std::numeric_limits<double>::infinity();
+  if (linear > 0.0) v = std::min(v, feed.linear / linear);
+  if (rotary > 0.0) v = std::min(v, feed.rotary / rotary);
+  for (int k = 0; k < kJoints; ++k) {
+    if (d1[k] > 0.0) v = std::min(v, limits.v[k] / d1[k]);
+  }
+  return v;
+}
+
 std::vector<StretchLimits> merge_similar(std::span<const StretchLimits> pieces) {
   const auto alike = [](double x, double y) { return std::max(x, y) <= 2.0 * std::min(x, y); };
   std::vector<StretchLimits> out;

@@ -27,6 +27,10 @@ struct FeedLimit {
 StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimits& limits,
                              const FeedLimit& feed, double curve_share);
 
+/// Largest speed on the piece by feed and joint speeds alone.
+double straight_speed(const CubicPiece& piece, double h, const JointLimits& limits,
+                      const FeedLimit& feed);
+
 /// Joins neighbours whose speeds differ little under their least limits, so that the speed does not
 /// follow every small change of curvature or direction.
 std::vector<StretchLimits> merge_similar(std::span<const StretchLimits> pieces);

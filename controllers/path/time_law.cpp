@@ -269,7 +269,7 @@ class SpeedPlanner {
     double t = 0.0;
     const auto phase = [&](double s, double v, double a, double j, double duration) {
       if (duration <= 0.0) return;
-      law.phases.push_back({t, s, v, a, j});
+      law.phases.push_back({t, s, v, a, j, 0.0});
       t += duration;
     };
     for (std::size_t l = 0; l != 1; l = points_[l].next) {
@@ -300,7 +300,7 @@ class SpeedPlanner {
       const bool last = i + 1 == law.phases.size();
       const Phase& p = law.phases[i];
       const Phase next =
-          last ? Phase{law.duration, limits_.back().end, 0.0, 0.0, 0.0} : law.phases[i + 1];
+          last ? Phase{law.duration, limits_.back().end, 0.0, 0.0, 0.0, 0.0} : law.phases[i + 1];
       const double x = next.t - p.t;
       const double s = p.s + x * (p.v + x * (p.a / 2.0 + x * p.j / 6.0));
       const double v = p.v + x * (p.a + x * p.j / 2.0), a = p.a + x * p.j;
@@ -318,6 +318,27 @@ class SpeedPlanner {
 };
 
 }  // namespace
+
+Phase::State Phase::at(double time) const {
+  const double x = time - t;
+  if (beta == 0.0) {
+    return {s + x * (v + x * (a / 2.0 + x * j / 6.0)), v + x * (a + x * j / 2.0), a + x * j, j};
+  }
+  // C'' = 1 + beta C, S = C', E = S'
+  const double y = beta * x * x;
+  double C = 0.0, S = 0.0;
+  if (std::abs(y) < 0.1) {
+    C = 0.5 * x * x * (1.0 + y / 12.0 * (1.0 + y / 30.0 * (1.0 + y / 56.0 * (1.0 + y / 90.0))));
+    S = x * (1.0 + y / 6.0 * (1.0 + y / 20.0 * (1.0 + y / 42.0 * (1.0 + y / 72.0))));
+  } else {
+    const double root = std::sqrt(std::abs(beta)), phi = root * x;
+    S = (beta > 0.0 ? std::sinh(phi) : std::sin(phi)) / root;
+    const double half = beta > 0.0 ? std::sinh(0.5 * phi) : std::sin(0.5 * phi);
+    C = 2.0 * half * half / std::abs(beta);
+  }
+  const double E = 1.0 + beta * C, speed = v * E + a * S;
+  return {s + v * S + a * C, speed, a * E + beta * v * S, beta * speed};
+}
 
 TimeLaw plan_speed(std::span<const StretchLimits> stretches) {
   assert(!stretches.empty());

@@ -16,9 +16,19 @@ struct StretchLimits {
   bool programmed = false;  // v is the programmed speed, not a limit of the machine
 };
 
-/// s(t) = s + v x + a x^2/2 + j x^3/6, x = t - `t`, until the next phase begins.
+/// A part of a time law, until the next phase begins: with x = t - `t`, y = s(t) - `s`
+///
+///     y''' = j + beta y',    that is    y'' = a + j x + beta y                                (1)
+///
+/// where one of j and beta is zero. beta = 0 is a cubic in time.
 struct Phase {
   double t = 0.0, s = 0.0, v = 0.0, a = 0.0, j = 0.0;
+  double beta = 0.0;  // 1/s^2
+
+  struct State {
+    double s, v, a, j;
+  };
+  State at(double time) const;
 };
 
 struct TimeLaw {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "controllers/path/arc_sweep.h"
+#include "controllers/path/quicken.h"
 #include "controllers/path/stretch_limits.h"
 
 namespace servomill::controllers {
@@ -17,7 +18,8 @@ constexpr double kLeastChain = 1e-12;  // m, below this there is no motion
 constexpr double kReversal = -0.5;     // cosine of the sharpest corner that is not a stop
 constexpr double kLongLeg = 3.0;       // windows, below it corners share their curvature
 constexpr std::array<double, 3> kCurveShares = {0.25, 0.5, 0.8};  // tried on each chain
-constexpr double kChordAngle = 0.1;                               // rad, longest chord of an arc
+constexpr std::size_t kManyPieces = 1000;  // of which the last share is taken: see quicken.h
+constexpr double kChordAngle = 0.1;        // rad, longest chord of an arc
 constexpr double kSameCircle = 1e-9;    // m, by which circles that are meant to be one may differ
 constexpr double kChordsPerWindow = 4;  // chords of an arc in the half-width of its window
 
@@ -127,7 +129,7 @@ class Planner {
       if (continues && !skipped_) vertices_.back().arc = arc_index_;
       add_arc(*arc, move, step, arc_index_);
     } else {
-      add_point(u_end, move, -1);
+      add_point(u_end, move, leg.feed, -1);
     }
     span.last = vertices_.size() - 1;
     if (span.last > span.first) spans_.push_back(span);
@@ -234,12 +236,12 @@ class Planner {
       Joints u = u_begin + step * fraction;
       u.head<kLinearJoints>() = linear_joints(arc.point(fraction));
       if (i == n) u = u_begin + step;
-      add_point(u, move, i < n ? index : -1);
+      add_point(u, move, 0.0, i < n ? index : -1);
     }
   }
 
-  void add_point(const Joints& u, const Move& move, int arc) {
-    PathVertex vertex{u, tolerance_of(move), options_.rotary_tolerance, arc};
+  void add_point(const Joints& u, const Move& move, double speed, int arc) {
+    PathVertex vertex{u, tolerance_of(move), options_.rotary_tolerance, speed, arc};
     if (move.path_mode != PathMode::continuous) {
       vertex.tolerance_rotary *= options_.exact_tolerance / options_.tolerance;
     }
@@ -263,7 +265,7 @@ class Planner {
   void restart() {
     Q_ = out_.end_;
     u_ = scaled(Q_);
-    vertices_.assign(1, PathVertex{u_, 0.0, 0.0, -1});
+    vertices_.assign(1, PathVertex{u_, 0.0, 0.0, 0.0, -1});
     spans_.clear();
     last_.reset();
     last_arc_.reset();
@@ -278,7 +280,7 @@ class Planner {
       chain.t = t_;
       chain.begin = out_.end_;
       chain.end = Q_;
-      chain.path = smooth(std::move(vertices_));
+      chain.path = smooth(std::move(vertices_), limits_.j);
       plan_fastest(chain);
       chain.duration = chain.law.duration;
       for (const LegSpan& span : spans_) {
@@ -294,7 +296,8 @@ class Planner {
   // The end lies within kLeastChord of the last vertex, but not on it.
   void reach_end() {
     if ((u_ - vertices_.back().u).norm() <= kLeastChain) return;
-    vertices_.push_back({u_, options_.tolerance, options_.rotary_tolerance, -1});
+    vertices_.push_back(
+        {u_, options_.tolerance, options_.rotary_tolerance, vertices_.back().speed, -1});
     const std::size_t last = vertices_.size() - 1;
     if (spans_.empty()) spans_.push_back({last_move_, 0, last, FeedLimit{}, last_->rapid});
     spans_.back().last = last;
@@ -302,6 +305,7 @@ class Planner {
 
   void plan_fastest(Chain& chain) const {
     for (const double share : kCurveShares) {
+      if (chain.path.pieces.size() > kManyPieces && share < kCurveShares.back()) continue;
       std::vector<StretchLimits> limits = limits_of(chain.path, share);
       TimeLaw law = plan_speed(limits);
       if (!chain.limits.empty() && law.duration >= chain.law.duration) continue;
@@ -309,22 +313,40 @@ class Planner {
       chain.law = std::move(law);
       if (chain.path.pieces.size() == 1) return;  // a straight line has no curvature
     }
+    std::vector<double> v_top;
+    for_each_piece(chain.path, [&](const CubicPiece& piece, double h, const JointLimits& limits,
+                                   const FeedLimit& feed) {
+      v_top.push_back(straight_speed(piece, h, limits, feed));
+    });
+    chain.law = quicken(std::move(chain.law), chain.path, v_top, limits_);
   }
 
-  std::vector<StretchLimits> limits_of(const SmoothPath& path, double curve_share) const {
+  template <class F>
+  void for_each_piece(const SmoothPath& path, F&& f) const {
     JointLimits rapid = limits_;
     rapid.v *= options_.rapid_override;
-    std::vector<StretchLimits> out;
-    out.reserve(path.pieces.size());
     std::size_t k = 0;
     for (std::size_t i = 0; i < path.pieces.size(); ++i) {
       const CubicPiece& piece = path.pieces[i];
       while (k + 1 < spans_.size() && piece.segment >= spans_[k].last) ++k;
-      const double h = path.end_of(i) - piece.s;
-      out.push_back(
-          stretch_limits(piece, h, spans_[k].rapid ? rapid : limits_, spans_[k].feed, curve_share));
-      out.back().end = path.end_of(i);
+      FeedLimit feed = spans_[k].feed;
+      for (std::size_t n = k + 1; n < spans_.size() && path.s[spans_[n].first] < path.end_of(i);
+           ++n) {
+        feed.linear = std::min(feed.linear, spans_[n].feed.linear);
+        feed.rotary = std::min(feed.rotary, spans_[n].feed.rotary);
+      }
+      f(piece, path.end_of(i) - piece.s, spans_[k].rapid ? rapid : limits_, feed);
     }
+  }
+
+  std::vector<StretchLimits> limits_of(const SmoothPath& path, double curve_share) const {
+    std::vector<StretchLimits> out;
+    out.reserve(path.pieces.size());
+    for_each_piece(path, [&](const CubicPiece& piece, double h, const JointLimits& limits,
+                             const FeedLimit& feed) {
+      out.push_back(stretch_limits(piece, h, limits, feed, curve_share));
+      out.back().end = path.end_of(out.size() - 1);
+    });
     return merge_similar(out);
   }
 
@@ -379,10 +401,9 @@ Trajectory::Sample Trajectory::at(double t, Cursor& c) const {
   if (time < phases[c.phase].t) c = {c.chain, 0, 0, 0};
   while (c.phase + 1 < phases.size() && time >= phases[c.phase + 1].t) ++c.phase;
   const Phase& p = phases[c.phase];
-  const double x = time - p.t;
-  const double s =
-      std::clamp(p.s + x * (p.v + x * (p.a / 2.0 + x * p.j / 6.0)), 0.0, chain.path.length());
-  const double v = std::max(p.v + x * (p.a + x * p.j / 2.0), 0.0), a = p.a + x * p.j;
+  const Phase::State now = p.at(time);
+  const double s = std::clamp(now.s, 0.0, chain.path.length());
+  const double v = std::max(now.v, 0.0), a = now.a;
 
   // the path there
   const std::vector<CubicPiece>& pieces = chain.path.pieces;
@@ -400,7 +421,7 @@ Trajectory::Sample Trajectory::at(double t, Cursor& c) const {
   out.Q_ref = q.c0 + y * (q.c1 + y * (q.c2 / 2.0 + q.c3 * (y / 6.0)));
   out.dQ_ref = d1 * v;
   out.ddQ_ref = d2 * (v * v) + d1 * a;
-  out.dddQ_ref = q.c3 * (v * v * v) + d2 * (3.0 * v * a) + d1 * p.j;
+  out.dddQ_ref = q.c3 * (v * v * v) + d2 * (3.0 * v * a) + d1 * now.j;
   for (Joints* part : {&out.Q_ref, &out.dQ_ref, &out.ddQ_ref, &out.dddQ_ref}) {
     part->tail<kJoints - kLinearJoints>() /= rotary_radius_;
   }
