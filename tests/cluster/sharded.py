@@ -10,21 +10,21 @@ TOOLS = os.path.join(HERE, "..", "..", "tools")
 SCENARIO = os.path.join(HERE, "sweep.toml")
 SHARDS = 8
 POINTS = 384  # that sweep.toml has; 3 batches of 16 in a shard
-PATIENCE = 120  # s, for what takes 10 s on an idle machine
+PATIENCE = 250  # s, for what takes 10 s on an idle machine
 
 
 def shard_name(out, shard):
     return out.replace(".h5", f".{shard}-of-{SHARDS}.h5")
 
 
-def await_(what, condition):
+def await_(what, condition, every=0.02):
     """What the condition gives once it gives something."""
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
         found = condition()
         if found:
             return found
-        time.sleep(0.01)
+        time.sleep(every)
     raise AssertionError(f"never came about: {what}")
 
 

@@ -61,7 +61,7 @@ class Array(unittest.TestCase):
             cls.kept[shard] = sharded.points(sharded.shard_name(cls.out, shard))
         sharded.single_process(SERVOMILL, cls.single)  # Slurm takes 15 s to miss the node
         sharded.await_("an empty queue", lambda: subprocess.run(
-            ["squeue", "--noheader"], stdout=subprocess.PIPE, check=True).stdout == b"")
+            ["squeue", "--noheader"], stdout=subprocess.PIPE, check=True).stdout == b"", every=0.5)
         cls.jobs = jobs()
 
     def log(self, shard):
