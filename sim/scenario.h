@@ -65,7 +65,7 @@ struct QuantitySpec {
 
 /// What becomes of recorded signals.
 struct RecordSpec {
-  RecordFormat format = {.resolution = 0.01e-9};
+  RecordFormat format = {.resolution = 0.001e-9};
   int compression = 1;  // of the result file, kNoCompression to kMostCompression
 };
 

@@ -220,7 +220,7 @@ TEST(Store, KeepsSinglePrecisionAndComparesAgainAsTheRunDid) {
 TEST(Scenario, SaysHowExactlyToRecord) {
   const Scenario plain = read_scenario(kSmall);
   EXPECT_EQ(plain.record.format.storage, Storage::float64);
-  EXPECT_EQ(plain.record.format.resolution, 0.01e-9);
+  EXPECT_EQ(plain.record.format.resolution, 0.001e-9);
   EXPECT_EQ(plain.record.compression, 1);
   const Scenario said = read_scenario(
       kSmall, {"record.storage=\"float32\"", "record.compression=9", "record.resolution_nm=0"});
