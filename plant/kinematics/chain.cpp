@@ -79,6 +79,9 @@ Eigen::Matrix3d linear_jacobian(const MachineChain& chain, const Joints& Q) {
 }
 
 LeastSquares least_squares(const Eigen::Matrix3d& J, const Eigen::Vector3d& v) {
+  // three axes far from parallel, as most machines have them: no need to look for the rank
+  constexpr double kFarFromParallel = 0.5;  // determinant of directions of about unit length
+  if (std::abs(J.determinant()) > kFarFromParallel) return {J.inverse() * v, 3};
   Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d> QR;
   QR.setThreshold(kParallel);
   QR.compute(J);
