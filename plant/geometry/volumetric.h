@@ -37,7 +37,7 @@ struct PoseJacobian {
 ///   (4) forward(inverse(p)) = p
 ///   (5) linear_jacobian(chain, Q) joint_offset(Q) = error(Q).dp_W
 ///   (6) poses(Q...), errors(Q...), joint_offsets(Q...) = forward(Q), error(Q), joint_offset(Q) of
-///       each, bit for bit, on every machine
+///       each, bit for bit
 class VolumetricModel {
  public:
   VolumetricModel(const MachineChain& chain, const ErrorModel& errors);

@@ -15,10 +15,19 @@ using Eigen::Vector3d;
 static_assert(kMachineJoints == kJoints && kErrorComponents == kErrorDirections);
 static_assert(sizeof(Joints) == kMachineJoints * sizeof(double));  // poses lie without gaps
 
-const VolumetricKernel& kernel() {
-  static const VolumetricKernel kKernel = at_simd_level(
-      simd_level(), []<SimdLevel level>() { return make_volumetric_kernel<level>(); });
-  return kKernel;
+VolumetricKernel kernel_of(SimdLevel level) {
+  const auto make = [](SimdLevel of) {
+    return at_simd_level(of, []<SimdLevel l>() { return make_volumetric_kernel<l>(); });
+  };
+  VolumetricKernel kernel = make(level);
+  if (level == SimdLevel::avx512) {
+    // The axes of one pose fill half a register of AVX-512, whose use slows the processor down.
+    const VolumetricKernel narrow = make(SimdLevel::avx2);
+    kernel.tool = narrow.tool;
+    kernel.error = narrow.error;
+    kernel.offset = narrow.offset;
+  }
+  return kernel;
 }
 
 // What an axis has.
@@ -84,8 +93,9 @@ double TableLookup::value(double at) const {
 
 // --- preparation --------------------------------------------------------------------------------
 
-VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const ErrorModel& errors)
-    : kernel_(&kernel()), powers_(2) {
+VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const ErrorModel& errors,
+                                           SimdLevel level)
+    : kernel_(kernel_of(level)), powers_(4) {
   for (auto a = chain.axes.rbegin(); a != chain.axes.rend(); ++a) {
     add_steps_of(*a, errors);
     add_functions_of(*a, errors);
@@ -93,20 +103,17 @@ VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const Erro
   }
   add_harmonics();
   find_ends();
-  // the constants behind the powers
-  std::rotate(powers_.begin(), powers_.begin() + 1, powers_.end());
-  for (const LaneArray& c0 : powers_.back().e) {
-    for (const double c : c0) program_.has_constants = program_.has_constants || c != 0.0;
-  }
+  if (powers_.size() % 2 == 1) powers_.emplace_back();
   program_.steps = steps_.data();
   program_.number_of_steps = steps_.size();
   program_.polynomial = powers_.data();
-  program_.degree = powers_.size() - 1;
+  program_.pairs = powers_.size() / 2;
   program_.waves = waves_.data();
   program_.wave_blocks = waves_.size();
   program_.harmonics = harmonics_.data();
   program_.number_of_harmonics = harmonics_.size();
   program_.has_terms = !harmonics_.empty() || !tables_.empty();
+  program_.is_cubic = powers_.size() == 4 && !program_.has_terms;
 }
 
 void VolumetricEvaluation::add_coefficient(std::size_t power, std::size_t component, int joint,
@@ -209,12 +216,8 @@ void VolumetricEvaluation::find_ends() {
 
 // --- evaluation ---------------------------------------------------------------------------------
 
-void VolumetricEvaluation::one(VolumetricKernel::One call, std::size_t turned, const Joints& Q,
-                               const Vector3d& p_ST, double* out) const {
-  if (turned == 0 && tables_.empty()) {
-    call(program_, nullptr, Q.data(), p_ST.data(), out);
-    return;
-  }
+void VolumetricEvaluation::one_with_data(VolumetricKernel::One call, std::size_t turned,
+                                         const Joints& Q, const Vector3d& p_ST, double* out) const {
   OnePoseData data;
   for (std::size_t n = 0; n < turned; ++n) {
     const JointMotion m = motion_at(rotary_[n], Q[rotary_[n].joint]);
@@ -276,26 +279,17 @@ void VolumetricEvaluation::many(VolumetricKernel::Many call, std::size_t turned,
   std::copy_n(result.begin(), rest * numbers, out + blocks * kLaneWidth * numbers);
 }
 
-void VolumetricEvaluation::tool(const Joints& Q, const Vector3d& p_ST, double* out) const {
-  one(kernel_->tool, rotary_.size(), Q, p_ST, out);
-}
-void VolumetricEvaluation::error(const Joints& Q, const Vector3d& p_ST, double* out) const {
-  one(kernel_->error, rotary_.size(), Q, p_ST, out);
-}
-void VolumetricEvaluation::offset(const Joints& Q, const Vector3d& p_ST, double* out) const {
-  one(kernel_->offset, offset_rotary_, Q, p_ST, out);
-}
 void VolumetricEvaluation::tools(std::span<const Joints> Q, const Vector3d& p_ST,
                                  double* out) const {
-  many(kernel_->tools, rotary_.size(), 6, Q, p_ST, out);
+  many(kernel_.tools, rotary_.size(), 6, Q, p_ST, out);
 }
 void VolumetricEvaluation::errors(std::span<const Joints> Q, const Vector3d& p_ST,
                                   double* out) const {
-  many(kernel_->errors, rotary_.size(), 6, Q, p_ST, out);
+  many(kernel_.errors, rotary_.size(), 6, Q, p_ST, out);
 }
 void VolumetricEvaluation::offsets(std::span<const Joints> Q, const Vector3d& p_ST,
                                    double* out) const {
-  many(kernel_->offsets, offset_rotary_, 3, Q, p_ST, out);
+  many(kernel_.offsets, offset_rotary_, 3, Q, p_ST, out);
 }
 
 }  // namespace servomill::plant

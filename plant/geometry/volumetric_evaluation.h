@@ -33,13 +33,20 @@ class TableLookup {
 /// for each pose.
 class VolumetricEvaluation {
  public:
-  VolumetricEvaluation(const MachineChain& chain, const ErrorModel& errors);
+  VolumetricEvaluation(const MachineChain& chain, const ErrorModel& errors,
+                       SimdLevel level = simd_level());
   VolumetricEvaluation(const VolumetricEvaluation&) = delete;
   VolumetricEvaluation& operator=(const VolumetricEvaluation&) = delete;
 
-  void tool(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const;
-  void error(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const;
-  void offset(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const;
+  void tool(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const {
+    one(kernel_.tool, rotary_.size(), Q, p_ST, out);
+  }
+  void error(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const {
+    one(kernel_.error, rotary_.size(), Q, p_ST, out);
+  }
+  void offset(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const {
+    one(kernel_.offset, offset_rotary_, Q, p_ST, out);
+  }
   void tools(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
   void errors(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
   void offsets(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
@@ -56,16 +63,24 @@ class VolumetricEvaluation {
   void add_coefficient(std::size_t power, std::size_t component, int joint, double value);
   void find_ends();
   void one(VolumetricKernel::One call, std::size_t turned, const Joints& Q,
-           const Eigen::Vector3d& p_ST, double* out) const;
+           const Eigen::Vector3d& p_ST, double* out) const {
+    if (turned == 0 && tables_.empty()) {
+      call(program_, nullptr, Q.data(), p_ST.data(), out);
+    } else {
+      one_with_data(call, turned, Q, p_ST, out);
+    }
+  }
+  void one_with_data(VolumetricKernel::One call, std::size_t turned, const Joints& Q,
+                     const Eigen::Vector3d& p_ST, double* out) const;
   void many(VolumetricKernel::Many call, std::size_t turned, std::size_t numbers,
             std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
   void eight(VolumetricKernel::Many call, std::size_t turned, const Joints* Q,
              const Eigen::Vector3d& p_ST, double* out) const;
 
-  const VolumetricKernel* kernel_;
+  VolumetricKernel kernel_;
   VolumetricProgram program_{};
   std::vector<VolumetricStep> steps_;
-  std::vector<VolumetricPower> powers_;  // c0, c1, ...; at last c1, c2, ..., c0
+  std::vector<VolumetricPower> powers_;  // c0, c1, ...
   std::vector<VolumetricWaves> waves_;
   struct Wave {
     std::size_t component, joint;

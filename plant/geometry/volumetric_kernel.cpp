@@ -10,14 +10,34 @@
 namespace servomill::plant {
 namespace {
 
-using Register = xsimd::batch<double, SERVOMILL_ARCH>;
-constexpr std::size_t kRegister = Register::size;
+using Batch = xsimd::batch<double, SERVOMILL_ARCH>;
+constexpr std::size_t kRegister = Batch::size;
 
+// A register as the compiler knows it: with the operators of numbers, also beside numbers.
+using Register [[gnu::vector_size(kRegister * sizeof(double))]] = double;
+
+SERVOMILL_INLINE Register load(const double* from) { return Batch::load_unaligned(from); }
 SERVOMILL_INLINE Register load(const LaneArray& from, std::size_t first) {
-  return Register::load_aligned(&from[0] + first);
+  return Batch::load_aligned(&from[0] + first);
 }
+SERVOMILL_INLINE void store(const Register& value, double* to) { Batch(value).store_unaligned(to); }
 SERVOMILL_INLINE void store(const Register& value, LaneArray& to, std::size_t first) {
-  value.store_aligned(&to[0] + first);
+  Batch(value).store_aligned(&to[0] + first);
+}
+
+// One value for all lanes.
+template <class N>
+SERVOMILL_INLINE N all(double value) {
+  return value - N{};
+}
+
+template <class F, std::size_t... i>
+SERVOMILL_INLINE void for_each(std::index_sequence<i...>, F f) {
+  (f(std::integral_constant<std::size_t, i>()), ...);
+}
+template <std::size_t count, class F>
+SERVOMILL_INLINE void repeat(F f) {
+  for_each(std::make_index_sequence<count>(), f);
 }
 
 template <class F, std::size_t... lane>
@@ -29,11 +49,32 @@ SERVOMILL_INLINE Register lanes_from(F value) {
   return lanes_from(value, std::make_index_sequence<kRegister>());
 }
 
+// a b + c, c - a b and a b - c, rounded once where the machine can: numbers and registers alike.
+#ifdef FP_FAST_FMA
+SERVOMILL_INLINE double fma(double a, double b, double c) { return __builtin_fma(a, b, c); }
+#else
+SERVOMILL_INLINE double fma(double a, double b, double c) { return a * b + c; }
+#endif
+SERVOMILL_INLINE Register fma(const Register& a, const Register& b, const Register& c) {
+#ifdef __AVX512F__  // xsimd 8 rounds twice here
+  return _mm512_fmadd_pd(a, b, c);
+#else
+  return xsimd::fma(Batch(a), Batch(b), Batch(c));
+#endif
+}
+template <class N>
+SERVOMILL_INLINE N fnma(const N& a, const N& b, const N& c) {
+  return fma(-a, b, c);
+}
+template <class N>
+SERVOMILL_INLINE N fms(const N& a, const N& b, const N& c) {
+  return fma(a, b, -c);
+}
+
 // The next whole number below 2^51, ties to even, by the rounding of an addition.
 template <class N>
 SERVOMILL_INLINE N nearest(const N& x) {
-  const N rounder(0x1.8p52);
-  return (x + rounder) - rounder;
+  return (x + 0x1.8p52) - 0x1.8p52;
 }
 
 // The sine, with an error below one unit in the last place of 1: Taylor's series of x less the
@@ -41,124 +82,122 @@ SERVOMILL_INLINE N nearest(const N& x) {
 // exact for n < 2^20; beyond, their rounding is no larger than that of x itself.
 template <class N>
 SERVOMILL_INLINE N sine(const N& x) {
-  const N n = nearest(x * N(0x1.45f306dc9c883p-2));
-  const N odd = n - N(2.0) * nearest(N(0.5) * n);  // -1, 0, 1
-  const N rest =
-      ((x - n * N(0x1.921fb544p1)) - n * N(0x1.0b4611a6p-33)) - n * N(0x1.3198a2e037073p-68);
-  const N r = rest * (N(1.0) - N(2.0) * odd * odd);
+  const N n = nearest<N>(x * 0x1.45f306dc9c883p-2);
+  const N odd = n - 2.0 * nearest<N>(0.5 * n);  // -1, 0, 1
+  const N rest = fnma(n, all<N>(0x1.3198a2e037073p-68),
+                      fnma(n, all<N>(0x1.0b4611a6p-33), fnma(n, all<N>(0x1.921fb544p1), x)));
+  const N r = rest * (1.0 - 2.0 * odd * odd);
   const N z = r * r, zz = z * z;
-  const N a = N(-1.0 / 6.0) +
-              zz * (N(-1.0 / 5040.0) +
-                    zz * (N(-1.0 / 39916800.0) +
-                          zz * (N(-1.0 / 1307674368000.0) + zz * N(-1.0 / 121645100408832000.0))));
-  const N b = N(1.0 / 120.0) +
-              zz * (N(1.0 / 362880.0) +
-                    zz * (N(1.0 / 6227020800.0) + zz * (N(1.0 / 355687428096000.0) +
-                                                        zz * N(1.0 / 51090942171709440000.0))));
-  return r + r * z * (a + z * b);
+  const auto series = [&zz](double c0, double c1, double c2, double c3, double c4) {
+    N sum = fma(zz, all<N>(c4), all<N>(c3));
+    sum = fma(zz, sum, all<N>(c2));
+    sum = fma(zz, sum, all<N>(c1));
+    return fma(zz, sum, all<N>(c0));
+  };
+  const N a = series(-1.0 / 6.0, -1.0 / 5040.0, -1.0 / 39916800.0, -1.0 / 1307674368000.0,
+                     -1.0 / 121645100408832000.0);
+  const N b = series(1.0 / 120.0, 1.0 / 362880.0, 1.0 / 6227020800.0, 1.0 / 355687428096000.0,
+                     1.0 / 51090942171709440000.0);
+  const N rz = r * z;
+  return fma(rz, fma(z, b, a), r);
 }
 
 // --- the turn of a vector of angles -------------------------------------------------------------
 
 // Rot(e) - 1 = a [e]x + b (e e^T - e^2), with a = sin t/t, b = (1 - cos t)/t^2 for t = |e|.
-template <class N>
 struct TurnFactors {
-  N a, b;
+  Register a, b;
 };
 
-void replace_large_turn(double t2, double& a, double& b) {
-  if (!(t2 > kSmallTurn * kSmallTurn)) return;
-  const double t = std::sqrt(t2), half = sine(0.5 * t);
-  a = sine(t) / t;
-  b = 2.0 * half * half / t2;
-}
-[[gnu::noinline]] void replace_large_turns(const Register& t2, TurnFactors<Register>& f) {
-  alignas(64) double lanes_t2[kRegister], lanes_a[kRegister], lanes_b[kRegister];
-  t2.store_aligned(lanes_t2);
-  f.a.store_aligned(lanes_a);
-  f.b.store_aligned(lanes_b);
-  for (std::size_t n = 0; n < kRegister; ++n) {
-    replace_large_turn(lanes_t2[n], lanes_a[n], lanes_b[n]);
-  }
-  f.a = Register::load_aligned(lanes_a);
-  f.b = Register::load_aligned(lanes_b);
+SERVOMILL_INLINE TurnFactors small_turn_factors(const Register& t2) {
+  return {fnma(t2, all<Register>(1.0 / 6.0), all<Register>(1.0)),
+          fnma(t2, all<Register>(1.0 / 24.0), all<Register>(0.5))};
 }
 
-SERVOMILL_INLINE TurnFactors<Register> turn_factors(const Register& t2) {
-  TurnFactors<Register> f{Register(1.0) - t2 * Register(1.0 / 6.0),
-                          Register(0.5) - t2 * Register(1.0 / 24.0)};
-  if (xsimd::any(t2 > Register(kSmallTurn * kSmallTurn))) [[unlikely]] {
-    replace_large_turns(t2, f);
+TurnFactors turn_factors(const Register& t2) {
+  TurnFactors f = small_turn_factors(t2);
+  for (std::size_t n = 0; n < kRegister; ++n) {
+    if (t2[n] < kSmallTurn * kSmallTurn) continue;
+    const double t = std::sqrt(t2[n]), half = sine(0.5 * t);
+    f.a[n] = sine(t) / t;
+    f.b[n] = 2.0 * half * half / t2[n];
   }
   return f;
 }
 
 // --- the errors of an axis ----------------------------------------------------------------------
 
-// w, and D = R - 1 with the opposite diagonal.
-template <class N>
+// w and R.
 struct Fault {
-  N w[3];
-  N D[3][3];
+  Register w_[3];
+  Register R_[3][3];
+
+  SERVOMILL_INLINE const Register& w(std::size_t i) const { return w_[i]; }
+  SERVOMILL_INLINE const Register& R(std::size_t i, std::size_t j) const { return R_[i][j]; }
 };
 
-SERVOMILL_INLINE void set_turn(const Register* e, Fault<Register>& fault) {
+// Two ways through the same formulas. The usual one takes only cubic polynomials and small turns
+// and thus calls nothing; it is given up, to be gone again in general, where t2_max turns out too
+// large.
+enum class Way { usual, general };
+
+template <Way way>
+SERVOMILL_INLINE void set_turn(const Register& ex, const Register& ey, const Register& ez,
+                               Fault& fault, Register& t2_max) {
   using N = Register;
-  const N t2 = (e[0] * e[0] + e[1] * e[1]) + e[2] * e[2];
-  const auto [a, b] = turn_factors(t2);
-  const N bx = b * e[0], by = b * e[1], bz = b * e[2];
-  const N xx = bx * e[0], yy = by * e[1], zz = bz * e[2];
-  const N xy = bx * e[1], xz = bx * e[2], yz = by * e[2];
-  const N ax = a * e[0], ay = a * e[1], az = a * e[2];
-  auto& D = fault.D;
-  D[0][0] = yy + zz;
-  D[1][1] = xx + zz;
-  D[2][2] = xx + yy;
-  D[0][1] = xy - az;
-  D[1][0] = xy + az;
-  D[0][2] = xz + ay;
-  D[2][0] = xz - ay;
-  D[1][2] = yz - ax;
-  D[2][1] = yz + ax;
+  const N t2 = fma(ez, ez, fma(ey, ey, ex * ex));
+  const auto [a, b] = way == Way::usual ? small_turn_factors(t2) : turn_factors(t2);
+  t2_max = xsimd::max(Batch(t2_max), Batch(t2));
+  const N bx = b * ex, by = b * ey, bz = b * ez;
+  const N ax = a * ex, ay = a * ey, az = a * ez;
+  const N no_zz = fnma(bz, ez, all<N>(1.0)), no_yy = fnma(by, ey, all<N>(1.0));
+  auto& R = fault.R_;
+  R[0][0] = fnma(by, ey, no_zz);
+  R[1][1] = fnma(bx, ex, no_zz);
+  R[2][2] = fnma(bx, ex, no_yy);
+  R[0][1] = fms(bx, ey, az);
+  R[1][0] = fma(bx, ey, az);
+  R[0][2] = fma(bx, ez, ay);
+  R[2][0] = fms(bx, ez, ay);
+  R[1][2] = fms(by, ez, ax);
+  R[2][1] = fma(by, ez, ax);
 }
 
-// Horner's rule for several components at once; coefficient(power, component).
-template <std::size_t kComponents, class F>
+// Several components at once; coefficient(power, component). Even and odd pairs of powers,
+// (c0 + c1 q) + (c2 + c3 q) q^2 + ..., which wait for each other half as long as Horner's rule.
+template <Way way, std::size_t kComponents, class F, class G>
 SERVOMILL_INLINE void evaluate(const VolumetricProgram& program, const Register& q, F coefficient,
-                               Register* e) {
-  const auto horner = [&](auto degree) {
-    for (std::size_t c = 0; c < kComponents; ++c) e[c] = coefficient(degree - 1, c);
-    for (std::size_t i = degree - 1; i-- > 0;) {
-      for (std::size_t c = 0; c < kComponents; ++c) e[c] = e[c] * q + coefficient(i, c);
-    }
-    for (std::size_t c = 0; c < kComponents; ++c) e[c] = e[c] * q;
+                               G terms, Register (&e)[kErrorComponents]) {
+  const Register q2 = q * q;
+  const auto pair = [&](std::size_t i, auto c) {
+    return fma(coefficient(2 * i + 1, c), q, coefficient(2 * i, c));
   };
-  if (program.degree == 3) {
-    horner(std::integral_constant<std::size_t, 3>());
-  } else {
-    horner(program.degree);
+  const std::size_t last = way == Way::usual ? 1 : program.pairs - 1;
+  repeat<kComponents>([&](auto c) { e[c] = pair(last, c); });
+  for (std::size_t i = last; i-- > 0;) {
+    repeat<kComponents>([&](auto c) { e[c] = fma(e[c], q2, pair(i, c)); });
   }
-  if (program.has_constants) {
-    for (std::size_t c = 0; c < kComponents; ++c) e[c] = e[c] + coefficient(program.degree, c);
+  if constexpr (way == Way::general) {
+    if (program.has_terms) repeat<kComponents>([&](auto c) { e[c] = e[c] + terms(c); });
   }
 }
 
-template <class F, class G>
+template <Way way, class F, class G>
 SERVOMILL_INLINE void find_fault(const VolumetricProgram& program, bool has_angles,
-                                 const Register& q, F coefficient, G terms,
-                                 Fault<Register>& fault) {
+                                 const Register& q, F coefficient, G terms, Fault& fault,
+                                 Register& t2_max) {
   Register e[kErrorComponents];
   if (has_angles) {
-    evaluate<6>(program, q, coefficient, e);
+    evaluate<way, 6>(program, q, coefficient, terms, e);
+    set_turn<way>(e[3], e[4], e[5], fault, t2_max);
   } else {
-    evaluate<3>(program, q, coefficient, e);
+    evaluate<way, 3>(program, q, coefficient, terms, e);
   }
-  const std::size_t components = has_angles ? 6 : 3;
-  if (program.has_terms) {
-    for (std::size_t c = 0; c < components; ++c) e[c] = e[c] + terms(c);
-  }
-  for (std::size_t i = 0; i < 3; ++i) fault.w[i] = e[i];
-  if (has_angles) set_turn(e + 3, fault);
+  for (std::size_t i = 0; i < 3; ++i) fault.w_[i] = e[i];
+}
+
+SERVOMILL_INLINE bool are_small_turns(const Register& t2_max) {
+  return !xsimd::any(Batch(t2_max) >= Batch(kSmallTurn * kSmallTurn));
 }
 
 // --- the way of the tool ------------------------------------------------------------------------
@@ -178,11 +217,11 @@ SERVOMILL_INLINE Vector<N> turned(int k, const N& cosine, const N& sine, const V
 }
 template <class N>
 SERVOMILL_INLINE Vector<N> plus(const Vector<N>& p, const double* d) {
-  return {p.v[0] + N(d[0]), p.v[1] + N(d[1]), p.v[2] + N(d[2])};
+  return {p.v[0] + d[0], p.v[1] + d[1], p.v[2] + d[2]};
 }
 template <class N>
 SERVOMILL_INLINE Vector<N> minus(const Vector<N>& p, const double* d) {
-  return {p.v[0] - N(d[0]), p.v[1] - N(d[1]), p.v[2] - N(d[2])};
+  return {p.v[0] - d[0], p.v[1] - d[1], p.v[2] - d[2]};
 }
 template <class N>
 SERVOMILL_INLINE Vector<N> minus(const Vector<N>& p, const Vector<N>& q) {
@@ -192,7 +231,7 @@ template <class N>
 SERVOMILL_INLINE Vector<N> times(const double (&R)[3][3], const Vector<N>& p) {
   Vector<N> u;
   for (int i = 0; i < 3; ++i) {
-    u.v[i] = (N(R[i][0]) * p.v[0] + N(R[i][1]) * p.v[1]) + N(R[i][2]) * p.v[2];
+    u.v[i] = (R[i][0] * p.v[0] + R[i][1] * p.v[1]) + R[i][2] * p.v[2];
   }
   return u;
 }
@@ -200,31 +239,37 @@ template <class N>
 SERVOMILL_INLINE Vector<N> transpose_times(const double (&R)[3][3], const Vector<N>& p) {
   Vector<N> u;
   for (int i = 0; i < 3; ++i) {
-    u.v[i] = (N(R[0][i]) * p.v[0] + N(R[1][i]) * p.v[1]) + N(R[2][i]) * p.v[2];
+    u.v[i] = (R[0][i] * p.v[0] + R[1][i] * p.v[1]) + R[2][i] * p.v[2];
   }
   return u;
 }
-// (R - 1) p
-template <class N>
-SERVOMILL_INLINE Vector<N> turn_of(const Fault<N>& f, const Vector<N>& p) {
-  const auto& D = f.D;
-  return {(D[0][1] * p.v[1] + D[0][2] * p.v[2]) - D[0][0] * p.v[0],
-          (D[1][0] * p.v[0] + D[1][2] * p.v[2]) - D[1][1] * p.v[1],
-          (D[2][0] * p.v[0] + D[2][1] * p.v[1]) - D[2][2] * p.v[2]};
+// R p + v
+template <class N, class F>
+SERVOMILL_INLINE Vector<N> turn_and_shift(const F& f, const Vector<N>& p, const Vector<N>& v) {
+  Vector<N> u;
+  repeat<3>([&](auto i) {
+    u.v[i] = fma(f.R(i, 2), p.v[2], fma(f.R(i, 1), p.v[1], fma(f.R(i, 0), p.v[0], v.v[i])));
+  });
+  return u;
 }
+
 template <class N>
-SERVOMILL_INLINE Vector<N> sum(const Vector<N>& p, const N (&w)[3]) {
-  return {p.v[0] + w[0], p.v[1] + w[1], p.v[2] + w[2]};
+SERVOMILL_INLINE void add(int direction, const N& q, N (&v)[3]) {
+  if (direction == 0) {
+    v[0] = v[0] + q;
+  } else if (direction == 1) {
+    v[1] = v[1] + q;
+  } else {
+    v[2] = v[2] + q;
+  }
 }
 
 // The true tool, and the ideal one where it is asked for; the axis where it is asked for.
 template <class N, bool kAxis, bool kIdeal>
 struct Tools {
+  static constexpr bool kHasIdeal = kIdeal;
   Vector<N> p, k, p_ideal, k_ideal;
 
-  SERVOMILL_INLINE void ideal_shift(int along, const N& q) {
-    if constexpr (kIdeal) p_ideal.v[along] = p_ideal.v[along] + q;
-  }
   SERVOMILL_INLINE void ideal_turn(int about, const N& c, const N& s, const double* centre) {
     if constexpr (kIdeal) {
       p_ideal = plus(turned(about, c, s, minus(p_ideal, centre)), centre);
@@ -240,85 +285,72 @@ struct Tools {
     p = plus(times(step.R, plus(turned(about, c, s, u), step.t)), step.centre);
     if constexpr (kAxis) k = times(step.R, turned(about, c, s, transpose_times(step.R, k)));
   }
-  SERVOMILL_INLINE void fault(const Fault<N>& f, const VolumetricStep& step, const N& q) {
-    const Vector<N> moved = sum(p, f.w);
+  template <class F>
+  SERVOMILL_INLINE void fault(const F& f, const VolumetricStep& step, const N& q) {
+    Vector<N> w{f.w(0), f.w(1), f.w(2)};
+    if (step.move == VolumetricMove::faulty_shift) {
+      add(step.direction, q, w.v);
+      if constexpr (kIdeal) add(step.direction, q, p_ideal.v);
+    }
     if (!step.has_angles) {
-      p = moved;
+      repeat<3>([&](auto i) { p.v[i] = p.v[i] + w.v[i]; });
       return;
     }
-    Vector<N> arm = p;
     if (step.has_lever) {
-      for (int i = 0; i < 3; ++i) {
-        arm.v[i] = p.v[i] + (q * N(step.lever_slope[i]) - N(step.centre[i]));
-      }
+      repeat<3>([&](auto i) {
+        const N o = q * step.lever_slope[i] - step.centre[i];
+        p.v[i] = p.v[i] + o;
+        w.v[i] = w.v[i] - o;
+      });
     }
-    p = sum(moved, turn_of(f, arm).v);
-    if constexpr (kAxis) k = sum(k, turn_of(f, k).v);
+    p = turn_and_shift(f, p, w);
+    if constexpr (kAxis) k = turn_and_shift(f, k, Vector<N>{});
   }
 };
 
-// Source: q(joint), cosine(joint), sine(joint), fault(joint).
-template <int direction, class N, class Source, class T>
-SERVOMILL_INLINE void take(const VolumetricStep& step, Source& at, T& tools) {
-  switch (step.move) {
-    case VolumetricMove::shift: {
-      const N q = at.q(step.joint);
-      tools.p.v[direction] = tools.p.v[direction] + q;
-      tools.ideal_shift(direction, q);
-      return;
-    }
-    case VolumetricMove::faulty_shift: {
-      const N q = at.q(step.joint);
-      Fault<N> f;
-      at.fault(step, q, f);
-      f.w[direction] = f.w[direction] + q;
-      tools.fault(f, step, q);
-      tools.ideal_shift(direction, q);
-      return;
-    }
-    case VolumetricMove::fault: {
-      const N q = at.q(step.joint);
-      Fault<N> f;
-      at.fault(step, q, f);
-      tools.fault(f, step, q);
-      return;
-    }
-    case VolumetricMove::turn: {
-      const N c = at.cosine(step.joint), s = at.sine(step.joint);
-      tools.turn(direction, c, s, step.centre);
-      tools.ideal_turn(direction, c, s, step.centre);
-      return;
-    }
-    case VolumetricMove::tilted_turn: {
-      const N c = at.cosine(step.joint), s = at.sine(step.joint);
-      tools.tilted_turn(direction, c, s, step);
-      tools.ideal_turn(direction, c, s, step.centre);
-      return;
-    }
+// Calls f with the direction as a constant.
+template <class F>
+SERVOMILL_INLINE void about(int direction, F f) {
+  if (direction == 0) {
+    f(std::integral_constant<int, 0>());
+  } else if (direction == 1) {
+    f(std::integral_constant<int, 1>());
+  } else {
+    f(std::integral_constant<int, 2>());
   }
 }
 
+// Source: q(joint), cosine(joint), sine(joint), fault(step, q, fault).
 template <class N, class Source, class T>
 SERVOMILL_INLINE void go(const VolumetricProgram& program, std::size_t steps, Source& at,
                          T& tools) {
-  for (std::size_t n = 0; n < steps; ++n) {
-    const VolumetricStep& step = program.steps[n];
-    switch (step.direction) {
-      case 0:
-        take<0, N>(step, at, tools);
-        break;
-      case 1:
-        take<1, N>(step, at, tools);
-        break;
-      default:
-        take<2, N>(step, at, tools);
+  const VolumetricStep* const end = program.steps + steps;
+  for (const VolumetricStep* step = program.steps; step != end; ++step) {
+    const std::size_t joint = step->joint;
+    if (step->move == VolumetricMove::faulty_shift || step->move == VolumetricMove::fault) {
+      const N q = at.q(joint);
+      tools.fault(at.fault(*step, q), *step, q);
+    } else if (step->move == VolumetricMove::shift) {
+      const N q = at.q(joint);
+      add(step->direction, q, tools.p.v);
+      if constexpr (T::kHasIdeal) add(step->direction, q, tools.p_ideal.v);
+    } else {
+      const N c = at.cosine(joint), s = at.sine(joint);
+      about(step->direction, [&](auto axis) {
+        if (step->move == VolumetricMove::turn) {
+          tools.turn(axis, c, s, step->centre);
+        } else {
+          tools.tilted_turn(axis, c, s, *step);
+        }
+        tools.ideal_turn(axis, c, s, step->centre);
+      });
     }
   }
 }
 
 template <class N>
 SERVOMILL_INLINE Vector<N> at_tip(const double* p_ST) {
-  return {N(p_ST[0]), N(p_ST[1]), N(p_ST[2])};
+  return {all<N>(p_ST[0]), all<N>(p_ST[1]), all<N>(p_ST[2])};
 }
 
 enum class Wanted { tool, error, offset };
@@ -330,7 +362,7 @@ SERVOMILL_INLINE void solve(const VolumetricProgram& program, Source& at, const 
   constexpr bool kAxis = wanted != Wanted::offset, kIdeal = wanted != Wanted::tool;
   Tools<N, kAxis, kIdeal> tools;
   tools.p = tools.p_ideal = at_tip<N>(p_ST);
-  tools.k = tools.k_ideal = {N(0.0), N(0.0), N(1.0)};
+  tools.k = tools.k_ideal = {all<N>(0.0), all<N>(0.0), all<N>(1.0)};
   const std::size_t steps =
       wanted == Wanted::offset ? program.offset_steps : program.number_of_steps;
   go<N>(program, steps, at, tools);
@@ -343,9 +375,7 @@ SERVOMILL_INLINE void solve(const VolumetricProgram& program, Source& at, const 
       const VolumetricStep& step = program.steps[n];
       if (step.move == VolumetricMove::fault) continue;
       const N c = at.cosine(step.joint), s = -at.sine(step.joint);
-      if (step.direction == 0) p = turned(0, c, s, p);
-      if (step.direction == 1) p = turned(1, c, s, p);
-      if (step.direction == 2) p = turned(2, c, s, p);
+      about(step.direction, [&](auto axis) { p = turned(axis, c, s, p); });
     }
   }
   for (int i = 0; i < 3; ++i) out[i] = p.v[i];
@@ -356,154 +386,208 @@ SERVOMILL_INLINE void solve(const VolumetricProgram& program, Source& at, const 
 
 // --- one pose: axes in lanes --------------------------------------------------------------------
 
-class OnePose {
- public:
-  SERVOMILL_INLINE OnePose(const VolumetricProgram& program, const OnePoseData* data,
-                           const double* Q)
-      : data_(data), Q_(Q) {
-    if (program.has_terms) add_terms(program);
-    for (std::size_t first = 0; first < program.joints; first += kRegister) {
-      const Register q = lanes_from(
-          [&](std::size_t lane) { return first + lane < kMachineJoints ? Q[first + lane] : 0.0; });
-      const auto coefficient = [&](std::size_t power, std::size_t component) {
-        return load(program.polynomial[power].e[component], first);
-      };
-      const auto terms = [&](std::size_t component) { return load(terms_.e[component], first); };
-      Fault<Register> fault;
-      find_fault(program, program.has_angles, q, coefficient, terms, fault);
-      for (std::size_t i = 0; i < 3; ++i) store(fault.w[i], w_[i], first);
-      if (!program.has_angles) continue;
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) store(fault.D[i][j], D_[i][j], first);
-      }
+template <std::size_t first>
+SERVOMILL_INLINE Register joints_in_lanes(const double* Q) {
+  if constexpr (first + kRegister <= kMachineJoints) {
+    return load(Q + first);
+  } else {
+    return lanes_from(
+        [&](std::size_t lane) { return first + lane < kMachineJoints ? Q[first + lane] : 0.0; });
+  }
+}
+
+// Harmonics and tables; lanes: joints.
+void find_terms(const VolumetricProgram& program, const OnePoseData* data, const double* Q,
+                VolumetricPower& terms) {
+  if (data != nullptr) {
+    terms = data->tables;
+  } else {
+    terms = {};
+  }
+  const VolumetricHarmonic* h = program.harmonics;
+  const VolumetricHarmonic* const end = h + program.number_of_harmonics;
+  for (std::size_t block = 0; block < program.wave_blocks; ++block) {
+    const VolumetricWaves& waves = program.waves[block];
+    LaneArray sines;
+    for (std::size_t first = 0; first < kLaneWidth; first += kRegister) {
+      const Register q = lanes_from([&](std::size_t lane) { return Q[waves.joint[first + lane]]; });
+      store(sine<Register>(load(waves.omega, first) * q + load(waves.phase, first)), sines, first);
+    }
+    for (; h != end && h->wave / kLaneWidth == block; ++h) {
+      double& sum = terms.e[h->component][h->joint];
+      sum = fma(h->amplitude, sines[h->wave % kLaneWidth], sum);
     }
   }
+}
 
-  SERVOMILL_INLINE double q(std::size_t joint) const { return Q_[joint]; }
-  SERVOMILL_INLINE double cosine(std::size_t joint) const { return data_->cosine[joint]; }
-  SERVOMILL_INLINE double sine(std::size_t joint) const { return data_->sine[joint]; }
-  SERVOMILL_INLINE void fault(const VolumetricStep& step, double, Fault<double>& f) const {
-    for (std::size_t i = 0; i < 3; ++i) f.w[i] = w_[i][step.joint];
-    if (!step.has_angles) return;
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) f.D[i][j] = D_[i][j][step.joint];
-    }
-  }
-
- private:
-  [[gnu::noinline]] void add_terms(const VolumetricProgram& program) {
-    for (std::size_t c = 0; c < kErrorComponents; ++c) {
-      if (data_ != nullptr) {
-        terms_.e[c] = data_->tables.e[c];
-      } else {
-        terms_.e[c] = {};
-      }
-    }
-    const VolumetricHarmonic* h = program.harmonics;
-    const VolumetricHarmonic* const end = h + program.number_of_harmonics;
-    for (std::size_t block = 0; block < program.wave_blocks; ++block) {
-      const VolumetricWaves& waves = program.waves[block];
-      LaneArray sines;
-      for (std::size_t first = 0; first < kLaneWidth; first += kRegister) {
-        const Register q =
-            lanes_from([&](std::size_t lane) { return Q_[waves.joint[first + lane]]; });
-        const Register x = load(waves.omega, first) * q + load(waves.phase, first);
-        store(plant::sine(x), sines, first);
-      }
-      for (; h != end && h->wave / kLaneWidth == block; ++h) {
-        terms_.e[h->component][h->joint] += h->amplitude * sines[h->wave % kLaneWidth];
-      }
-    }
-  }
-
-  const OnePoseData* data_;
-  const double* Q_;
-  LaneArray w_[3], D_[3][3];
-  VolumetricPower terms_;
+// Faults of all joints, one of which is read where it lies.
+struct OnePoseFaults {
+  LaneArray w_[3], R_[3][3];
 };
+struct FaultInMemory {
+  const OnePoseFaults& all;
+  std::size_t joint;
+
+  SERVOMILL_INLINE const double& w(std::size_t i) const { return all.w_[i][joint]; }
+  SERVOMILL_INLINE const double& R(std::size_t i, std::size_t j) const {
+    return all.R_[i][j][joint];
+  }
+};
+
+struct OnePose {
+  const OnePoseData* data;
+  const double* Q;
+  const OnePoseFaults& faults;
+
+  SERVOMILL_INLINE double q(std::size_t joint) const { return Q[joint]; }
+  SERVOMILL_INLINE double cosine(std::size_t joint) const { return data->cosine[joint]; }
+  SERVOMILL_INLINE double sine(std::size_t joint) const { return data->sine[joint]; }
+  SERVOMILL_INLINE FaultInMemory fault(const VolumetricStep& step, double) const {
+    return {faults, step.joint};
+  }
+};
+
+// False where the usual way does not lead to the end.
+template <Way way, Wanted wanted>
+SERVOMILL_INLINE bool try_one(const VolumetricProgram& program, const OnePoseData* data,
+                              const double* Q, const double* p_ST, double* out) {
+  VolumetricPower sums;
+  if constexpr (way == Way::general) {
+    if (program.has_terms) find_terms(program, data, Q, sums);
+  }
+  OnePoseFaults faults;
+  Register t2_max{};
+  repeat<(kMachineJoints + kRegister - 1) / kRegister>([&](auto block) {
+    constexpr std::size_t first = block() * kRegister;
+    if (first >= program.joints) return;
+    const auto coefficient = [&](std::size_t power, std::size_t component) {
+      return load(program.polynomial[power].e[component], first);
+    };
+    const auto terms = [&](std::size_t component) { return load(sums.e[component], first); };
+    Fault f;
+    find_fault<way>(program, program.has_angles, joints_in_lanes<first>(Q), coefficient, terms, f,
+                    t2_max);
+    repeat<3>([&](auto i) { store(f.w_[i], faults.w_[i], first); });
+    if (!program.has_angles) return;
+    repeat<9>([&](auto n) { store(f.R_[n / 3][n % 3], faults.R_[n / 3][n % 3], first); });
+  });
+  if (way == Way::usual && !are_small_turns(t2_max)) return false;
+  OnePose at{data, Q, faults};
+  solve<wanted>(program, at, p_ST, out);
+  return true;
+}
+
+template <Wanted wanted>
+[[gnu::noinline]] void one_in_general(const VolumetricProgram& program, const OnePoseData* data,
+                                      const double* Q, const double* p_ST, double* out) {
+  try_one<Way::general, wanted>(program, data, Q, p_ST, out);
+}
 
 template <Wanted wanted>
 void one(const VolumetricProgram& program, const OnePoseData* data, const double* Q,
          const double* p_ST, double* out) {
-  OnePose at(program, data, Q);
-  solve<wanted>(program, at, p_ST, out);
+  if (program.is_cubic && try_one<Way::usual, wanted>(program, data, Q, p_ST, out)) return;
+  one_in_general<wanted>(program, data, Q, p_ST, out);
 }
 
 // --- many poses: poses in lanes -----------------------------------------------------------------
 
-class PosesInLanes {
- public:
-  SERVOMILL_INLINE PosesInLanes(const VolumetricProgram& program, const EightPosesData* data,
-                                const double* Q, std::size_t first)
-      : program_(program), data_(data), Q_(Q), first_(first) {
-    if (program.has_terms) add_terms();
-  }
+using ManyTerms = Register[kMachineJoints][kErrorComponents];
 
-  SERVOMILL_INLINE Register q(std::size_t joint) const {
-    return lanes_from(
-        [&](std::size_t lane) { return Q_[kMachineJoints * (first_ + lane) + joint]; });
+SERVOMILL_INLINE Register poses_in_lanes(const double* Q, std::size_t joint) {
+  return lanes_from([&](std::size_t lane) { return Q[kMachineJoints * lane + joint]; });
+}
+
+void find_terms(const VolumetricProgram& program, const EightPosesData* data, std::size_t first,
+                const double* Q, ManyTerms& terms) {
+  for (std::size_t joint = 0; joint < program.joints; ++joint) {
+    for (std::size_t c = 0; c < kErrorComponents; ++c) {
+      terms[joint][c] = data != nullptr ? load(data->tables[joint].e[c], first) : Register{};
+    }
   }
+  const VolumetricHarmonic* h = program.harmonics;
+  const VolumetricHarmonic* const end = h + program.number_of_harmonics;
+  while (h != end) {
+    const std::size_t wave = h->wave, lane = wave % kLaneWidth;
+    const VolumetricWaves& waves = program.waves[wave / kLaneWidth];
+    const Register q = poses_in_lanes(Q, h->joint);
+    const Register value = sine<Register>(waves.omega[lane] * q + waves.phase[lane]);
+    for (; h != end && h->wave == wave; ++h) {
+      Register& sum = terms[h->joint][h->component];
+      sum = fma(all<Register>(h->amplitude), value, sum);
+    }
+  }
+}
+
+template <Way way>
+struct PosesInLanes {
+  const VolumetricProgram& program;
+  const EightPosesData* data;
+  std::size_t first;  // of the eight
+  const double* Q;    // of the first
+  const ManyTerms* sums;
+  Register t2_max;
+
+  SERVOMILL_INLINE Register q(std::size_t joint) const { return poses_in_lanes(Q, joint); }
   SERVOMILL_INLINE Register cosine(std::size_t joint) const {
-    return load(data_->cosine[joint], first_);
+    return load(data->cosine[joint], first);
   }
-  SERVOMILL_INLINE Register sine(std::size_t joint) const {
-    return load(data_->sine[joint], first_);
-  }
-  SERVOMILL_INLINE void fault(const VolumetricStep& step, const Register& q,
-                              Fault<Register>& f) const {
+  SERVOMILL_INLINE Register sine(std::size_t joint) const { return load(data->sine[joint], first); }
+  SERVOMILL_INLINE Fault fault(const VolumetricStep& step, const Register& q) {
+    const std::size_t joint = step.joint;
     const auto coefficient = [&](std::size_t power, std::size_t component) {
-      return Register(program_.polynomial[power].e[component][step.joint]);
+      return all<Register>(program.polynomial[power].e[component][joint]);
     };
-    const auto terms = [&](std::size_t component) { return terms_[step.joint][component]; };
-    find_fault(program_, step.has_angles, q, coefficient, terms, f);
+    const auto terms = [&](std::size_t component) { return (*sums)[joint][component]; };
+    Fault f;
+    find_fault<way>(program, step.has_angles, q, coefficient, terms, f, t2_max);
+    return f;
   }
-
- private:
-  [[gnu::noinline]] void add_terms() {
-    for (std::size_t joint = 0; joint < program_.joints; ++joint) {
-      for (std::size_t c = 0; c < kErrorComponents; ++c) {
-        terms_[joint][c] =
-            data_ != nullptr ? load(data_->tables[joint].e[c], first_) : Register(0.0);
-      }
-    }
-    const VolumetricHarmonic* h = program_.harmonics;
-    const VolumetricHarmonic* const end = h + program_.number_of_harmonics;
-    while (h != end) {
-      const std::size_t wave = h->wave, lane = wave % kLaneWidth;
-      const VolumetricWaves& waves = program_.waves[wave / kLaneWidth];
-      const Register x = Register(waves.omega[lane]) * q(h->joint) + Register(waves.phase[lane]);
-      const Register value = plant::sine(x);
-      for (; h != end && h->wave == wave; ++h) {
-        Register& sum = terms_[h->joint][h->component];
-        sum = sum + Register(h->amplitude) * value;
-      }
-    }
-  }
-
-  const VolumetricProgram& program_;
-  const EightPosesData* data_;
-  const double* Q_;
-  std::size_t first_;
-  Register terms_[kMachineJoints][kErrorComponents];
 };
+
+template <Wanted wanted>
+constexpr std::size_t kNumbers = wanted == Wanted::offset ? 3 : 6;
+
+// False where the usual way does not lead to the end.
+template <Way way, Wanted wanted>
+SERVOMILL_INLINE bool try_many(const VolumetricProgram& program, const EightPosesData* data,
+                               std::size_t first, const double* Q, const double* p_ST,
+                               double* out) {
+  ManyTerms sums;
+  if constexpr (way == Way::general) {
+    if (program.has_terms) find_terms(program, data, first, Q, sums);
+  }
+  PosesInLanes<way> at{program, data, first, Q, &sums, Register{}};
+  Register result[kNumbers<wanted>];
+  solve<wanted>(program, at, p_ST, result);
+  if (way == Way::usual && !are_small_turns(at.t2_max)) return false;
+  alignas(64) double lanes[kNumbers<wanted>][kRegister];
+  for (std::size_t i = 0; i < kNumbers<wanted>; ++i) store(result[i], lanes[i]);
+  for (std::size_t n = 0; n < kRegister; ++n) {
+    for (std::size_t i = 0; i < kNumbers<wanted>; ++i) *out++ = lanes[i][n];
+  }
+  return true;
+}
+
+template <Wanted wanted>
+[[gnu::noinline]] void many_in_general(const VolumetricProgram& program, const EightPosesData* data,
+                                       std::size_t first, const double* Q, const double* p_ST,
+                                       double* out) {
+  try_many<Way::general, wanted>(program, data, first, Q, p_ST, out);
+}
 
 template <Wanted wanted>
 void many(const VolumetricProgram& program, const EightPosesData* data, const double* Q,
           std::size_t blocks, const double* p_ST, double* out) {
-  constexpr std::size_t kSize = wanted == Wanted::offset ? 3 : 6;
-  for (std::size_t block = 0; block < blocks; ++block) {
-    for (std::size_t first = 0; first < kLaneWidth; first += kRegister) {
-      PosesInLanes at(program, data, Q, first);
-      Register result[kSize];
-      solve<wanted>(program, at, p_ST, result);
-      alignas(64) double lanes[kSize][kRegister];
-      for (std::size_t i = 0; i < kSize; ++i) result[i].store_aligned(lanes[i]);
-      for (std::size_t n = 0; n < kRegister; ++n) {
-        for (std::size_t i = 0; i < kSize; ++i) *out++ = lanes[i][n];
-      }
+  const std::size_t poses = blocks * kLaneWidth;
+  for (std::size_t n = 0; n < poses; n += kRegister) {
+    const EightPosesData* const block = data != nullptr ? data + n / kLaneWidth : nullptr;
+    const std::size_t first = n % kLaneWidth;
+    if (!(program.is_cubic && try_many<Way::usual, wanted>(program, block, first, Q, p_ST, out))) {
+      many_in_general<wanted>(program, block, first, Q, p_ST, out);
     }
-    Q += kMachineJoints * kLaneWidth;
-    if (data != nullptr) ++data;
+    Q += kMachineJoints * kRegister;
+    out += kNumbers<wanted> * kRegister;
   }
 }
 

@@ -3,12 +3,12 @@
 /// The tool travels through a list of steps, from the spindle to the workpiece. A fault, the errors
 /// of one axis, moves it by
 ///
-///     p <- p + w + (R - 1)(p - c)       k <- k + (R - 1) k
+///     p <- R (p - c) + c + w       k <- R k
 ///
-/// What is known before the tool arrives, w and R - 1, is computed for all axes first: for one pose
-/// with the axes in lanes, for many with the poses in lanes. Both run the same formulas with one
-/// rounding per operation, so that a pose has the same bits alone, among others and on every
-/// machine.
+/// What is known before the tool arrives, w and R, is computed for all axes first: for one pose
+/// with the axes in lanes, for many with the poses in lanes. Both run the same formulas with the
+/// same roundings, so that a pose has the same bits alone and among others. Machines with AVX2 and
+/// with AVX-512 agree in every bit; the baseline, which rounds a b + c twice, differs by rounding.
 #pragma once
 
 #include <cstddef>
@@ -66,9 +66,10 @@ struct VolumetricProgram {
   std::size_t number_of_steps;
   std::size_t offset_steps;  // without the last ones, ideal turns, which offsets undo at once
   std::size_t linear_end;    // behind the last linear step: what follows are turns and faults
-  const VolumetricPower* polynomial;  // c1, c2, ..., then c0 at the end
-  std::size_t degree;                 // >= 1
-  bool has_constants, has_angles;     // some c0 is not 0; some error is an angle
+  const VolumetricPower* polynomial;  // c0, c1, ...; an even number of them
+  std::size_t pairs;                  // of coefficients, >= 2
+  bool is_cubic;                      // degree 3, all c0 are 0, no terms
+  bool has_angles;                    // some error is an angle
   std::size_t joints;                 // 1 + the last joint that has errors, or 0
   const VolumetricWaves* waves;
   std::size_t wave_blocks;

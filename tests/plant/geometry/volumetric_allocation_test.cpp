@@ -18,7 +18,14 @@ TEST(VolumetricModel, DoesNotAllocate) {
     const VolumetricModel model(chain, errors);
     const Joints Q = random_joints(chain, random);
     const Eigen::Vector3d p_ST(0.0, 0.0, -0.1);
+    const std::vector<Joints> many(11, Q);
+    std::vector<ToolPose> poses(many.size());
+    std::vector<VolumetricError> each(many.size());
+    std::vector<Eigen::Vector3d> offsets(many.size());
     const std::size_t before = allocations;
+    model.poses(many, p_ST, poses);
+    model.errors(many, p_ST, each);
+    model.joint_offsets(many, p_ST, offsets);
     const Eigen::Vector3d p_WT = model.forward(Q, p_ST).p_WT;
     const Eigen::Vector3d dp = model.error(Q, p_ST).dp_W;
     const Eigen::Vector3d first = model.first_order_error(Q, p_ST).dp_W;

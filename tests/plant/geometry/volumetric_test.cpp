@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "plant/geometry/volumetric_kernel.h"
 #include "plant/vocabulary/units.h"
 #include "tests/plant/geometry/random_errors.h"
 
@@ -135,8 +136,7 @@ TEST(RotationOfAnError, IsTheExponentialOfItsVector) {
 
 TEST(RotationOfAnError, IsTheSameFromSeriesAndFromSines) {
   const MachineChain chain = chain_of("[w b X t]");
-  const double limit = std::sqrt(1e-3);  // rad, where the formula changes
-  for (const double angle : {limit * (1.0 - 1e-15), limit * (1.0 + 1e-15)}) {
+  for (const double angle : {kSmallTurn * (1.0 - 1e-15), kSmallTurn * (1.0 + 1e-15)}) {
     const ToolPose P = forward(chain, with("EAX"_err, angle), Joints::Zero(), Vector3d::Zero());
     EXPECT_LT((P.k_W - Vector3d(0.0, -std::sin(angle), std::cos(angle))).norm(), 3e-16);  // ulp
   }
