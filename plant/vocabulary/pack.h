@@ -20,6 +20,17 @@
 
 namespace servomill {
 
+/// a b + c. xsimd 8.1 does not know that of AVX-512 and would round twice.
+template <class Arch>
+xsimd::batch<double, Arch> fused(const xsimd::batch<double, Arch>& a,
+                                 const xsimd::batch<double, Arch>& b,
+                                 const xsimd::batch<double, Arch>& c) {
+#ifdef __AVX512F__
+  if constexpr (xsimd::batch<double, Arch>::size == kLaneWidth) return _mm512_fmadd_pd(a, b, c);
+#endif
+  return xsimd::fma(a, b, c);
+}
+
 /// Eight truths.
 template <class Arch>
 struct PackMask {
@@ -171,7 +182,7 @@ struct Pack {
 
   /// a b + c, rounded once where the machine can.
   friend Pack fma(const Pack& a, const Pack& b, const Pack& c) {
-    return each([&](std::size_t n) { return xsimd::fma(a.r[n], b.r[n], c.r[n]); });
+    return each([&](std::size_t n) { return fused<Arch>(a.r[n], b.r[n], c.r[n]); });
   }
   friend Pack select(const Mask& mask, const Pack& yes, const Pack& no) {
     return each([&](std::size_t n) { return xsimd::select(mask.r[n], yes.r[n], no.r[n]); });
