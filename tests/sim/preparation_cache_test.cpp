@@ -247,7 +247,7 @@ TEST_F(Sharing, LeavesOnlyTheLoopsToBeCheckedWhereAGainChanges) {
     const Scenario scenario = source.at({change});
     prepare_cases(scenario, &cache);
   };
-  prepare_at("title=unchanged");
+  prepare_at("program.feed_override=1.0");
   const std::size_t programs = cache.programs.made(), motions = cache.motions.made();
   EXPECT_EQ(programs, 2U);  // with and without the work offset of a case
   EXPECT_EQ(motions, 3U);   // and of the rewritten program
