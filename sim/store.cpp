@@ -95,18 +95,6 @@ void write_row(Hdf5Group& group, const ComparisonRow& row) {
   group.attribute("kind", row.kind);
 }
 
-std::vector<std::string> split_lines(const std::string& text) {
-  std::vector<std::string> lines(1);
-  for (const char c : text) {
-    if (c == '\n') {
-      lines.emplace_back();
-    } else {
-      lines.back() += c;
-    }
-  }
-  return lines;
-}
-
 // Columns of one group read back in the order in which they were written.
 std::unique_ptr<Series> read_series(const InputFile& file, const std::string& group) {
   std::vector<Signal> signals;
@@ -167,6 +155,18 @@ void check_schema(const InputFile& file, const std::string& path, const std::str
 }
 
 }  // namespace
+
+std::vector<std::string> split_lines(const std::string& text) {
+  std::vector<std::string> lines(1);
+  for (const char c : text) {
+    if (c == '\n') {
+      lines.emplace_back();
+    } else {
+      lines.back() += c;
+    }
+  }
+  return lines;
+}
 
 void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view kind) {
   root.attribute("Conventions", "CF-1.8");

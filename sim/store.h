@@ -49,6 +49,9 @@ struct StoredRun {
 /// @throws InputError if the file is none of ours or of another schema version
 StoredRun read_run(const std::string& path);
 
+/// The lines of a text attribute: one more than it has line breaks.
+std::vector<std::string> split_lines(const std::string& text);
+
 /// Whether a file begins as HDF5 does.
 bool is_hdf5(const std::string& path);
 

@@ -17,6 +17,7 @@
 /// Every point of the grid is run with every sample, the same ones for all: 2 x 5 x 2 x 256 points.
 /// The samples vary fastest, then the last dimension of the grid. Keys may be written as --set
 /// takes them or as TOML nests them; a case, a strategy, a tool is called by its name.
+/// (This example is also a test: Design.ReadsTheExampleOfItsHeader.)
 #pragma once
 
 #include <cstdint>

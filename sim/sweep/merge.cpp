@@ -12,17 +12,30 @@ namespace {
 
 constexpr std::size_t kMostNamed = 20;  // shards or ranges in one message
 
+// What a merge keeps of a file; files are open one at a time, there may be thousands.
+struct Shard {
+  std::string path, version, resolved;
+  Selection selection;
+  std::uint64_t not_run = 0;  // of its points
+};
+
+Shard read_shard(const std::string& path) {
+  const InputFile file(path);
+  const SweepHeader header = read_sweep_header(file);
+  const auto statuses = file.values("/sweep/status", 0, header.selection.size());
+  return {path, file.text("/", "servomill_version"), header.base.resolved, header.selection,
+          static_cast<std::uint64_t>(std::count(statuses.begin(), statuses.end(), 0.0))};
+}
+
 // Refuses a file that is no part of the same sweep as the first one.
-void refuse_other(const SweepHeader& one, const std::string& path, const std::string& version,
-                  const SweepHeader& first, const std::string& first_path,
-                  const std::string& first_version) {
+void refuse_other(const Shard& one, const Shard& first) {
   const auto refuse = [&](const std::string& why) {
-    throw InputError({path}, fmt::format("{} {}", why, first_path));
+    throw InputError({one.path}, fmt::format("{} {}", why, first.path));
   };
-  if (version != first_version) {
-    refuse(fmt::format("was written by servomill {}, not {} as", version, first_version));
+  if (one.version != first.version) {
+    refuse(fmt::format("was written by servomill {}, not {} as", one.version, first.version));
   }
-  if (one.base.resolved != first.base.resolved) refuse("holds a sweep of another scenario than");
+  if (one.resolved != first.resolved) refuse("holds a sweep of another scenario than");
   if (one.selection.first != first.selection.first || one.selection.last != first.selection.last) {
     refuse(fmt::format("is of points {} to {}, others than those of", one.selection.first + 1,
                        one.selection.last));
@@ -46,23 +59,18 @@ std::string ranges(const std::vector<std::uint64_t>& numbers) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-struct Shard {
-  InputFile file;
-  SweepHeader header;
-};
-
 // Which file holds each point of the whole selection.
 class Owners {
  public:
   explicit Owners(const Selection& whole) : whole_(whole), owner_(whole.size(), kNobody) {}
 
   void add(const std::vector<Shard>& shards, std::size_t one) {
-    const Selection& selection = shards[one].header.selection;
+    const Selection& selection = shards[one].selection;
     for (std::uint64_t place = 0; place < selection.size(); ++place) {
       std::uint32_t& owner = owner_[whole_.place(selection.point(place))];
       if (owner != kNobody) {
-        throw InputError({shards[one].file.path()},
-                         fmt::format("overlaps {}: both hold point {}", shards[owner].file.path(),
+        throw InputError({shards[one].path},
+                         fmt::format("overlaps {}: both hold point {}", shards[owner].path,
                                      selection.point(place) + 1));
       }
       owner = static_cast<std::uint32_t>(one);
@@ -71,9 +79,9 @@ class Owners {
 
   // What nobody holds, by shard where all files are of one partition.
   std::string missing(const std::vector<Shard>& shards) const {
-    const Selection& like = shards.front().header.selection;
+    const Selection& like = shards.front().selection;
     const bool one_partition = std::all_of(shards.begin(), shards.end(), [&](const Shard& shard) {
-      return shard.header.selection.shards == like.shards;
+      return shard.selection.shards == like.shards;
     });
     std::vector<std::uint64_t> lacking;
     for (std::uint64_t place = 0; place < owner_.size(); ++place) {
@@ -95,34 +103,23 @@ class Owners {
   std::vector<std::uint32_t> owner_;
 };
 
-std::uint64_t not_run(const Shard& shard) {
-  const auto statuses = shard.file.values("/sweep/status", 0, shard.header.selection.size());
-  return static_cast<std::uint64_t>(std::count(statuses.begin(), statuses.end(), 0.0));
-}
-
 }  // namespace
 
 Merged merge_sweeps(const std::vector<std::string>& paths, const std::string& out, bool force,
                     bool partial) {
   std::vector<Shard> shards;
   for (const std::string& path : paths) {
-    InputFile file(path);
-    SweepHeader header = read_sweep_header(file);
-    shards.push_back({std::move(file), std::move(header)});
+    shards.push_back(read_shard(path));
+    refuse_other(shards.back(), shards.front());
   }
-  const Shard& first = shards.front();
-  const auto version = [](const Shard& shard) { return shard.file.text("/", "servomill_version"); };
-  const Selection whole{first.header.selection.first, first.header.selection.last};
+  const Selection whole{shards.front().selection.first, shards.front().selection.last};
   Owners owners(whole);
   Merged merged;
   for (std::size_t i = 0; i < shards.size(); ++i) {
-    refuse_other(shards[i].header, shards[i].file.path(), version(shards[i]), first.header,
-                 first.file.path(), version(first));
     owners.add(shards, i);
-    if (const std::uint64_t count = not_run(shards[i]); count > 0) {
-      merged.missing.push_back(fmt::format("{} lacks {} of its {} points", paths[i], count,
-                                           shards[i].header.selection.size()));
-    }
+    if (shards[i].not_run == 0) continue;
+    merged.missing.push_back(fmt::format("{} lacks {} of its {} points", shards[i].path,
+                                         shards[i].not_run, shards[i].selection.size()));
   }
   if (const std::string missing = owners.missing(shards); !missing.empty()) {
     merged.missing.push_back(missing);
@@ -132,11 +129,17 @@ Merged merge_sweeps(const std::vector<std::string>& paths, const std::string& ou
         {out}, fmt::format("{}; --partial merges what there is", fmt::join(merged.missing, "; ")));
   }
 
-  SweepTable table(writable_name(out, force), force, first.header.base, columns_of(first.file),
-                   whole);
-  for (const Shard& shard : shards) table.copy(shard.file);
-  merged.counts = table.counts();
-  table.commit();
+  std::optional<SweepTable> table;
+  for (const Shard& shard : shards) {
+    const InputFile file(shard.path);
+    if (!table) {
+      table.emplace(writable_name(out, force), force, read_sweep_header(file).base,
+                    columns_of(file), whole);
+    }
+    table->copy(file);
+  }
+  merged.counts = table->counts();
+  table->commit();
   return merged;
 }
 

@@ -29,16 +29,6 @@ constexpr std::size_t kBlockRows = 4096;  // read or written at once
 constexpr std::string_view kCsvBegin = "point,status,";
 const std::string kGroup = "/sweep";
 
-std::vector<std::string> split_lines(const std::string& text) {
-  std::vector<std::string> lines;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    lines.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return lines;
-}
-
 // Letters, digits and single '_': a name that Octave, netCDF and pandas take.
 std::string plain_name(std::string_view text) {
   std::string name;

@@ -2,6 +2,7 @@
 """Sweeps as their users meet them: the table, a kill and what comes after, shards and their merge.
 sweep.py SERVOMILL"""
 import csv
+import json
 import os
 import signal
 import subprocess
@@ -113,6 +114,14 @@ class Table(Sweeps):
         with xarray.open_dataset(self.path("out.h5"), group="sweep", engine="h5netcdf") as table:
             self.assertEqual(table.sizes["point"], 40)
             self.assertEqual(table["table_imposed_curve_residual_Y_max_flank"].dims, ("point",))
+
+    def test_keeps_signals_that_compare_reads(self):
+        self.sweep("out.h5", "--points", "1-3", "--series")
+        self.assertEqual(sorted(os.listdir(self.path("out.series"))), ["1.h5", "2.h5"])   # 3 was refused
+        compared = servomill("compare", self.path("out.series/2.h5"), "--json")
+        with h5py.File(self.path("out.h5")) as file:
+            value = file["sweep/table_imposed_curve_residual_Y_max_flank"][1]
+        self.assertAlmostEqual(json.loads(compared.stdout)["value"], value, delta=1e-7)   # um; nine digits of 100 um
 
     def test_keeps_the_points_that_are_asked_for(self):
         self.sweep("all.h5")
@@ -249,6 +258,18 @@ class Merge(Sweeps):
             file.attrs["servomill_version"] = "0.0.1"
         self.assertRegex(servomill("merge", *three, *out, status=2).stderr,
                          r"out.2-of-3.h5: error: was written by servomill 0.0.1, not \S+ as \S+out.1-of-3.h5\n")
+
+    def test_takes_shards_that_did_not_end(self):
+        shards = self.shards(2)
+        with h5py.File(shards[1], "r+") as file:   # as a kill leaves it
+            file["sweep/status"][3:] = 0
+        os.rename(shards[1], shards[1] + ".partial")
+        parts = ["merge", shards[0], shards[1] + ".partial", "-o", self.path("merged.h5")]
+        self.refused("merged.h5: error: out.2-of-2.h5.partial lacks 17 of its 20 points; --partial merges what there is", *parts)
+        done = servomill(*parts, "--partial")
+        self.assertIn("17 points not run", done.stdout)
+        with h5py.File(self.path("merged.h5")) as file:
+            self.assertEqual(np.count_nonzero(file["sweep/status"][:] == 0), 17)
 
     def test_needs_files_and_a_name(self):
         self.refused("servomill merge: error: needs at least one SHARD.h5; see --help", "merge")

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
-#include <numeric>
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/hdf5/system_error.h"
@@ -90,10 +89,10 @@ int status_of(const sim::StatusCounts& counts) {
   const auto count = [&](sim::PointStatus status) {
     return counts[static_cast<std::size_t>(status)];
   };
-  return count(sim::PointStatus::done) + count(sim::PointStatus::not_run) ==
-                 std::accumulate(counts.begin(), counts.end(), std::uint64_t{0})
-             ? kDone
-             : kMachineStopped;
+  const bool all_done = count(sim::PointStatus::stopped) == 0 &&
+                        count(sim::PointStatus::refused) == 0 &&
+                        count(sim::PointStatus::failed) == 0;
+  return all_done ? kDone : kMachineStopped;
 }
 
 }  // namespace

@@ -68,6 +68,24 @@ TEST(Design, TakesKeysAsTomlNestsThem) {
   EXPECT_EQ(design.keys.at(1).key, "program.parameters.\"#<a.b>\"");
 }
 
+TEST(Design, ReadsTheExampleOfItsHeader) {
+  const SweepDesign design = design_of(
+      "\"program.feed_override\" = [0.5, 1.0]\n"
+      "\"machine.nc.Kv\" = { log = [\"40 1/s\", \"160 1/s\"], count = 5 }\n"
+      "samples = { design = \"sobol\", count = 256, seed = 1 }\n"
+      "\"errors.belief.EYX.harmonic.amplitude_um\" = { normal = [150.0, 3.0] }\n"
+      "\"case.table.strategy.response_time_ms\" = { uniform = [30.0, 50.0] }\n"
+      "\"case.table.strategy.entry\" = { one_of = [\"position_command\", \"feed_forward\"] }\n"
+      "[[sweep.together]]\n"
+      "\"machine.axis.X.v_max\" = [\"20 m/min\", \"40 m/min\"]\n"
+      "\"machine.axis.Y.v_max\" = [\"10 m/min\", \"20 m/min\"]\n");
+  EXPECT_EQ(design.size(), 2U * 5U * 2U * 256U);
+  EXPECT_EQ(design.keys.size(), 7U);
+  EXPECT_EQ(design.point(0)[1], "\"40 1/s\"");
+  EXPECT_EQ(design.point(256)[5], "\"40 m/min\"");  // behind all samples
+  EXPECT_EQ(design.point(256)[6], "\"20 m/min\"");
+}
+
 TEST(Design, SpacesRangesEvenlyOrInEqualRatios) {
   const SweepDesign linear = design_of("a = { linear = [1.0, 2.0], count = 5 }\n");
   EXPECT_EQ(all_points(linear), (std::vector<Point>{{"1"}, {"1.25"}, {"1.5"}, {"1.75"}, {"2"}}));
