@@ -1,5 +1,6 @@
 #include "plant/kinematics/chain.h"
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cassert>
