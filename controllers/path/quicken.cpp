@@ -450,8 +450,11 @@ class Quickener {
 
   bool write(double k, TimeLaw& out) const {
     const double v_a = std::sqrt(c_[1]) * k, v_b = std::sqrt(c_[N_]) * k;
-    const double slower_a = v_a / r_.v_begin, slower_b = v_b / r_.v_end;
-    assert(slower_a <= 1.0 && slower_b <= 1.0);
+    // The ramps before and behind go with it; beyond rounding they cannot be made quicker.
+    constexpr double kRounding = 1e-12;
+    if (v_a > r_.v_begin * (1.0 + kRounding) || v_b > r_.v_end * (1.0 + kRounding)) return false;
+    const double slower_a = std::min(v_a / r_.v_begin, 1.0);
+    const double slower_b = std::min(v_b / r_.v_end, 1.0);
     out.phases.clear();
     const auto scaled = [](Phase p, double t0, double out_t0, double f) {
       p.t = out_t0 + (p.t - t0) / f;

@@ -70,6 +70,7 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
   const std::array<Tick, 1> one = {1};
   const plant::DriveBank drives(c.machine.drives, p.base, one);
   SetPoint set_point(c.machine.nc, c.trajectory, {});
+  controllers::Trajectory::Cursor cursor;
   const auto part = c.strategy->feedback(6 * p.base);
   const Joints Q_start = set_point.settle().Q_cmd;
   plant::DriveState state = drives.at_rest({Q_start.data(), kJoints});
@@ -98,7 +99,7 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
       Q_read.head<3>() += d_now;
     }
     if (n % p.position == 0) {
-      const AxisSetPoint& set = set_point.advance(p.seconds(n));
+      const AxisSetPoint& set = set_point.advance(c.trajectory.at(p.seconds(n), cursor));
       for (int j = 0; j < kJoints; ++j) {
         const auto lane = static_cast<std::size_t>(j);
         controllers::position_loop(c.machine.nc.cascade[lane], loops[lane], set.Q_cmd[j], Q_read[j],

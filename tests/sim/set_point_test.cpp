@@ -60,6 +60,10 @@ NcSettings nc_with_filter(Tick length = 0) {
 class SetPointOf : public testing::Test {
  protected:
   const controllers::Trajectory trajectory_ = along_x();
+  controllers::Trajectory::Sample at(double t) {
+    controllers::Trajectory::Cursor cursor;
+    return trajectory_.at(t, cursor);
+  }
   std::size_t periods() const {
     return static_cast<std::size_t>(trajectory_.duration() / kTp) + 50;
   }
@@ -73,7 +77,7 @@ TEST_F(SetPointOf, NothingIsTheTrajectoryItself) {
   for (std::size_t k = 0; k < periods(); ++k) {
     const double t = static_cast<double>(k) * kTp;
     const auto wanted = trajectory_.at(t, cursor);
-    const AxisSetPoint& out = set_point.advance(t);
+    const AxisSetPoint& out = set_point.advance(at(t));
     EXPECT_EQ(out.Q_ref, wanted.Q_ref);
     EXPECT_EQ(out.Q_cmd, wanted.Q_ref);
     EXPECT_EQ(out.dQ_ff, wanted.dQ_ref);
@@ -88,7 +92,7 @@ TEST_F(SetPointOf, APositionCommandIsNotFedForward) {
   EXPECT_EQ(corrected.settle().Q_cmd[1], kSlope * 10.0 * mm);
   for (std::size_t k = 0; k < periods(); ++k) {
     const double t = static_cast<double>(k) * kTp;
-    const AxisSetPoint without = plain.advance(t), with = corrected.advance(t);
+    const AxisSetPoint without = plain.advance(at(t)), with = corrected.advance(at(t));
     EXPECT_EQ(with.Q_ref, without.Q_ref);
     EXPECT_EQ(with.Q_cmd[1], kSlope * without.Q_ref[0]);
     EXPECT_EQ(with.dQ_ff, without.dQ_ff);
@@ -105,7 +109,7 @@ TEST_F(SetPointOf, AFedForwardCorrectionHasItsRate) {
   constexpr double kAccelerationTol = kSlope * 100.0 * kTp * (1.0 + 1e-6);  // reached, rounded
   double y = kSlope * 10.0 * mm, largest_rate = 0.0;
   for (std::size_t k = 0; k < periods(); ++k) {
-    const AxisSetPoint& out = corrected.advance(static_cast<double>(k) * kTp);
+    const AxisSetPoint& out = corrected.advance(at(static_cast<double>(k) * kTp));
     EXPECT_EQ(out.Q_cmd[1], kSlope * out.Q_ref[0]);
     EXPECT_NEAR(out.dQ_ff[1], (out.Q_cmd[1] - y) / kTp, 1e-12);
     EXPECT_NEAR(out.dQ_ff[1], kSlope * out.dQ_ff[0], kRateTol);
@@ -126,7 +130,7 @@ TEST_F(SetPointOf, ACorrectionBeforeTheFilterPassesIt) {
   double behind = 0.0;
   for (std::size_t k = 0; k < periods(); ++k) {
     const double t = static_cast<double>(k) * kTp;
-    const AxisSetPoint& out = corrected.advance(t);
+    const AxisSetPoint& out = corrected.advance(at(t));
     EXPECT_NEAR(out.Q_cmd[1], kSlope * out.Q_ref[0], kRounding);
     behind = std::max(behind, trajectory_.at(t, cursor).Q_ref[0] - out.Q_ref[0]);
   }
@@ -138,7 +142,7 @@ TEST_F(SetPointOf, ACorrectionWithDeadTimeIsTheOneOfBefore) {
                      one_part(EntryPoint::position_command, 5.0 * kTp));
   std::vector<double> x(5, corrected.settle().Q_ref[0]);
   for (std::size_t k = 0; k < periods(); ++k) {
-    const AxisSetPoint& out = corrected.advance(static_cast<double>(k) * kTp);
+    const AxisSetPoint& out = corrected.advance(at(static_cast<double>(k) * kTp));
     x.push_back(out.Q_ref[0]);
     EXPECT_EQ(out.Q_cmd[1], kSlope * x[k]);
   }
@@ -152,7 +156,7 @@ TEST_F(SetPointOf, CorrectionsAddUp) {
   constexpr double kRounding = 1e-18;  // m
   EXPECT_NEAR(corrected.settle().Q_cmd[1], 3.0 * kSlope * 10.0 * mm, kRounding);
   for (std::size_t k = 0; k < periods(); ++k) {
-    const AxisSetPoint& out = corrected.advance(static_cast<double>(k) * kTp);
+    const AxisSetPoint& out = corrected.advance(at(static_cast<double>(k) * kTp));
     EXPECT_NEAR(out.Q_cmd[1], 3.0 * kSlope * out.Q_ref[0], kRounding);
   }
 }

@@ -52,10 +52,10 @@ TEST(CascadeLimits, WithoutThemTheLoopsAreTheSameBitForBit) {
     velocity_loop(p, s, phi_now);
 
     v_cmd = p.Kv * (q - y) + p.kvf * dq;
-    i_ff = p.kaf * p.J * ddq / (p.r * p.Kt);
-    const double e = v_cmd / p.r - (phi_now - phi) / p.Tv;
+    i_ff = p.kaf * p.J / (p.r * p.Kt) * ddq;
+    const double e = v_cmd * (1.0 / p.r) - (phi_now - phi) * (1.0 / p.Tv);
     phi = phi_now;
-    const double i = (p.Kp * e + integral) / p.Kt + i_ff;
+    const double i = (p.Kp * e + integral) * (1.0 / p.Kt) + i_ff;
     i_next = std::clamp(i, -p.i_max, p.i_max);
     if (i_next == i) integral += p.Ki * p.Tv * e;
     ASSERT_EQ(bits(s.i_next), bits(i_next)) << "period " << k;
