@@ -27,9 +27,8 @@ struct SlopeBounds {
 }  // namespace
 
 DriveBank::DriveBank(std::span<const FeedDriveParams> lanes, double base_period,
-                     std::span<const Tick> steps, PreparedDrives* kept)
-    : kernel_(at_simd_level(simd_level(),
-                            []<SimdLevel level>() { return make_drive_kernel<level>(); })) {
+                     std::span<const Tick> steps, PreparedDrives* kept, SimdLevel level)
+    : kernel_(at_simd_level(level, []<SimdLevel l>() { return make_drive_kernel<l>(); })) {
   steps_.assign(steps.begin(), steps.end());
   std::sort(steps_.begin(), steps_.end());
   steps_.erase(std::unique(steps_.begin(), steps_.end()), steps_.end());
@@ -52,9 +51,13 @@ DriveBank::DriveBank(std::span<const FeedDriveParams> lanes, double base_period,
 void DriveBank::prepare_block(std::size_t block) {
   constants_[block].glide_speed.fill(-1.0);  // linear, as are the lanes that fill the last block
   const std::size_t first = block * kLaneWidth;
-  for (std::size_t j = 0; j < std::min(kLaneWidth, lanes() - first); ++j) {
+  const std::size_t count = std::min(kLaneWidth, lanes() - first);
+  bool same = count == kLaneWidth;
+  for (std::size_t j = 0; j < count; ++j) {
     prepare_lane(block, j, *drives_[first + j]);
+    same = same && drives_[first + j] == drives_[first];
   }
+  constants_[block].same = same;
 }
 
 void DriveBank::prepare_lane(std::size_t block, std::size_t j, const PreparedDrive& drive) {
@@ -68,10 +71,10 @@ void DriveBank::prepare_lane(std::size_t block, std::size_t j, const PreparedDri
     constexpr Eigen::Index kColumn[] = {0, 1, 2, 3, 5, 6};
     for (std::size_t column = 0; column < HoldBlock::kColumns; ++column) {
       for (std::size_t row = 0; row < HoldBlock::kRows; ++row) {
-        hold.end[row * HoldBlock::kColumns + column][j] =
-            from.end(static_cast<Eigen::Index>(row), kColumn[column]);
+        hold.end.set(row * HoldBlock::kColumns + column, j,
+                     from.end(static_cast<Eigen::Index>(row), kColumn[column]));
       }
-      hold.middle[column][j] = from.middle(kColumn[column]);
+      hold.middle.set(column, j, from.middle(kColumn[column]));
     }
   }
   if (!drive.exact) return;
@@ -108,7 +111,7 @@ void DriveBank::prepare_lane(std::size_t block, std::size_t j, const PreparedDri
     to.speed_tolerance[j] = drive.exact->speed_tolerance();
     for (std::size_t row = 0; row < ParabolaBlock::kRows; ++row) {
       for (std::size_t column = 0; column < ParabolaBlock::kColumns; ++column) {
-        to.row[row][column][j] = from.slide[column][row];
+        to.rows.set(row * ParabolaBlock::kColumns + column, j, from.slide[column][row]);
       }
     }
   };

@@ -26,8 +26,9 @@ class DriveBank {
   /// @param steps        step lengths that `advance` will be asked for, in ticks; none: it will not
   ///                     be called, nor anything prepared for it
   /// @param kept         drives prepared earlier, and where those prepared now are kept
+  /// @param level        instruction set; results differ between them by rounding
   DriveBank(std::span<const FeedDriveParams> lanes, double base_period, std::span<const Tick> steps,
-            PreparedDrives* kept = nullptr);
+            PreparedDrives* kept = nullptr, SimdLevel level = simd_level());
 
   std::size_t lanes() const { return drives_.size(); }
 

@@ -82,19 +82,25 @@ struct Motion {
   P i, w, delta, v, x, z;
 };
 
-// The sum over the columns of a row, in their order.
-template <class Arch, std::size_t n>
-Pack<Arch> product(const LaneArray* row, const Pack<Arch> (&in)[n]) {
-  Pack<Arch> sum = Pack<Arch>(row[0]) * in[0];
+template <class Arch, bool same, std::size_t n>
+Pack<Arch> coefficient(const Coefficients<n>& from, std::size_t which) {
+  if constexpr (same) return Pack<Arch>(from.of_all[which]);
+  return Pack<Arch>(from.each[which]);
+}
+
+// The sum over `n` columns, in their order, of the row that begins at `first`.
+template <class Arch, bool same, std::size_t n, std::size_t size>
+Pack<Arch> product(const Coefficients<size>& rows, std::size_t first, const Pack<Arch> (&in)[n]) {
+  Pack<Arch> sum = coefficient<Arch, same>(rows, first) * in[0];
 #pragma GCC unroll 8
   for (std::size_t column = 1; column < n; ++column) {
-    sum = fma(Pack<Arch>(row[column]), in[column], sum);
+    sum = fma(coefficient<Arch, same>(rows, first + column), in[column], sum);
   }
   return sum;
 }
 
 // One sub-step as ExactStep::attempt makes it, for friction that is a function of v and z.
-template <class Arch, FrictionKind kind>
+template <class Arch, FrictionKind kind, bool same>
 class SubStep {
   using P = Pack<Arch>;
   using Mask = PackMask<Arch>;
@@ -111,7 +117,8 @@ class SubStep {
     begin();
 #pragma GCC unroll 8
     for (std::size_t row = 0; row < 8; ++row) {
-      y_[row] = fma(weight(row, 5), f_[0], product<Arch>(block.row[row].data(), start));
+      y_[row] = fma(weight(row, 5), f_[0],
+                    product<Arch, same>(block.rows, row * ParabolaBlock::kColumns, start));
     }
     const Mask solved = collocate(active);
 #pragma GCC unroll 8
@@ -126,7 +133,9 @@ class SubStep {
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-  P weight(std::size_t row, std::size_t column) const { return P(block_.row[row][column]); }
+  P weight(std::size_t row, std::size_t column) const {
+    return coefficient<Arch, same>(block_.rows, row * ParabolaBlock::kColumns + column);
+  }
   P response(std::size_t row) const {
     return fma(weight(row, 7), f_[2], fma(weight(row, 6), f_[1], y_[row]));
   }
@@ -264,7 +273,7 @@ class SubStep {
 // Through the zone of friction, lane for lane in sub-steps as ExactStep::advance chooses them;
 // those that want one of the same length make it together. Returns the lanes that need shorter
 // ones.
-template <class Arch, FrictionKind kind>
+template <class Arch, FrictionKind kind, bool same>
 [[gnu::flatten, gnu::noinline]] LaneBits through_zone(DriveBlock& s, const DriveInputBlock& input,
                                                       const DriveConstants& c, const Ladder& ladder,
                                                       LaneBits lanes) {
@@ -305,7 +314,7 @@ template <class Arch, FrictionKind kind>
     }
     const ParabolaBlock& block = rung == kWhole ? *ladder.whole : ladder.rungs[rung];
     const Mask active = Mask::of(turn);
-    const SubStep<Arch, kind> step(now, command, load, p, c, block, active);
+    const SubStep<Arch, kind, same> step(now, command, load, p, c, block, active);
     const Mask good = active & (step.error <= tolerance) & (step.kink == P(0.0));
     now = {select(good, step.end.i, now.i),         select(good, step.end.w, now.w),
            select(good, step.end.delta, now.delta), select(good, step.end.v, now.v),
@@ -351,10 +360,10 @@ template <class Arch, FrictionKind kind>
   return others;
 }
 
-template <class Arch>
-[[gnu::flatten]] LaneBits advance(DriveBlock& s, const DriveInputBlock& input,
-                                  const HoldBlock& hold, const DriveConstants& c,
-                                  const Ladder& ladder) {
+template <class Arch, bool same>
+[[gnu::flatten]] LaneBits advance_block(DriveBlock& s, const DriveInputBlock& input,
+                                        const HoldBlock& hold, const DriveConstants& c,
+                                        const Ladder& ladder) {
   using P = Pack<Arch>;
   using Mask = PackMask<Arch>;
   constexpr std::size_t kColumns = HoldBlock::kColumns;
@@ -376,11 +385,11 @@ template <class Arch>
   if (moved.any()) {
     const P in[kColumns] = {P(s.i), P(s.w),           P(s.delta),
                             v,      P(input.command), P(input.F) + P(c.F_load) + friction};
-    const P middle = product<Arch>(hold.middle.data(), in);
+    const P middle = product<Arch, same>(hold.middle, 0, in);
     P out[HoldBlock::kRows];
 #pragma GCC unroll 8
     for (std::size_t row = 0; row < HoldBlock::kRows; ++row) {
-      out[row] = product<Arch>(&hold.end[row * kColumns], in);
+      out[row] = product<Arch, same>(hold.end, row * kColumns, in);
     }
     // does it glide all over the step?
     const P slowest = select(forwards, min(middle, out[3]), -max(middle, out[3]));
@@ -404,12 +413,19 @@ template <class Arch>
   if (stay == 0) return 0;
   unsigned others = stay & ~(c.regularised | c.lugre);
   if (const auto lanes = static_cast<LaneBits>(stay & c.regularised)) {
-    others |= through_zone<Arch, FrictionKind::regularised>(s, input, c, ladder, lanes);
+    others |= through_zone<Arch, FrictionKind::regularised, same>(s, input, c, ladder, lanes);
   }
   if (const auto lanes = static_cast<LaneBits>(stay & c.lugre)) {
-    others |= through_zone<Arch, FrictionKind::lugre>(s, input, c, ladder, lanes);
+    others |= through_zone<Arch, FrictionKind::lugre, same>(s, input, c, ladder, lanes);
   }
   return static_cast<LaneBits>(others);
+}
+
+template <class Arch>
+LaneBits advance(DriveBlock& s, const DriveInputBlock& input, const HoldBlock& hold,
+                 const DriveConstants& c, const Ladder& ladder) {
+  return c.same ? advance_block<Arch, true>(s, input, hold, c, ladder)
+                : advance_block<Arch, false>(s, input, hold, c, ladder);
 }
 
 }  // namespace

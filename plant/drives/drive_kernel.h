@@ -15,21 +15,33 @@ namespace servomill::plant {
 /// One bit for each of eight lanes, lane 0 the lowest.
 using LaneBits = std::uint8_t;
 
+/// A coefficient of eight drives, and the one of all where a block has eight times the same drive
+/// (DriveConstants::same): then the kernel reads this one, an eighth of the memory.
+template <std::size_t n>
+struct Coefficients {
+  std::array<LaneArray, n> each{};
+  std::array<double, n> of_all{};
+
+  void set(std::size_t which, std::size_t lane, double value) {
+    each[which][lane] = of_all[which] = value;
+  }
+};
+
 /// Eight drives over a step of one length while the force against each slide is constant:
 /// (i, w, delta, v, x + increment) from (i, w, delta, v, command, force).
 struct HoldBlock {
   static constexpr std::size_t kRows = 5, kColumns = 6;
-  std::array<LaneArray, kRows * kColumns> end{};  // row after row
-  std::array<LaneArray, kColumns> middle{};       // v at half the step
+  Coefficients<kRows * kColumns> end;  // row after row
+  Coefficients<kColumns> middle;       // v at half the step
 };
 
 /// Eight drives over a sub-step while the force against each slide is a parabola: the rows of
 /// Propagator::slide, each by its columns.
 struct ParabolaBlock {
   static constexpr std::size_t kRows = 8, kColumns = 8;
-  double h = 0.0;  // s
-  std::array<std::array<LaneArray, kColumns>, kRows> row{};
-  LaneArray speed_tolerance{};  // m/s, of the last correction of Newton's iteration
+  double h = 0.0;                       // s
+  Coefficients<kRows * kColumns> rows;  // row after row
+  LaneArray speed_tolerance{};          // m/s, of the last correction of Newton's iteration
 };
 
 /// Lengths into which a step may be cut: rung n is 2^(n - kDepth) base periods.
@@ -55,6 +67,7 @@ struct DriveConstants {
   std::array<LaneArray, 3> steep{}, gentle{};
   LaneArray tanh_end{};                    // m/s
   std::array<int, kLaneWidth> coarsest{};  // rung of the longest sub-step
+  bool same = false;                       // eight lanes with the same drive
   LaneBits has_slide_mode = 0;             // lanes with set-valued friction
   LaneBits regularised = 0, lugre = 0;     // lanes that the kernel moves with their friction
   LaneBits has_kink = 0;                   // friction is continuous at v = 0, its slope is not

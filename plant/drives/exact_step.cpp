@@ -12,8 +12,6 @@
 namespace servomill::plant {
 namespace {
 
-using Matrix4 = Eigen::Matrix4d;
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEventLength = 10e-9;  // s: events are located in a sub-step no longer than this
 constexpr double kCoastRate = 1e-3;     // rate x finest sub-step: coast() is exact to its cube
@@ -22,39 +20,7 @@ constexpr int kMostHalvings = 26;
 constexpr double kNewtonShare = 0.02;  // of the tolerance
 constexpr double kNoTravel = 1e-14;    // m: a reversal that moves less in a sub-step is none
 
-// Similar to A with rows and columns of equal size (Osborne's iteration): the size of its entries
-// is that of its eigenvalues.
-Matrix4 balanced(Matrix4 A) {
-  for (int sweep = 0; sweep < 30; ++sweep) {
-    for (int j = 0; j < 4; ++j) {
-      const double column = A.col(j).cwiseAbs().sum() - std::abs(A(j, j));
-      const double row = A.row(j).cwiseAbs().sum() - std::abs(A(j, j));
-      if (column == 0.0 || row == 0.0) continue;
-      const double scale = std::sqrt(row / column);
-      A.col(j) *= scale;
-      A.row(j) /= scale;
-    }
-  }
-  return A;
-}
-
-// Bound of the eigenvalues of a drive without its position (1/s). Rows or columns that couple one
-// way only have no say.
-double fastest_rate(const Eigen::Matrix<double, 5, 7>& A) {
-  Matrix4 B = balanced(A.topLeftCorner<4, 4>());
-  for (int j = 0; j < 4; ++j) {
-    const double diagonal = B(j, j);
-    B(j, j) = 0.0;
-    if (B.row(j).cwiseAbs().sum() == 0.0 || B.col(j).cwiseAbs().sum() == 0.0) {
-      B.row(j).setZero();
-      B.col(j).setZero();
-    }
-    B(j, j) = diagonal;
-  }
-  return B.cwiseAbs().rowwise().sum().maxCoeff();
-}
-
-double fastest_rate(const FeedDriveParams& p) {
+double fastest_rate_of(const FeedDriveParams& p) {
   double rate = fastest_rate(drive_equations(p, false, false));
   if (p.friction.kind == FrictionKind::set_valued) {
     rate = std::max(rate, fastest_rate(drive_equations(p, true, false)));
@@ -85,7 +51,7 @@ std::vector<FrictionRate> friction_rates(const FeedDriveParams& p) {
 
 // Halvings of the base period that give the finest sub-step.
 int halvings_of(const FeedDriveParams& p, double base_period) {
-  double finest = std::min(kEventLength, kCoastRate / fastest_rate(p));
+  double finest = std::min(kEventLength, kCoastRate / fastest_rate_of(p));
   for (const FrictionRate& f : friction_rates(p)) finest = std::min(finest, kFrictionRate / f.rate);
   return std::max(0, static_cast<int>(std::ceil(std::log2(base_period / finest))));
 }
@@ -125,7 +91,7 @@ ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick lon
   finest_ = std::ldexp(base_period, -sub_ticks_);
   const double longest =
       std::min({static_cast<double>(longest_step) * base_period, resolution.longest,
-                PropagatorSeries::kMostRate / fastest_rate(params)});
+                PropagatorSeries::kMostRate / fastest_rate_of(params)});
   const int coarsest =
       std::max(0, static_cast<int>(std::floor(std::log2(longest / finest_) + 1e-9)));
   const bool may_stick = params.friction.kind == FrictionKind::set_valued;
@@ -472,7 +438,7 @@ std::vector<std::string> unrepresentable(const FeedDriveParams& p, double base_p
         fmt::format("{} makes a rate of {:.3g} 1/s; the exact step resolves up to {:.3g} 1/s", what,
                     rate, limit));
   };
-  demand(fastest_rate(p), "the stiffness or damping of the drive");
+  demand(fastest_rate_of(p), "the stiffness or damping of the drive");
   for (const FrictionRate& f : friction_rates(p)) demand(f.rate, f.formula);
   return faults;
 }

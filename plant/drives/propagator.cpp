@@ -1,8 +1,41 @@
 #include "plant/drives/propagator.h"
 
-#include "plant/drives/collocation.h"
+#include <cmath>
 
 namespace servomill::plant {
+namespace {
+
+// Similar to A with rows and columns of equal size (Osborne's iteration): the size of its entries
+// is that of its eigenvalues.
+Eigen::Matrix4d balanced(Eigen::Matrix4d A) {
+  for (int sweep = 0; sweep < 30; ++sweep) {
+    for (int j = 0; j < 4; ++j) {
+      const double column = A.col(j).cwiseAbs().sum() - std::abs(A(j, j));
+      const double row = A.row(j).cwiseAbs().sum() - std::abs(A(j, j));
+      if (column == 0.0 || row == 0.0) continue;
+      const double scale = std::sqrt(row / column);
+      A.col(j) *= scale;
+      A.row(j) /= scale;
+    }
+  }
+  return A;
+}
+
+}  // namespace
+
+double fastest_rate(const Eigen::Matrix<double, 5, 7>& A) {
+  Eigen::Matrix4d B = balanced(A.topLeftCorner<4, 4>());
+  for (int j = 0; j < 4; ++j) {
+    const double diagonal = B(j, j);
+    B(j, j) = 0.0;
+    if (B.row(j).cwiseAbs().sum() == 0.0 || B.col(j).cwiseAbs().sum() == 0.0) {
+      B.row(j).setZero();
+      B.col(j).setZero();
+    }
+    B(j, j) = diagonal;
+  }
+  return B.cwiseAbs().rowwise().sum().maxCoeff();
+}
 
 struct PropagatorSeries::Values {
   Matrix5l E = Matrix5l::Zero();
@@ -10,7 +43,8 @@ struct PropagatorSeries::Values {
   std::array<Vector5l, 3> moment = {Vector5l::Zero(), Vector5l::Zero(), Vector5l::Zero()};
 };
 
-PropagatorSeries::PropagatorSeries(const Eigen::Matrix<double, 5, 7>& equations) {
+PropagatorSeries::PropagatorSeries(const Eigen::Matrix<double, 5, 7>& equations)
+    : rate_(static_cast<long double>(fastest_rate(equations))) {
   const Matrix5l A = equations.leftCols<5>().cast<long double>();
   A_[0].setIdentity();
   for (std::size_t k = 1; k < kTerms; ++k) A_[k] = A * A_[k - 1];
@@ -22,8 +56,14 @@ PropagatorSeries::PropagatorSeries(const Eigen::Matrix<double, 5, 7>& equations)
 
 PropagatorSeries::Values PropagatorSeries::at(long double t) const {
   Values v;
+  // An entry begins with one of the first terms; each further one is smaller by rate t / k.
+  constexpr std::size_t kFirst = 6;
+  std::size_t terms = kFirst;
+  for (long double size = 1.0L; size > 1e-22L && terms < kTerms; ++terms) {
+    size *= rate_ * t / static_cast<long double>(terms - kFirst + 1);
+  }
   std::array<long double, 4> factor = {1.0L, t, t * t / 2.0L, t * t * t / 3.0L};
-  for (std::size_t k = 0; k < kTerms; ++k) {
+  for (std::size_t k = 0; k < terms; ++k) {
     const auto n = static_cast<long double>(k + 1);
     v.E += A_[k] * factor[0];
     v.command += command_[k] * factor[1];

@@ -20,6 +20,10 @@ struct Propagator {
   std::array<std::array<double, kInnerRows>, kColumns> inner{};
 };
 
+/// Bound of the eigenvalues of a drive without its position (1/s). Rows or columns that couple one
+/// way only have no say.
+double fastest_rate(const Eigen::Matrix<double, 5, 7>& equations);
+
 /// e^{At}, int_0^t e^{A(t-s)} b ds and int_0^t e^{A(t-s)} b_F s^m ds, m = 0, 1, 2, as power series
 /// in long double.
 class PropagatorSeries {
@@ -42,6 +46,7 @@ class PropagatorSeries {
   using Vector5l = Eigen::Matrix<long double, 5, 1>;
   std::array<Matrix5l, kTerms> A_;
   std::array<Vector5l, kTerms> command_, force_;
+  long double rate_;  // 1/s
 };
 
 }  // namespace servomill::plant

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "plant/drives/cvode_drive.h"
+#include "plant/drives/drive_bank.h"
 #include "plant/drives/exact_step.h"
 #include "tests/plant/drives/drives.h"
 
@@ -99,12 +101,31 @@ double difference(const FeedDriveParams& p, Tick hold, const std::vector<double>
   return largest;
 }
 
+// The same of a lane of a bank.
+double difference_of_lane(const FeedDriveParams& p, Tick hold, const std::vector<double>& x) {
+  const DriveBank bank(std::array{p}, kTick, std::array{hold});
+  DriveState s = bank.at_rest(std::array{0.1});
+  DriveInput input(1);
+  Command command;
+  double largest = 0.0;
+  for (int n = 0; n < kHolds; ++n) {
+    input.blocks[0].command[0] = breakaway_command(p) * command.at(n);
+    bank.advance(s, input, hold);
+    largest = std::max(largest, 1e9 * std::abs(s.blocks[0].x[0] - x[static_cast<std::size_t>(n)]));
+  }
+  EXPECT_EQ(DriveBank::unresolved(s, 0), 0u);
+  return largest;
+}
+
 void expect_agreement(const std::string& name, const FeedDriveParams& p) {
   SCOPED_TRACE(name);
   const std::vector<double> x = reference(p, kHold);
   const double found = difference(p, kHold, x);
   testing::Test::RecordProperty("difference_nm_" + name, fmt::format("{:.2g}", found));
   EXPECT_LE(found, kAgreementTol);
+  const double lane = difference_of_lane(p, kHold, x);
+  testing::Test::RecordProperty("lane_nm_" + name, fmt::format("{:.2g}", lane));
+  EXPECT_LE(lane, kAgreementTol);
 
   double travel = 0.0;  // m
   int still = 0;
