@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <exception>
+#include <optional>
 #include <utility>
 
 #include "sim/preparation_cache.h"
@@ -32,15 +33,15 @@ BatchResult failure(std::exception_ptr error) {
 struct Point {
   const Scenario* scenario;
   std::vector<PreparedCase> cases;
-  std::vector<CaseInputs> inputs;
+  std::vector<std::optional<CaseInputs>> inputs;
   std::vector<CaseResult> results;
   std::exception_ptr error;
 
   double rows() const {
     double sum = 0.0;
-    for (const CaseInputs& in : inputs) {
-      sum += (in.reference.duration() + in.settle_time) /
-             in.machine.nc.periods.seconds(in.record_period);
+    for (const auto& in : inputs) {
+      sum += (in->reference.duration() + in->settle_time) /
+             in->machine.nc.periods.seconds(in->record_period);
     }
     return sum;
   }
@@ -64,7 +65,7 @@ struct Run {
   Point* point;
   std::size_t number;
 
-  CaseInputs& inputs() const { return point->inputs[number]; }
+  CaseInputs& inputs() const { return *point->inputs[number]; }
 };
 
 // Runs that share lanes, at most eight; case after case, so that neighbours are alike.
@@ -100,12 +101,19 @@ void simulate_group(std::span<const Run> group, const StopFlag& stop, std::atomi
       group[k].point->results[group[k].number] = std::move(results[k]);
     }
   } catch (...) {
-    for (const Run& run : group) run.point->error = std::current_exception();
+    if (group.size() == 1) {
+      group.front().point->error = std::current_exception();
+      return;
+    }
+    // whose fault it was shows when each runs alone, with state of its own
+    for (const Run& run : group) {
+      run.point->inputs[run.number].emplace(run.point->cases[run.number].inputs());
+      simulate_group({&run, 1}, stop, progress, cache);
+    }
   }
 }
 
-BatchResult result_of(Point& point, Keep keep) {
-  if (point.error) return failure(point.error);
+BatchResult compared(Point& point, Keep keep) {
   std::vector<CaseOutput> outputs;
   for (std::size_t k = 0; k < point.cases.size(); ++k) {
     outputs.push_back(point.cases[k].output(std::move(point.results[k])));
@@ -119,15 +127,20 @@ BatchResult result_of(Point& point, Keep keep) {
     stopped.push_back(fmt::format("case {} stopped: {}", output.name, outcome.reason));
   }
   BatchResult result;
-  try {
-    result.rows = compare(point.scenario->quantities, data);
-  } catch (...) {
-    return failure(std::current_exception());
-  }
+  result.rows = compare(point.scenario->quantities, data);
   result.status = stopped.empty() ? PointStatus::done : PointStatus::stopped;
   result.reason = fmt::format("{}", fmt::join(stopped, "; "));
   if (keep == Keep::series) result.cases = std::move(outputs);
   return result;
+}
+
+BatchResult result_of(Point& point, Keep keep) {
+  if (point.error) return failure(point.error);
+  try {
+    return compared(point, keep);
+  } catch (...) {
+    return failure(std::current_exception());
+  }
 }
 
 }  // namespace

@@ -110,6 +110,7 @@ class Memo {
     const std::lock_guard lock(mutex_);
     const auto known = by_key_.find(key.bytes());
     if (known == by_key_.end()) return;
+    weight_ -= known->second->weight;  // another thread may have made it, too
     known->second->weight = weigh_ != nullptr ? weigh_(made) : 1;
     weight_ += known->second->weight;
     while (weight_ > capacity_ && entries_.size() > 1) drop(std::prev(entries_.end()));

@@ -7,6 +7,15 @@ namespace {
 
 std::size_t weight_of(const std::vector<Move>& moves) { return moves.size() + 1; }
 
+// An arc is one move and hundreds of phases and stretches.
+std::size_t weight_of(const PlannedMotion& motion) {
+  std::size_t weight = weight_of(*motion.moves);
+  for (const auto& chain : motion.trajectory.chains()) {
+    weight += chain.law.phases.size() + chain.limits.size();
+  }
+  return weight;
+}
+
 void add(MemoKey& key, const controllers::ToolTable& tools) {
   key.add(tools.size());
   for (const auto& [number, tool] : tools.entries()) {
@@ -73,8 +82,8 @@ InterpretedProgram::InterpretedProgram(std::vector<Move> moves_in, const AxisWor
 PreparationCache::PreparationCache()
     : programs(kMoves, [](const InterpretedProgram& p) { return weight_of(p.moves); }),
       rewritten(kMoves, [](const RewrittenProgram& p) { return weight_of(p.moves); }),
-      motions(kMoves, [](const PlannedMotion& m) { return weight_of(*m.moves); }),
-      circles(kMoves, [](const SectionsOfMotion& s) { return weight_of(*s.motion->moves); }),
+      motions(kMoves, [](const PlannedMotion& m) { return weight_of(m); }),
+      circles(kMoves, [](const SectionsOfMotion& s) { return weight_of(*s.motion); }),
       models(kModels),
       strategies(kModels),
       spectral_radii(kRadii) {}

@@ -214,7 +214,7 @@ class Lockstep {
 
   std::vector<CaseResult> run(const StopFlag& stop, std::atomic<float>& progress) {
     std::vector<CaseResult> results(runs_.size());
-    for (Tick n = 0; n <= longest_;) {
+    for (Tick n = 0;;) {  // until the last has ended
       progress.store(static_cast<float>(n) / static_cast<float>(longest_),
                      std::memory_order_relaxed);
       if (stop.load(std::memory_order_relaxed)) {
@@ -229,8 +229,6 @@ class Lockstep {
         n += instant.step;
       }
     }
-    end_those_done(longest_ + 1, results);
-    return results;
   }
 
  private:

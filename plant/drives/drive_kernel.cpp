@@ -299,7 +299,7 @@ template <class Arch, FrictionKind kind, bool same>
   open &= static_cast<LaneBits>(~others);
   const auto rung_of = [&](std::size_t j) {
     if (rest[j] == all && wanted[j] >= whole) return kWhole;
-    const int fits = log2_of(rest[j]);
+    const int fits = log2_of(rest[j] | 1);  // 0 of those that have arrived, which is not asked for
     return wanted[j] < fits ? wanted[j] : fits;
   };
   while (open != 0) {

@@ -362,7 +362,7 @@ Hdf5Dataset Hdf5Group::fixed(const std::string& name, std::size_t rows, Storage 
   const Library library;
   const hsize_t size = rows;
   const Hdf5Handle space = handle(H5Screate_simple(1, &size, nullptr));
-  const Hdf5Handle creation = handle(H5Pcreate(H5P_DATASET_CREATE));
+  const Hdf5Handle creation = dataset_creation();
   H5Pset_alloc_time(creation.get(), H5D_ALLOC_TIME_EARLY);
   H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &fill);
   Hdf5Handle id(written(H5Dcreate2(id_.get(), name.c_str(), stored_type(storage), space.get(),
@@ -379,7 +379,7 @@ Hdf5Dataset Hdf5Group::fixed_texts(const std::string& name, std::size_t rows, st
   const Library library;
   const std::array<hsize_t, 2> size = {rows, width};
   const Hdf5Handle space = handle(H5Screate_simple(2, size.data(), nullptr));
-  const Hdf5Handle creation = handle(H5Pcreate(H5P_DATASET_CREATE));
+  const Hdf5Handle creation = dataset_creation();
   H5Pset_alloc_time(creation.get(), H5D_ALLOC_TIME_EARLY);
   H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);  // holes of a file read as zeros
   Hdf5Handle id(written(H5Dcreate2(id_.get(), name.c_str(), H5T_C_S1, space.get(), H5P_DEFAULT,

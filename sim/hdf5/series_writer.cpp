@@ -49,7 +49,7 @@ SeriesWriter::~SeriesWriter() {
   if (finished_) return;
   try {
     finish();
-  } catch (const SystemError&) {
+  } catch (...) {
     // whoever wants to know calls finish()
   }
 }

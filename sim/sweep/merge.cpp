@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "sim/store.h"
+#include "sim/version.h"
 
 namespace servomill::sim {
 namespace {
@@ -32,8 +33,10 @@ void refuse_other(const Shard& one, const Shard& first) {
   const auto refuse = [&](const std::string& why) {
     throw InputError({one.path}, fmt::format("{} {}", why, first.path));
   };
-  if (one.version != first.version) {
-    refuse(fmt::format("was written by servomill {}, not {} as", one.version, first.version));
+  if (one.version != kVersion) {
+    throw InputError({one.path}, fmt::format("was written by servomill {}; this is {}, which would "
+                                             "say that it wrote all of it",
+                                             one.version, kVersion));
   }
   if (one.resolved != first.resolved) refuse("holds a sweep of another scenario than");
   if (one.selection.first != first.selection.first || one.selection.last != first.selection.last) {

@@ -12,6 +12,13 @@ read_sweep_line() {
   shards=$2 scenario=$3 out=$4
   shift 4
   sweep_options=("$@")
+  local option
+  for option in "${sweep_options[@]}"; do
+    case $option in
+      -f | --force | -o* | --output* | --shard*)
+        refuse "$option: is for servomill itself; a shard that is tried again must go on, not begin anew" ;;
+    esac
+  done
   [[ $shards =~ ^[1-9][0-9]*$ ]] || refuse "SHARDS = $shards; must be a whole number > 0"
   [[ $out == *.h5 ]] || refuse "OUT.h5 = $out; must end with .h5"
   [ ! -e "$out" ] || refuse "$out: exists; move it away or delete it"

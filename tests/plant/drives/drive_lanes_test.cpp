@@ -140,7 +140,9 @@ TEST(DriveLanes, DifferBetweenInstructionSetsByRounding) {
     }
   }
   RecordProperty("largest_difference_of_v", testing::PrintToString(1e15 * largest) + "e-15 m/s");
-  if (simd_levels().size() > 1) EXPECT_GT(largest, 0.0);  // they were different ones
+  if (simd_levels().size() > 1) {
+    EXPECT_GT(largest, 0.0);  // they were different ones
+  }
 }
 
 TEST(PreparedDrives, AreMadeOnceAndKeptInTheNumberAllowed) {
