@@ -154,7 +154,10 @@ std::string_view name_of(PointStatus status) {
 std::string in_one_line(const InputError& error) {
   std::vector<std::string> lines;
   for (const Fault& fault : error.faults()) {
-    lines.push_back(fmt::format("{}: {}", to_string(fault.place), fault.message));
+    // of a key of the sweep the message says where it stands
+    const bool swept = fault.message.starts_with("sweep.");
+    const std::string place = swept ? "" : to_string(fault.place) + ": ";
+    lines.push_back(place + fault.message);
   }
   return fmt::format("{}", fmt::join(lines, "; "));
 }

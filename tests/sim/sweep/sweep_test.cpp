@@ -107,7 +107,6 @@ TEST(Sweep, SaysWhyAPointIsRefusedAndGoesOn) {
   EXPECT_EQ(results.at(0).status, PointStatus::done);
   EXPECT_EQ(results.at(1).status, PointStatus::refused);
   EXPECT_EQ(results.at(1).reason,
-            "--set sweep={program.feed_override=[1.0,-1.0,2.0]}: "
             "sweep.\"program.feed_override\": program.feed_override = -1.0; must be > 0");
   EXPECT_TRUE(results.at(1).rows.empty());
   EXPECT_EQ(results.at(2).status, PointStatus::done);
