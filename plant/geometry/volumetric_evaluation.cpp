@@ -118,6 +118,7 @@ VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const Erro
 
 void VolumetricEvaluation::add_coefficient(std::size_t power, std::size_t component, int joint,
                                            double value) {
+  if (value == 0.0) return;  // does not raise the degree
   if (power >= powers_.size()) powers_.resize(power + 1);
   powers_[power].e[component][static_cast<std::size_t>(joint)] += value;
 }

@@ -104,36 +104,39 @@ SERVOMILL_INLINE N sine(const N& x) {
 
 // --- the turn of a vector of angles -------------------------------------------------------------
 
-// Rot(e) - 1 = a [e]x + b (e e^T - e^2), with a = sin t/t, b = (1 - cos t)/t^2 for t = |e|.
+// Rot(e) v = v + a e x (v + h e x v), with h = tan(t/2)/t, a = sin t/t for t = |e|.
 struct TurnFactors {
-  Register a, b;
+  Register a, h;
 };
 
 SERVOMILL_INLINE TurnFactors small_turn_factors(const Register& t2) {
   return {fnma(t2, all<Register>(1.0 / 6.0), all<Register>(1.0)),
-          fnma(t2, all<Register>(1.0 / 24.0), all<Register>(0.5))};
+          fma(t2, all<Register>(1.0 / 24.0), all<Register>(0.5))};
 }
 
+// a is computed from h: what belongs together turns by some angle, even where h is large.
 TurnFactors turn_factors(const Register& t2) {
   TurnFactors f = small_turn_factors(t2);
   for (std::size_t n = 0; n < kRegister; ++n) {
     if (t2[n] < kSmallTurn * kSmallTurn) continue;
-    const double t = std::sqrt(t2[n]), half = sine(0.5 * t);
-    f.a[n] = sine(t) / t;
-    f.b[n] = 2.0 * half * half / t2[n];
+    const double t = std::sqrt(t2[n]), quarter = sine(0.25 * t);
+    const double cosine = fnma(2.0 * quarter, quarter, 1.0);
+    const double tangent = sine(0.5 * t) / (cosine == 0.0 ? 0x1p-54 : cosine);
+    f.h[n] = tangent / t;
+    f.a[n] = 2.0 * f.h[n] / fma(tangent, tangent, 1.0);
   }
   return f;
 }
 
 // --- the errors of an axis ----------------------------------------------------------------------
 
-// w and R.
+// w, and the turn as a e and h e.
 struct Fault {
-  Register w_[3];
-  Register R_[3][3];
+  Register w_[3], a_[3], h_[3];
 
   SERVOMILL_INLINE const Register& w(std::size_t i) const { return w_[i]; }
-  SERVOMILL_INLINE const Register& R(std::size_t i, std::size_t j) const { return R_[i][j]; }
+  SERVOMILL_INLINE const Register& a(std::size_t i) const { return a_[i]; }
+  SERVOMILL_INLINE const Register& h(std::size_t i) const { return h_[i]; }
 };
 
 // Two ways through the same formulas. The usual one takes only cubic polynomials and small turns
@@ -142,25 +145,15 @@ struct Fault {
 enum class Way { usual, general };
 
 template <Way way>
-SERVOMILL_INLINE void set_turn(const Register& ex, const Register& ey, const Register& ez,
-                               Fault& fault, Register& t2_max) {
-  using N = Register;
-  const N t2 = fma(ez, ez, fma(ey, ey, ex * ex));
-  const auto [a, b] = way == Way::usual ? small_turn_factors(t2) : turn_factors(t2);
+SERVOMILL_INLINE void set_turn(const Register (&e)[kErrorComponents], Fault& fault,
+                               Register& t2_max) {
+  const Register t2 = fma(e[5], e[5], fma(e[4], e[4], e[3] * e[3]));
+  const auto [a, h] = way == Way::usual ? small_turn_factors(t2) : turn_factors(t2);
   t2_max = xsimd::max(Batch(t2_max), Batch(t2));
-  const N bx = b * ex, by = b * ey, bz = b * ez;
-  const N ax = a * ex, ay = a * ey, az = a * ez;
-  const N no_zz = fnma(bz, ez, all<N>(1.0)), no_yy = fnma(by, ey, all<N>(1.0));
-  auto& R = fault.R_;
-  R[0][0] = fnma(by, ey, no_zz);
-  R[1][1] = fnma(bx, ex, no_zz);
-  R[2][2] = fnma(bx, ex, no_yy);
-  R[0][1] = fms(bx, ey, az);
-  R[1][0] = fma(bx, ey, az);
-  R[0][2] = fma(bx, ez, ay);
-  R[2][0] = fms(bx, ez, ay);
-  R[1][2] = fms(by, ez, ax);
-  R[2][1] = fma(by, ez, ax);
+  for (std::size_t i = 0; i < 3; ++i) {
+    fault.a_[i] = a * e[3 + i];
+    fault.h_[i] = h * e[3 + i];
+  }
 }
 
 // Several components at once; coefficient(power, component). Even and odd pairs of powers,
@@ -189,7 +182,7 @@ SERVOMILL_INLINE void find_fault(const VolumetricProgram& program, bool has_angl
   Register e[kErrorComponents];
   if (has_angles) {
     evaluate<way, 6>(program, q, coefficient, terms, e);
-    set_turn<way>(e[3], e[4], e[5], fault, t2_max);
+    set_turn<way>(e, fault, t2_max);
   } else {
     evaluate<way, 3>(program, q, coefficient, terms, e);
   }
@@ -243,14 +236,18 @@ SERVOMILL_INLINE Vector<N> transpose_times(const double (&R)[3][3], const Vector
   }
   return u;
 }
-// R p + v
+// v + e x u, in an order of additions that is the same wherever it is computed
+template <class N>
+SERVOMILL_INLINE Vector<N> plus_cross(const Vector<N>& v, const Vector<N>& e, const Vector<N>& u) {
+  return {fma(e.v[1], u.v[2], fnma(e.v[2], u.v[1], v.v[0])),
+          fma(e.v[2], u.v[0], fnma(e.v[0], u.v[2], v.v[1])),
+          fma(e.v[0], u.v[1], fnma(e.v[1], u.v[0], v.v[2]))};
+}
+// v + (R - 1) p
 template <class N, class F>
-SERVOMILL_INLINE Vector<N> turn_and_shift(const F& f, const Vector<N>& p, const Vector<N>& v) {
-  Vector<N> u;
-  repeat<3>([&](auto i) {
-    u.v[i] = fma(f.R(i, 2), p.v[2], fma(f.R(i, 1), p.v[1], fma(f.R(i, 0), p.v[0], v.v[i])));
-  });
-  return u;
+SERVOMILL_INLINE Vector<N> turned_by(const F& f, const Vector<N>& p, const Vector<N>& v) {
+  const Vector<N> a{f.a(0), f.a(1), f.a(2)}, h{f.h(0), f.h(1), f.h(2)};
+  return plus_cross(v, a, plus_cross(p, h, p));
 }
 
 template <class N>
@@ -292,19 +289,18 @@ struct Tools {
       add(step.direction, q, w.v);
       if constexpr (kIdeal) add(step.direction, q, p_ideal.v);
     }
+    repeat<3>([&](auto i) { w.v[i] = p.v[i] + w.v[i]; });
     if (!step.has_angles) {
-      repeat<3>([&](auto i) { p.v[i] = p.v[i] + w.v[i]; });
+      p = w;
       return;
     }
     if (step.has_lever) {
       repeat<3>([&](auto i) {
-        const N o = q * step.lever_slope[i] - step.centre[i];
-        p.v[i] = p.v[i] + o;
-        w.v[i] = w.v[i] - o;
+        p.v[i] = p.v[i] + fms(q, all<N>(step.lever_slope[i]), all<N>(step.centre[i]));
       });
     }
-    p = turn_and_shift(f, p, w);
-    if constexpr (kAxis) k = turn_and_shift(f, k, Vector<N>{});
+    p = turned_by(f, p, w);
+    if constexpr (kAxis) k = turned_by(f, k, k);
   }
 };
 
@@ -422,16 +418,15 @@ void find_terms(const VolumetricProgram& program, const OnePoseData* data, const
 
 // Faults of all joints, one of which is read where it lies.
 struct OnePoseFaults {
-  LaneArray w_[3], R_[3][3];
+  LaneArray w_[3], a_[3], h_[3];
 };
 struct FaultInMemory {
   const OnePoseFaults& all;
   std::size_t joint;
 
   SERVOMILL_INLINE const double& w(std::size_t i) const { return all.w_[i][joint]; }
-  SERVOMILL_INLINE const double& R(std::size_t i, std::size_t j) const {
-    return all.R_[i][j][joint];
-  }
+  SERVOMILL_INLINE const double& a(std::size_t i) const { return all.a_[i][joint]; }
+  SERVOMILL_INLINE const double& h(std::size_t i) const { return all.h_[i][joint]; }
 };
 
 struct OnePose {
@@ -469,7 +464,8 @@ SERVOMILL_INLINE bool try_one(const VolumetricProgram& program, const OnePoseDat
                     t2_max);
     repeat<3>([&](auto i) { store(f.w_[i], faults.w_[i], first); });
     if (!program.has_angles) return;
-    repeat<9>([&](auto n) { store(f.R_[n / 3][n % 3], faults.R_[n / 3][n % 3], first); });
+    repeat<3>([&](auto i) { store(f.a_[i], faults.a_[i], first); });
+    repeat<3>([&](auto i) { store(f.h_[i], faults.h_[i], first); });
   });
   if (way == Way::usual && !are_small_turns(t2_max)) return false;
   OnePose at{data, Q, faults};
