@@ -171,8 +171,8 @@ Vector3d VolumetricModel::joint_offset(const Joints& Q, const Vector3d& p_ST) co
 void VolumetricModel::joint_offsets(std::span<const Joints> Q, const Vector3d& p_ST,
                                     std::span<Vector3d> out) const {
   assert(out.size() == Q.size());
-  if (Q.empty()) return;
-  if (linear_axes_are_orthogonal_) {
+  constexpr std::size_t kFew = 2;  // sooner done one by one
+  if (linear_axes_are_orthogonal_ && Q.size() > kFew) {
     evaluation_->offsets(Q, p_ST, out.front().data());
   } else {
     for (std::size_t n = 0; n < Q.size(); ++n) out[n] = joint_offset(Q[n], p_ST);
