@@ -13,7 +13,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 SCENARIO = os.path.join(HERE, "gallery", "scenario.toml")
 MACHINE = os.path.join(HERE, "..", "..", "scenarios", "guevel2025", "experiment1.toml")
-LONG = ["--set", "program.feed_override=0.005"]  # minutes of motion, seconds of simulation a case
+LONG = ["--set", "program.feed_override=0.001"]  # minutes of motion, seconds of simulation a case
 PATIENCE = 60  # s, until something is on the disk; far more than it takes
 
 
@@ -75,7 +75,7 @@ class Ends(unittest.TestCase):
         self.assertFalse(os.path.exists(self.partial))
 
     def test_interrupted_sweep_keeps_its_complete_points(self):
-        points = 'sweep={"program.feed_override"=[1.0,0.005]}'
+        points = 'sweep={"program.feed_override"=[1.0,0.001]}'
         process = subprocess.Popen([SERVOMILL, "sweep", SCENARIO, "-o", self.out, "--json", "--set", points],
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, bufsize=1)
         self.addCleanup(process.stdout.close)
