@@ -31,27 +31,39 @@ struct Matrix2 {
   T a, b, c, d;  // row after row
 };
 
-/// The force at h/2 and h, and its derivatives by the speeds there. With bristles also their rates.
+/// The same where each node has its own.
+template <class T>
+struct Diagonal2 {
+  T a, d;
+};
+
+/// The force at h/2 and h, and its derivatives by the speeds there.
 template <class T>
 struct NodeForces {
-  T f[2];              // N
-  Matrix2<T> df;       // N s/m
-  T rate[2];           // dz/dt, m/s
-  Matrix2<T> drate{};  // 1
+  T f[2];           // N
+  Diagonal2<T> df;  // N s/m
+};
+
+/// With bristles a node feels the other, too; their rates with the same derivatives.
+template <class T>
+struct BristleForces {
+  T f[2];            // N
+  Matrix2<T> df;     // N s/m
+  T rate[2];         // dz/dt, m/s
+  Matrix2<T> drate;  // 1
 };
 
 /// Regularised friction at the nodes.
 template <class P, class T>
 NodeForces<T> regularised_at(const P& p, const T (&v)[2]) {
   const WithSlope<T> half = regularised(p, v[0]), end = regularised(p, v[1]);
-  const T zero(0.0);
-  return {{half.value, end.value}, {half.slope, zero, zero, end.slope}, {zero, zero}, {}};
+  return {{half.value, end.value}, {half.slope, end.slope}};
 }
 
 /// LuGre at the nodes: dz/dt = v - a(v) z there, z by its collocation, which is linear in z.
 /// @param z, rate  at the start of the sub-step
 template <class P, class T>
-NodeForces<T> bristles_at(const P& p, const T& z0, const T& rate0, const T& h, const T (&v)[2]) {
+BristleForces<T> bristles_at(const P& p, const T& z0, const T& rate0, const T& h, const T (&v)[2]) {
   const T one(1.0), zero(0.0);
   const auto weight = [&](int node, int j) { return h * T(kIntegral[node][j]); };
   const Matrix2<T> C = {weight(1, 1), weight(1, 2), weight(3, 1), weight(3, 2)};
@@ -77,7 +89,7 @@ NodeForces<T> bristles_at(const P& p, const T& z0, const T& rate0, const T& h, c
                          (inverse.a * C.b + inverse.b * C.d) * direct[1],
                          (inverse.c * C.a + inverse.d * C.c) * direct[0],
                          (inverse.c * C.b + inverse.d * C.d) * direct[1]};
-  NodeForces<T> out;
+  BristleForces<T> out;
   out.drate = {direct[0] - a[0] * dz.a, -a[0] * dz.b, -a[1] * dz.c, direct[1] - a[1] * dz.d};
   out.df = {p.sigma0 * dz.a + p.sigma1 * out.drate.a, p.sigma0 * dz.b + p.sigma1 * out.drate.b,
             p.sigma0 * dz.c + p.sigma1 * out.drate.c, p.sigma0 * dz.d + p.sigma1 * out.drate.d};
@@ -88,15 +100,38 @@ NodeForces<T> bristles_at(const P& p, const T& z0, const T& rate0, const T& h, c
   return out;
 }
 
-/// Newton's correction of v: (1 - C df) dv = residual.
+/// 1 - C df.
 template <class T>
-void newton(const Matrix2<T>& C, const Matrix2<T>& df, const T (&residual)[2], T (&dv)[2]) {
+Matrix2<T> newton_matrix(const Matrix2<T>& C, const Matrix2<T>& df) {
   const T one(1.0);
-  const Matrix2<T> J = {one - (C.a * df.a + C.b * df.c), -(C.a * df.b + C.b * df.d),
-                        -(C.c * df.a + C.d * df.c), one - (C.c * df.b + C.d * df.d)};
-  const T factor = one / (J.a * J.d - J.b * J.c);
-  dv[0] = (J.d * residual[0] - J.b * residual[1]) * factor;
-  dv[1] = (J.a * residual[1] - J.c * residual[0]) * factor;
+  return {one - fma(C.a, df.a, C.b * df.c), -fma(C.a, df.b, C.b * df.d),
+          -fma(C.c, df.a, C.d * df.c), one - fma(C.c, df.b, C.d * df.d)};
+}
+template <class T>
+Matrix2<T> newton_matrix(const Matrix2<T>& C, const Diagonal2<T>& df) {
+  const T one(1.0);
+  return {fma(-C.a, df.a, one), -(C.b * df.d), -(C.c * df.a), fma(-C.d, df.d, one)};
+}
+
+/// Newton's correction of v: (1 - C df) dv = residual.
+template <class T, class Derivative>
+void newton(const Matrix2<T>& C, const Derivative& df, const T (&residual)[2], T (&dv)[2]) {
+  const Matrix2<T> J = newton_matrix(C, df);
+  const T factor = T(1.0) / fma(J.a, J.d, -(J.b * J.c));
+  dv[0] = fma(J.d, residual[0], -(J.b * residual[1])) * factor;
+  dv[1] = fma(J.a, residual[1], -(J.c * residual[0])) * factor;
+}
+
+/// value + derivative dv.
+template <class T>
+void follow(T (&value)[2], const Matrix2<T>& derivative, const T (&dv)[2]) {
+  value[0] += fma(derivative.a, dv[0], derivative.b * dv[1]);
+  value[1] += fma(derivative.c, dv[0], derivative.d * dv[1]);
+}
+template <class T>
+void follow(T (&value)[2], const Diagonal2<T>& derivative, const T (&dv)[2]) {
+  value[0] = fma(derivative.a, dv[0], value[0]);
+  value[1] = fma(derivative.d, dv[1], value[1]);
 }
 
 /// How long the servo loop leaves an error of speed standing (s).

@@ -96,6 +96,7 @@ void DriveBank::prepare_lane(std::size_t block, std::size_t j, const PreparedDri
   c.inverse_mass[j] = 1.0 / p.slide_mass();
   c.tolerance[j] = drive.exact->resolution().tolerance;
   c.coarsest[j] = drive.exact->coarsest_log2() + Ladder::kDepth;
+  c.least_coarsest = std::min(c.least_coarsest, c.coarsest[j]);
 
   const SlopeBounds bounds(f);
   for (std::size_t n = 0; n < 3; ++n) {

@@ -7,6 +7,13 @@
 #include "plant/drives/collocation.h"
 #include "plant/vocabulary/pack.h"
 
+// Where eight numbers are one register, what is called is small enough to be put in its place.
+#ifdef __AVX512F__
+#define SERVOMILL_FLATTEN [[gnu::flatten]]
+#else
+#define SERVOMILL_FLATTEN
+#endif
+
 namespace servomill::plant {
 namespace {
 
@@ -17,16 +24,17 @@ LaneBits bits_of(const LaneFlags& flags) {
   return static_cast<LaneBits>(bytes * 0x0102040810204080 >> 56);  // byte j to bit j
 }
 
-// e^x for x <= 0, to the last bit or two; below -700 that of -700. Taylor's series about the
-// nearest multiple of ln 2.
+// e^x for x <= 0, to the last bit or two, by Taylor's series about the nearest multiple of ln 2.
+// Below kLeast it stays: what it is multiplied with must not become subnormal, which is slow.
 template <class Arch>
 Pack<Arch> exp_of_negative(const Pack<Arch>& x) {
   using P = Pack<Arch>;
   using Bits = xsimd::batch<std::int64_t, Arch>;
+  constexpr double kLeast = -200.0;
   constexpr double kRound = 6755399441055744.0;  // 3 2^51: its last bit counts ones
   constexpr double kLog2e = 1.4426950408889634, kLn2 = 0x1.62e42fefa0000p-1;
   constexpr double kLn2Rest = 0x1.cf79abc9e3b39p-40;
-  const P y = max(x, P(-700.0));
+  const P y = max(x, P(kLeast));
   const P rounded = fma(y, P(kLog2e), P(kRound)), n = rounded - P(kRound);
   const P r = fma(n, P(-kLn2Rest), fma(n, P(-kLn2), y));
   const auto pair = [&](double a, double b) { return fma(P(b), r, P(a)); };
@@ -130,6 +138,8 @@ class SubStep {
     if (kind == FrictionKind::lugre) end.z = z_at(3);
   }
 
+  Mask resolved(const P& tolerance) const { return (error <= tolerance) & (kink == P(0.0)); }
+
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -154,7 +164,7 @@ class SubStep {
     }
   }
 
-  NodeForces<P> friction_at(const P (&v)[2]) const {
+  auto friction_at(const P (&v)[2]) const {
     if constexpr (kind == FrictionKind::lugre) {
       return bristles_at(p_, s_.z, dz_[0], h_, v);
     } else {
@@ -167,18 +177,18 @@ class SubStep {
     constexpr int kMostIterations = 12;
     constexpr std::size_t kRow[2] = {1, 3};  // of v at h/2 and h
     const Matrix2<P> C = {weight(1, 6), weight(1, 7), weight(3, 6), weight(3, 7)};
-    const P zero(0.0), tolerance(block_.speed_tolerance);
+    const P tolerance(block_.speed_tolerance);
     P v[2], dv[2];
     f_[1] = f_[2] = f_[0];
     {
       const P way[2] = {response(1) - s_.v, response(3) - s_.v};
-      newton(C, {slope_, zero, zero, slope_}, way, dv);
+      newton(C, Diagonal2<P>{slope_, slope_}, way, dv);
       for (int j = 0; j < 2; ++j) v[j] = s_.v + dv[j];
     }
     Mask open = active;
     for (int n = 0; n < kMostIterations; ++n) {
-      const NodeForces<P> at = friction_at(v);
-      const P f[2] = {load_ + at.f[0], load_ + at.f[1]};
+      auto at = friction_at(v);
+      P f[2] = {load_ + at.f[0], load_ + at.f[1]};
       P residual[2];
       for (int j = 0; j < 2; ++j) {
         const P answer = fma(weight(kRow[j], 7), f[1], fma(weight(kRow[j], 6), f[0], y_[kRow[j]]));
@@ -186,12 +196,14 @@ class SubStep {
       }
       newton(C, at.df, residual, dv);
       const P change = max(abs(dv[0]), abs(dv[1]));
-      f_[1] = select(open, f[0] + at.df.a * dv[0] + at.df.b * dv[1], f_[1]);
-      f_[2] = select(open, f[1] + at.df.c * dv[0] + at.df.d * dv[1], f_[2]);
+      follow(f, at.df, dv);
+      f_[1] = select(open, f[0], f_[1]);
+      f_[2] = select(open, f[1], f_[2]);
       for (int j = 0; j < 2; ++j) v[j] = select(open, v[j] + dv[j], v[j]);
-      if (kind == FrictionKind::lugre) {
-        dz_[1] = select(open, at.rate[0] + at.drate.a * dv[0] + at.drate.b * dv[1], dz_[1]);
-        dz_[2] = select(open, at.rate[1] + at.drate.c * dv[0] + at.drate.d * dv[1], dz_[2]);
+      if constexpr (kind == FrictionKind::lugre) {
+        follow(at.rate, at.drate, dv);
+        dz_[1] = select(open, at.rate[0], dz_[1]);
+        dz_[2] = select(open, at.rate[1], dz_[2]);
       }
       open = open & !(change <= fma(P(1e-13), abs(v[1]), tolerance));
       if (!open.any()) break;
@@ -270,29 +282,57 @@ class SubStep {
   P slope_;       // N s/m, of f at 0
 };
 
+template <class Arch>
+Motion<Arch> select(const PackMask<Arch>& mask, const Motion<Arch>& yes, const Motion<Arch>& no) {
+  return {select(mask, yes.i, no.i), select(mask, yes.w, no.w), select(mask, yes.delta, no.delta),
+          select(mask, yes.v, no.v), select(mask, yes.x, no.x), select(mask, yes.z, no.z)};
+}
+
+template <class Arch>
+Motion<Arch> motion_of(const DriveBlock& s) {
+  using P = Pack<Arch>;
+  return {P(s.i), P(s.w), P(s.delta), P(s.v), P(s.x), P(s.z)};
+}
+
+template <class Arch>
+void store(const Motion<Arch>& from, DriveBlock& s) {
+  from.i.store(s.i);
+  from.w.store(s.w);
+  from.delta.store(s.delta);
+  from.v.store(s.v);
+  from.x.store(s.x);
+  from.z.store(s.z);
+}
+
+int log2_of(int n) { return 31 - __builtin_clz(static_cast<unsigned>(n)); }
+
+// What eight drives start a step from.
+template <class Arch>
+struct Start {
+  Motion<Arch> at;
+  Pack<Arch> command, load;  // load without friction
+};
+
 // Through the zone of friction, lane for lane in sub-steps as ExactStep::advance chooses them;
 // those that want one of the same length make it together. Returns the lanes that need shorter
 // ones.
 template <class Arch, FrictionKind kind, bool same>
-[[gnu::flatten, gnu::noinline]] LaneBits through_zone(DriveBlock& s, const DriveInputBlock& input,
-                                                      const DriveConstants& c, const Ladder& ladder,
-                                                      LaneBits lanes) {
+[[gnu::noinline]] SERVOMILL_FLATTEN LaneBits in_sub_steps(DriveBlock& s, const Start<Arch>& start,
+                                                          const DriveConstants& c,
+                                                          const Ladder& ladder, LaneBits lanes) {
   using P = Pack<Arch>;
   using Mask = PackMask<Arch>;
   constexpr int kWhole = 32;  // beyond all rungs
   const FrictionPack<Arch> p(c, lanes);
-  const P command(input.command), load = P(input.F) + P(c.F_load), tolerance(c.tolerance);
-  const Motion<Arch> start = {P(s.i), P(s.w), P(s.delta), P(s.v), P(s.x), P(s.z)};
-  Motion<Arch> now = start;
+  const P tolerance(c.tolerance);
+  Motion<Arch> now = start.at;
 
-  const auto log2_of = [](int n) { return 31 - __builtin_clz(static_cast<unsigned>(n)); };
   const int all = ladder.ticks << Ladder::kDepth, whole = log2_of(all);
   int wanted[kLaneWidth], rest[kLaneWidth];  // rungs; lengths of the lowest
-  LaneBits open = lanes, others = 0, at_ease = 0;
+  LaneBits open = lanes, others = 0;
   for (std::size_t j = 0; j < kLaneWidth; ++j) {
     wanted[j] = c.coarsest[j] - s.control[j].halvings;
     rest[j] = all;
-    at_ease |= static_cast<LaneBits>((s.control[j].halvings == 0 && wanted[j] >= whole) << j);
     others |= static_cast<LaneBits>((wanted[j] < 0) << j);
   }
   others &= lanes;
@@ -305,25 +345,18 @@ template <class Arch, FrictionKind kind, bool same>
   while (open != 0) {
     // whose turn is it?
     LaneBits turn = open;
-    int rung = kWhole;
-    if ((open & ~at_ease) != 0) {
-      rung = rung_of(static_cast<std::size_t>(__builtin_ctz(open)));
-      for (std::size_t j = 0; j < kLaneWidth; ++j) {
-        if (rung_of(j) != rung) turn &= static_cast<LaneBits>(~(1U << j));
-      }
+    const int rung = rung_of(static_cast<std::size_t>(__builtin_ctz(open)));
+    for (std::size_t j = 0; j < kLaneWidth; ++j) {
+      if (rung_of(j) != rung) turn &= static_cast<LaneBits>(~(1U << j));
     }
     const ParabolaBlock& block = rung == kWhole ? *ladder.whole : ladder.rungs[rung];
     const Mask active = Mask::of(turn);
-    const SubStep<Arch, kind, same> step(now, command, load, p, c, block, active);
-    const Mask good = active & (step.error <= tolerance) & (step.kink == P(0.0));
-    now = {select(good, step.end.i, now.i),         select(good, step.end.w, now.w),
-           select(good, step.end.delta, now.delta), select(good, step.end.v, now.v),
-           select(good, step.end.x, now.x),         select(good, step.end.z, now.z)};
+    const SubStep<Arch, kind, same> step(now, start.command, start.load, p, c, block, active);
+    const Mask good = active & step.resolved(tolerance);
     const unsigned accepted = good.bits();
-    if (accepted == open && (open & ~at_ease) == 0) break;
+    now = select(good, step.end, now);
 
     // those that arrived, and how far the others go next
-    at_ease = 0;
     LaneArray error, kink;
     step.error.store(error);
     step.kink.store(kink);
@@ -350,26 +383,45 @@ template <class Arch, FrictionKind kind, bool same>
   for (std::size_t j = 0; j < kLaneWidth; ++j) {
     if (arrived >> j & 1U) s.control[j].halvings = c.coarsest[j] - wanted[j];
   }
-  const Mask moved = Mask::of(arrived);
-  select(moved, now.i, start.i).store(s.i);
-  select(moved, now.w, start.w).store(s.w);
-  select(moved, now.delta, start.delta).store(s.delta);
-  select(moved, now.v, start.v).store(s.v);
-  select(moved, now.x, start.x).store(s.x);
-  select(moved, now.z, start.z).store(s.z);
+  store(select(Mask::of(arrived), now, motion_of<Arch>(s)), s);
   return others;
 }
 
+// As a rule all lanes take the step as a whole.
+template <class Arch, FrictionKind kind, bool same>
+[[gnu::noinline]] SERVOMILL_FLATTEN LaneBits through_zone(DriveBlock& s, const Start<Arch>& start,
+                                                          const DriveConstants& c,
+                                                          const Ladder& ladder, LaneBits lanes) {
+  using P = Pack<Arch>;
+  using Mask = PackMask<Arch>;
+  int halvings = 0;
+  for (std::size_t j = 0; j < kLaneWidth; ++j) {
+    halvings |= s.control[j].halvings & -static_cast<int>(lanes >> j & 1U);
+  }
+  if (halvings == 0 && c.least_coarsest >= log2_of(ladder.ticks) + Ladder::kDepth) {
+    const FrictionPack<Arch> p(c, lanes);
+    const Mask active = Mask::of(lanes);
+    const SubStep<Arch, kind, same> step(start.at, start.command, start.load, p, c, *ladder.whole,
+                                         active);
+    if ((active & step.resolved(P(c.tolerance))).bits() == lanes) {
+      store(select(active, step.end, motion_of<Arch>(s)), s);
+      return 0;
+    }
+  }
+  return in_sub_steps<Arch, kind, same>(s, start, c, ladder, lanes);
+}
+
 template <class Arch, bool same>
-[[gnu::flatten]] LaneBits advance_block(DriveBlock& s, const DriveInputBlock& input,
-                                        const HoldBlock& hold, const DriveConstants& c,
-                                        const Ladder& ladder) {
+SERVOMILL_FLATTEN LaneBits advance_block(DriveBlock& s, const DriveInputBlock& input,
+                                         const HoldBlock& hold, const DriveConstants& c,
+                                         const Ladder& ladder) {
   using P = Pack<Arch>;
   using Mask = PackMask<Arch>;
   constexpr std::size_t kColumns = HoldBlock::kColumns;
 
   // the force of those that glide; linear drives have none
-  const P v(s.v), speed(c.glide_speed), zero(0.0);
+  const Start<Arch> start = {motion_of<Arch>(s), P(input.command), P(input.F) + P(c.F_load)};
+  const P &v = start.at.v, speed(c.glide_speed), zero(0.0);
   const Mask forwards = v > zero;
   const P friction = select(forwards, P(c.Fc_positive), -P(c.Fc_negative));
   const Mask linear = speed < zero;
@@ -377,14 +429,14 @@ template <class Arch, bool same>
   if (c.lugre != 0) {
     constexpr double kSettled = 1e-10;  // of Fc, as Gliding::holds
     moved = moved & (Mask::of(0xFFU & ~c.lugre) |
-                     (abs(fma(P(c.sigma0), P(s.z), -friction)) <= P(kSettled) * abs(friction)));
+                     (abs(fma(P(c.sigma0), start.at.z, -friction)) <= P(kSettled) * abs(friction)));
   }
   const unsigned active = bits_of(input.active);
   moved = moved & Mask::of(active);
   unsigned gone = 0;
   if (moved.any()) {
-    const P in[kColumns] = {P(s.i), P(s.w),           P(s.delta),
-                            v,      P(input.command), P(input.F) + P(c.F_load) + friction};
+    const P in[kColumns] = {start.at.i, start.at.w,    start.at.delta,
+                            v,          start.command, start.load + friction};
     const P middle = product<Arch, same>(hold.middle, 0, in);
     P out[HoldBlock::kRows];
 #pragma GCC unroll 8
@@ -395,12 +447,12 @@ template <class Arch, bool same>
     const P slowest = select(forwards, min(middle, out[3]), -max(middle, out[3]));
     moved = moved & (linear | (slowest > speed));
     gone = moved.bits();
-    select(moved, out[0], in[0]).store(s.i);
-    select(moved, out[1], in[1]).store(s.w);
-    select(moved, out[2], in[2]).store(s.delta);
-    select(moved, out[3], v).store(s.v);
-    const P x(s.x);
-    select(moved, x + out[4], x).store(s.x);
+    const Motion<Arch> end = {out[0], out[1], out[2], out[3], start.at.x + out[4], start.at.z};
+    if (gone == 0xFFU) {
+      store(end, s);
+    } else {
+      store(select(moved, end, start.at), s);
+    }
     if (const unsigned modes = c.has_slide_mode & gone; modes != 0) {
       const unsigned up = forwards.bits();
       for (std::size_t j = 0; j < kLaneWidth; ++j) {
@@ -413,10 +465,10 @@ template <class Arch, bool same>
   if (stay == 0) return 0;
   unsigned others = stay & ~(c.regularised | c.lugre);
   if (const auto lanes = static_cast<LaneBits>(stay & c.regularised)) {
-    others |= through_zone<Arch, FrictionKind::regularised, same>(s, input, c, ladder, lanes);
+    others |= through_zone<Arch, FrictionKind::regularised, same>(s, start, c, ladder, lanes);
   }
   if (const auto lanes = static_cast<LaneBits>(stay & c.lugre)) {
-    others |= through_zone<Arch, FrictionKind::lugre, same>(s, input, c, ladder, lanes);
+    others |= through_zone<Arch, FrictionKind::lugre, same>(s, start, c, ladder, lanes);
   }
   return static_cast<LaneBits>(others);
 }
@@ -424,8 +476,11 @@ template <class Arch, bool same>
 template <class Arch>
 LaneBits advance(DriveBlock& s, const DriveInputBlock& input, const HoldBlock& hold,
                  const DriveConstants& c, const Ladder& ladder) {
-  return c.same ? advance_block<Arch, true>(s, input, hold, c, ladder)
-                : advance_block<Arch, false>(s, input, hold, c, ladder);
+  // only the registers of AVX-512 take one number for all as they read it
+  if constexpr (Pack<Arch>::kRegisters == 1) {
+    if (c.same) return advance_block<Arch, true>(s, input, hold, c, ladder);
+  }
+  return advance_block<Arch, false>(s, input, hold, c, ladder);
 }
 
 }  // namespace

@@ -67,6 +67,7 @@ struct DriveConstants {
   std::array<LaneArray, 3> steep{}, gentle{};
   LaneArray tanh_end{};                    // m/s
   std::array<int, kLaneWidth> coarsest{};  // rung of the longest sub-step
+  int least_coarsest = 31;                 // of those that the kernel moves with their friction
   bool same = false;                       // eight lanes with the same drive
   LaneBits has_slide_mode = 0;             // lanes with set-valued friction
   LaneBits regularised = 0, lugre = 0;     // lanes that the kernel moves with their friction

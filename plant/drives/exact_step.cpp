@@ -175,8 +175,8 @@ bool ExactStep::looks_within(const LaneState& s) const {
   return sticks(s) || params_.gap > 0.0 || params_.cogging.T != 0.0;
 }
 
-NodeForces<double> ExactStep::friction_at(const LaneState& s, double h,
-                                          const double (&v)[2]) const {
+BristleForces<double> ExactStep::friction_at(const LaneState& s, double h,
+                                             const double (&v)[2]) const {
   const FrictionParams& p = params_.friction;
   switch (p.kind) {
     case FrictionKind::none:
@@ -189,8 +189,10 @@ NodeForces<double> ExactStep::friction_at(const LaneState& s, double h,
               {},
               {}};
     }
-    case FrictionKind::regularised:
-      return regularised_at(p, v);
+    case FrictionKind::regularised: {
+      const NodeForces<double> at = regularised_at(p, v);
+      return {{at.f[0], at.f[1]}, {at.df.a, 0.0, 0.0, at.df.d}, {}, {}};
+    }
     case FrictionKind::lugre:
       return bristles_at(p, s.z, bristle_rate(p, s.v, s.z), h, v);
   }
@@ -222,13 +224,12 @@ bool ExactStep::collocate(const LaneState& s, double F, double h, const Propagat
       cogging[1] =
           cogging_force(params_, s.x + y.slide[kEnd] + at_half[kEnd] * f[0] + at_end[kEnd] * f[1]);
     }
-    const NodeForces<double> at = friction_at(s, h, v);
+    BristleForces<double> at = friction_at(s, h, v);
     for (std::size_t j = 0; j < 2; ++j) f[j] = load + cogging[j] + at.f[j];
     const double residual[2] = {response(0) - v[0], response(1) - v[1]};
     newton(C, at.df, residual, dv);
     for (std::size_t j = 0; j < 2; ++j) v[j] += dv[j];
-    f[0] += at.df.a * dv[0] + at.df.b * dv[1];
-    f[1] += at.df.c * dv[0] + at.df.d * dv[1];
+    follow(f, at.df, dv);
     const double change = std::max(std::abs(dv[0]), std::abs(dv[1]));
     if (change <= speed_tolerance_ + 1e-13 * std::abs(v[1])) {
       y.add(P, 6, f[0]);
@@ -237,8 +238,9 @@ bool ExactStep::collocate(const LaneState& s, double F, double h, const Propagat
       std::copy(std::begin(forces), std::end(forces), trial.f);
       if (params_.friction.kind == FrictionKind::lugre) {
         trial.dz[0] = bristle_rate(params_.friction, s.v, s.z);
-        trial.dz[1] = at.rate[0] + at.drate.a * dv[0] + at.drate.b * dv[1];
-        trial.dz[2] = at.rate[1] + at.drate.c * dv[0] + at.drate.d * dv[1];
+        follow(at.rate, at.drate, dv);
+        trial.dz[1] = at.rate[0];
+        trial.dz[2] = at.rate[1];
         for (std::size_t node = 0; node < kNodes; ++node) {
           trial.at[node].z = s.z + h * parabola(kIntegral[node], trial.dz);
         }

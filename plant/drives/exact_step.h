@@ -97,7 +97,7 @@ class ExactStep {
   const Linear& linear_of(const LaneState& s) const;
   double friction_force(const LaneState& s) const;
   double force(const LaneState& s, double F) const;
-  NodeForces<double> friction_at(const LaneState& s, double h, const double (&v)[2]) const;
+  BristleForces<double> friction_at(const LaneState& s, double h, const double (&v)[2]) const;
   bool happens(const LaneState& s, double F) const;
   void from_rest(LaneState& s, double F) const;
   Trial attempt(const LaneState& s, double command, double F, std::size_t level) const;
