@@ -21,11 +21,8 @@ namespace servomill::plant {
 namespace {
 
 constexpr double kAgreementTol = 0.1;  // nm, what the default tolerance of the exact step leaves
-// nm, the same in lanes, which round otherwise (fused) and so cut their steps otherwise: measured
-// up to 0.116 over 1500 holds; 1 nm is what is asked for
-constexpr double kLaneAgreementTol = 0.15;
-constexpr int kHolds = 1500;  // held commands
-constexpr Tick kHold = 40;    // ticks of each; 0.6 s in all
+constexpr int kHolds = 1500;           // held commands
+constexpr Tick kHold = 40;             // ticks of each; 0.6 s in all
 
 FeedDriveParams with_winding(FeedDriveParams p) {
   p.L = 4e-3;
@@ -128,7 +125,7 @@ void expect_agreement(const std::string& name, const FeedDriveParams& p) {
   EXPECT_LE(found, kAgreementTol);
   const double lane = difference_of_lane(p, kHold, x);
   testing::Test::RecordProperty("lane_nm_" + name, fmt::format("{:.2g}", lane));
-  EXPECT_LE(lane, kLaneAgreementTol);
+  EXPECT_LE(lane, kAgreementTol);
 
   double travel = 0.0;  // m
   int still = 0;
