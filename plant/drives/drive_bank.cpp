@@ -33,10 +33,6 @@ DriveBank::DriveBank(std::span<const FeedDriveParams> lanes, double base_period,
   std::sort(steps_.begin(), steps_.end());
   steps_.erase(std::unique(steps_.begin(), steps_.end()), steps_.end());
   assert(steps_.empty() || steps_.front() > 0);
-  for (std::size_t n = 0; n < steps_.size(); ++n) {
-    index_of_step_.resize(static_cast<std::size_t>(steps_[n]) + 1, -1);
-    index_of_step_.back() = static_cast<int>(n);
-  }
   PreparedDrives own(lanes.size());
   for (const FeedDriveParams& params : lanes) {
     drives_.push_back((kept != nullptr ? *kept : own).get(params, base_period, steps_));
@@ -46,6 +42,18 @@ DriveBank::DriveBank(std::span<const FeedDriveParams> lanes, double base_period,
   holds_.resize(steps_.size() * constants_.size());
   parabolas_.resize(constants_.size());
   for (std::size_t block = 0; block < constants_.size(); ++block) prepare_block(block);
+  for (std::size_t step = 0; step < steps_.size(); ++step) {
+    first_of_step_.resize(static_cast<std::size_t>(steps_[step]) + 1, -1);
+    first_of_step_.back() = static_cast<int>(block_steps_.size());
+    for (std::size_t block = 0; block < constants_.size(); ++block) {
+      block_steps_.push_back({&holds_[block_steps_.size()], &constants_[block],
+                              Ladder{.ticks = static_cast<int>(steps_[step])}});
+      const std::vector<ParabolaBlock>& parabolas = parabolas_[block];
+      if (parabolas.empty()) continue;
+      block_steps_.back().ladder.whole = &parabolas[step];
+      block_steps_.back().ladder.rungs = &parabolas[steps_.size()];
+    }
+  }
 }
 
 void DriveBank::prepare_block(std::size_t block) {
@@ -78,6 +86,7 @@ void DriveBank::prepare_lane(std::size_t block, std::size_t j, const PreparedDri
     }
   }
   if (!drive.exact) return;
+  c.linear = false;
   c.glide_speed[j] = drive.exact->gliding().speed;
   const auto bit = static_cast<LaneBits>(1U << j);
   const FrictionParams& f = p.friction;
@@ -130,23 +139,20 @@ void DriveBank::prepare_lane(std::size_t block, std::size_t j, const PreparedDri
 }
 
 void DriveBank::advance(DriveState& s, const DriveInput& input, Tick step) const {
-  assert(static_cast<std::size_t>(step) < index_of_step_.size());
+  assert(static_cast<std::size_t>(step) < first_of_step_.size());
   assert(s.blocks.size() == constants_.size() && input.blocks.size() == constants_.size());
-  assert(index_of_step_[static_cast<std::size_t>(step)] >= 0);
-  const auto index = static_cast<std::size_t>(index_of_step_[static_cast<std::size_t>(step)]);
-  for (std::size_t block = 0; block < constants_.size(); ++block) {
-    const DriveInputBlock& in = input.blocks[block];
-    Ladder ladder{.ticks = static_cast<int>(step)};
-    if (const auto& parabolas = parabolas_[block]; !parabolas.empty()) {
-      ladder.whole = &parabolas[index];
-      ladder.rungs = &parabolas[steps_.size()];
-    }
-    LaneBits others = kernel_.advance(
-        s.blocks[block], in, holds_[index * constants_.size() + block], constants_[block], ladder);
-    while (others != 0) {
-      const auto j = static_cast<std::size_t>(std::countr_zero(others));
-      others &= static_cast<LaneBits>(others - 1U);
-      const std::size_t l = block * kLaneWidth + j;
+  assert(first_of_step_[static_cast<std::size_t>(step)] >= 0);
+  const BlockStep* const steps =
+      block_steps_.data() + first_of_step_[static_cast<std::size_t>(step)];
+  const std::size_t end = constants_.size();
+  for (std::size_t first = 0; first < end;) {
+    LanesLeft left = kernel_.advance(s.blocks.data(), input.blocks.data(), steps, first, end);
+    first = left.block + 1;
+    while (left.lanes != 0) {
+      const auto j = static_cast<std::size_t>(std::countr_zero(left.lanes));
+      left.lanes &= static_cast<LaneBits>(left.lanes - 1U);
+      const std::size_t l = left.block * kLaneWidth + j;
+      const DriveInputBlock& in = input.blocks[left.block];
       LaneState lane = s.lane(l);
       drives_[l]->exact->advance(lane, in.command[j], in.F[j], step);
       s.set_lane(l, lane);

@@ -29,6 +29,7 @@ class DriveBank {
   /// @param level        instruction set; results differ between them by rounding
   DriveBank(std::span<const FeedDriveParams> lanes, double base_period, std::span<const Tick> steps,
             PreparedDrives* kept = nullptr, SimdLevel level = simd_level());
+  DriveBank(DriveBank&&) = default;  // a copy's block_steps_ would point into the original
 
   std::size_t lanes() const { return drives_.size(); }
 
@@ -57,12 +58,13 @@ class DriveBank {
 
   std::vector<std::shared_ptr<const PreparedDrive>> drives_;  // of each lane
   std::vector<double> inverse_r_;                             // 1/m, of each lane
-  std::vector<int> index_of_step_;                            // -1: not prepared
+  std::vector<int> first_of_step_;                            // in block_steps_; -1: not prepared
   std::vector<Tick> steps_;
   std::vector<HoldBlock> holds_;           // step after step, block after block
   std::vector<DriveConstants> constants_;  // of each block
   // of each block with friction that the kernel moves: steps as a whole, then the rungs
   std::vector<std::vector<ParabolaBlock>> parabolas_;
+  std::vector<BlockStep> block_steps_;  // as holds_
   DriveKernel kernel_;
 };
 

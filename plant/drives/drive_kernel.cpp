@@ -313,15 +313,23 @@ struct Start {
   Pack<Arch> command, load;  // load without friction
 };
 
+template <class Arch>
+Start<Arch> start_of(const DriveBlock& s, const DriveInputBlock& input, const DriveConstants& c) {
+  using P = Pack<Arch>;
+  return {motion_of<Arch>(s), P(input.command), P(input.F) + P(c.F_load)};
+}
+
 // Through the zone of friction, lane for lane in sub-steps as ExactStep::advance chooses them;
 // those that want one of the same length make it together. Returns the lanes that need shorter
 // ones.
 template <class Arch, FrictionKind kind, bool same>
-[[gnu::noinline]] SERVOMILL_FLATTEN LaneBits in_sub_steps(DriveBlock& s, const Start<Arch>& start,
+[[gnu::noinline]] SERVOMILL_FLATTEN LaneBits in_sub_steps(DriveBlock& s,
+                                                          const DriveInputBlock& input,
                                                           const DriveConstants& c,
                                                           const Ladder& ladder, LaneBits lanes) {
   using P = Pack<Arch>;
   using Mask = PackMask<Arch>;
+  const Start<Arch> start = start_of<Arch>(s, input, c);
   constexpr int kWhole = 32;  // beyond all rungs
   const FrictionPack<Arch> p(c, lanes);
   const P tolerance(c.tolerance);
@@ -389,7 +397,8 @@ template <class Arch, FrictionKind kind, bool same>
 
 // As a rule all lanes take the step as a whole.
 template <class Arch, FrictionKind kind, bool same>
-[[gnu::noinline]] SERVOMILL_FLATTEN LaneBits through_zone(DriveBlock& s, const Start<Arch>& start,
+[[gnu::noinline]] SERVOMILL_FLATTEN LaneBits through_zone(DriveBlock& s,
+                                                          const DriveInputBlock& input,
                                                           const DriveConstants& c,
                                                           const Ladder& ladder, LaneBits lanes) {
   using P = Pack<Arch>;
@@ -399,6 +408,7 @@ template <class Arch, FrictionKind kind, bool same>
     halvings |= s.control[j].halvings & -static_cast<int>(lanes >> j & 1U);
   }
   if (halvings == 0 && c.least_coarsest >= log2_of(ladder.ticks) + Ladder::kDepth) {
+    const Start<Arch> start = start_of<Arch>(s, input, c);
     const FrictionPack<Arch> p(c, lanes);
     const Mask active = Mask::of(lanes);
     const SubStep<Arch, kind, same> step(start.at, start.command, start.load, p, c, *ladder.whole,
@@ -408,79 +418,104 @@ template <class Arch, FrictionKind kind, bool same>
       return 0;
     }
   }
-  return in_sub_steps<Arch, kind, same>(s, start, c, ladder, lanes);
+  return in_sub_steps<Arch, kind, same>(s, input, c, ladder, lanes);
+}
+
+// The end of a step while the force against the slides is constant.
+template <class Arch, bool same>
+Motion<Arch> held(const HoldBlock& hold, const Motion<Arch>& at,
+                  const Pack<Arch> (&in)[HoldBlock::kColumns]) {
+  const auto row = [&](std::size_t n) {
+    return product<Arch, same>(hold.end, n * HoldBlock::kColumns, in);
+  };
+  return {row(0), row(1), row(2), row(3), at.x + row(4), at.z};
 }
 
 template <class Arch, bool same>
-SERVOMILL_FLATTEN LaneBits advance_block(DriveBlock& s, const DriveInputBlock& input,
-                                         const HoldBlock& hold, const DriveConstants& c,
-                                         const Ladder& ladder) {
+SERVOMILL_FLATTEN void advance_linear(DriveBlock& s, const DriveInputBlock& input,
+                                      const HoldBlock& hold, const DriveConstants& c,
+                                      unsigned active) {
+  const Start<Arch> start = start_of<Arch>(s, input, c);
+  const Motion<Arch>& at = start.at;
+  const Motion<Arch> end =
+      held<Arch, same>(hold, at, {at.i, at.w, at.delta, at.v, start.command, start.load});
+  store(active == 0xFFU ? end : select(PackMask<Arch>::of(active), end, at), s);
+}
+
+// Returns the active lanes that do not glide all over the step, untouched.
+template <class Arch, bool same>
+SERVOMILL_FLATTEN unsigned glide(DriveBlock& s, const DriveInputBlock& input, const HoldBlock& hold,
+                                 const DriveConstants& c, unsigned active) {
   using P = Pack<Arch>;
   using Mask = PackMask<Arch>;
-  constexpr std::size_t kColumns = HoldBlock::kColumns;
-
-  // the force of those that glide; linear drives have none
-  const Start<Arch> start = {motion_of<Arch>(s), P(input.command), P(input.F) + P(c.F_load)};
-  const P &v = start.at.v, speed(c.glide_speed), zero(0.0);
-  const Mask forwards = v > zero;
+  const Start<Arch> start = start_of<Arch>(s, input, c);
+  const Motion<Arch>& at = start.at;
+  const P speed(c.glide_speed), zero(0.0);
+  const Mask forwards = at.v > zero;
   const P friction = select(forwards, P(c.Fc_positive), -P(c.Fc_negative));
   const Mask linear = speed < zero;
-  Mask moved = linear | (abs(v) > speed);
+  Mask moved = (linear | (abs(at.v) > speed)) & Mask::of(active);
   if (c.lugre != 0) {
     constexpr double kSettled = 1e-10;  // of Fc, as Gliding::holds
     moved = moved & (Mask::of(0xFFU & ~c.lugre) |
-                     (abs(fma(P(c.sigma0), start.at.z, -friction)) <= P(kSettled) * abs(friction)));
+                     (abs(fma(P(c.sigma0), at.z, -friction)) <= P(kSettled) * abs(friction)));
   }
+  if (!moved.any()) return active;
+  const P in[] = {at.i, at.w, at.delta, at.v, start.command, start.load + friction};
+  const P middle = product<Arch, same>(hold.middle, 0, in);
+  const Motion<Arch> end = held<Arch, same>(hold, at, in);
+  // does it glide all over the step?
+  const P slowest = select(forwards, min(middle, end.v), -max(middle, end.v));
+  moved = moved & (linear | (slowest > speed));
+  const unsigned gone = moved.bits();
+  store(gone == 0xFFU ? end : select(moved, end, at), s);
+  if (const unsigned modes = c.has_slide_mode & gone; modes != 0) {
+    const unsigned up = forwards.bits();
+    for (std::size_t j = 0; j < kLaneWidth; ++j) {
+      if (!(modes >> j & 1U)) continue;
+      s.slide[j] = up >> j & 1U ? SlideMode::positive : SlideMode::negative;
+    }
+  }
+  return active & ~gone;
+}
+
+template <class Arch, bool same>
+LaneBits advance_block(DriveBlock& s, const DriveInputBlock& input, const BlockStep& step) {
+  const DriveConstants& c = *step.constants;
   const unsigned active = bits_of(input.active);
-  moved = moved & Mask::of(active);
-  unsigned gone = 0;
-  if (moved.any()) {
-    const P in[kColumns] = {start.at.i, start.at.w,    start.at.delta,
-                            v,          start.command, start.load + friction};
-    const P middle = product<Arch, same>(hold.middle, 0, in);
-    P out[HoldBlock::kRows];
-#pragma GCC unroll 8
-    for (std::size_t row = 0; row < HoldBlock::kRows; ++row) {
-      out[row] = product<Arch, same>(hold.end, row * kColumns, in);
-    }
-    // does it glide all over the step?
-    const P slowest = select(forwards, min(middle, out[3]), -max(middle, out[3]));
-    moved = moved & (linear | (slowest > speed));
-    gone = moved.bits();
-    const Motion<Arch> end = {out[0], out[1], out[2], out[3], start.at.x + out[4], start.at.z};
-    if (gone == 0xFFU) {
-      store(end, s);
-    } else {
-      store(select(moved, end, start.at), s);
-    }
-    if (const unsigned modes = c.has_slide_mode & gone; modes != 0) {
-      const unsigned up = forwards.bits();
-      for (std::size_t j = 0; j < kLaneWidth; ++j) {
-        if (!(modes >> j & 1U)) continue;
-        s.slide[j] = up >> j & 1U ? SlideMode::positive : SlideMode::negative;
-      }
-    }
+  if (c.linear) {
+    advance_linear<Arch, same>(s, input, *step.hold, c, active);
+    return 0;
   }
-  const unsigned stay = active & ~gone;
-  if (stay == 0) return 0;
+  const unsigned stay = glide<Arch, same>(s, input, *step.hold, c, active);
   unsigned others = stay & ~(c.regularised | c.lugre);
   if (const auto lanes = static_cast<LaneBits>(stay & c.regularised)) {
-    others |= through_zone<Arch, FrictionKind::regularised, same>(s, start, c, ladder, lanes);
+    others |= through_zone<Arch, FrictionKind::regularised, same>(s, input, c, step.ladder, lanes);
   }
   if (const auto lanes = static_cast<LaneBits>(stay & c.lugre)) {
-    others |= through_zone<Arch, FrictionKind::lugre, same>(s, start, c, ladder, lanes);
+    others |= through_zone<Arch, FrictionKind::lugre, same>(s, input, c, step.ladder, lanes);
   }
   return static_cast<LaneBits>(others);
 }
 
+// Only the registers of AVX-512 take one number for all as they read it.
 template <class Arch>
-LaneBits advance(DriveBlock& s, const DriveInputBlock& input, const HoldBlock& hold,
-                 const DriveConstants& c, const Ladder& ladder) {
-  // only the registers of AVX-512 take one number for all as they read it
+LaneBits advance_one(DriveBlock& s, const DriveInputBlock& input, const BlockStep& step) {
   if constexpr (Pack<Arch>::kRegisters == 1) {
-    if (c.same) return advance_block<Arch, true>(s, input, hold, c, ladder);
+    if (step.constants->same) return advance_block<Arch, true>(s, input, step);
   }
-  return advance_block<Arch, false>(s, input, hold, c, ladder);
+  return advance_block<Arch, false>(s, input, step);
+}
+
+template <class Arch>
+LanesLeft advance(DriveBlock* states, const DriveInputBlock* inputs, const BlockStep* steps,
+                  std::size_t first, std::size_t end) {
+  for (std::size_t n = first; n < end; ++n) {
+    if (const LaneBits lanes = advance_one<Arch>(states[n], inputs[n], steps[n]); lanes != 0) {
+      return {n, lanes};
+    }
+  }
+  return {end, 0};
 }
 
 }  // namespace

@@ -68,18 +68,33 @@ struct DriveConstants {
   LaneArray tanh_end{};                    // m/s
   std::array<int, kLaneWidth> coarsest{};  // rung of the longest sub-step
   int least_coarsest = 31;                 // of those that the kernel moves with their friction
+  bool linear = true;                      // no lane has friction, backlash or cogging
   bool same = false;                       // eight lanes with the same drive
   LaneBits has_slide_mode = 0;             // lanes with set-valued friction
   LaneBits regularised = 0, lugre = 0;     // lanes that the kernel moves with their friction
   LaneBits has_kink = 0;                   // friction is continuous at v = 0, its slope is not
 };
 
+/// A step of one length of eight drives.
+struct BlockStep {
+  const HoldBlock* hold;
+  const DriveConstants* constants;
+  Ladder ladder;
+};
+
+/// Lanes of a block that the kernel cannot move and leaves untouched: friction that is no function
+/// of speed, backlash, cogging; and sub-steps below the lowest rung.
+struct LanesLeft {
+  std::size_t block;  // behind the last one: none are left
+  LaneBits lanes;
+};
+
 /// Functions that are compiled for each instruction set.
 struct DriveKernel {
-  /// Moves the active lanes by a step. Returns those that it cannot move, untouched: friction that
-  /// is no function of speed, backlash, cogging; and sub-steps below the lowest rung.
-  LaneBits (*advance)(DriveBlock&, const DriveInputBlock&, const HoldBlock&, const DriveConstants&,
-                      const Ladder&);
+  /// Moves the active lanes of the blocks from `first` to before `end`, or up to and with the first
+  /// block of which lanes are left. states[n], inputs[n] and steps[n] belong together.
+  LanesLeft (*advance)(DriveBlock* states, const DriveInputBlock* inputs, const BlockStep* steps,
+                       std::size_t first, std::size_t end);
 };
 
 template <SimdLevel level>
