@@ -160,43 +160,83 @@ class Recorder::Rows {
 
   void add(const std::vector<Snapshot>& block) {
     double* row = series_.add_rows(block.size());
-    for (const Snapshot& now : block) {
-      make_row(now, row);
-      rounding_.apply(row);
-      row += series_.width();
+    for (std::size_t first = 0; first < block.size();) {
+      const std::size_t end = find_places(block, first);
+      find_poses();
+      for (std::size_t n = first; n < end; ++n) {
+        make_row(block[n], n - first, row);
+        rounding_.apply(row);
+        row += series_.width();
+      }
+      first = end;
     }
   }
 
  private:
-  void make_row(const Snapshot& now, double* to);
+  std::size_t find_places(const std::vector<Snapshot>& block, std::size_t first);
+  void find_poses();
+  void make_row(const Snapshot& now, std::size_t place, double* to);
 
   const MachineSettings& machine_;
   const plant::VolumetricModel& truth_;
   const plant::VolumetricModel* imposed_;
   const ProgramPath& path_;
   const std::map<int, Eigen::Vector3d>& tips_;
+  const plant::VolumetricModel ideal_{machine_.chain, {}};
   std::vector<int> linear_, rotary_;  // joints that the machine has
   std::size_t piece_ = 0;
+  // of rows that follow each other with the same tool
+  Eigen::Vector3d p_ST_ = Eigen::Vector3d::Zero();
+  std::vector<std::size_t> pieces_;
+  std::vector<Joints> Q_prog_, Q_true_;
+  std::vector<ToolPose> nominal_, actual_;
+  std::vector<Eigen::Vector3d> displacement_;
   Series series_;
   Rounding rounding_{series_};
 };
 
-void Recorder::Rows::make_row(const Snapshot& now, double* to) {
-  // where the original program is
-  piece_ = path_.piece_at(now.s, piece_);
-  const ProgramPath::Piece& piece = path_.piece(piece_);
-  // Rotary axes turn at standing s, too, and nobody displaces them: theirs is the reference.
-  Joints Q_prog = machine_.chain.layout.joints(path_.at(piece_, now.s));
-  Q_prog.tail<kJoints - kLinearJoints>() = now.Q_ref.tail<kJoints - kLinearJoints>();
-  const auto tip = tips_.find(piece.tool_offset);
-  const Eigen::Vector3d p_ST = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;
+// Where the original program is, from `first` on up to a change of the tool. Returns the row of it.
+std::size_t Recorder::Rows::find_places(const std::vector<Snapshot>& block, std::size_t first) {
+  pieces_.clear();
+  Q_prog_.clear();
+  Q_true_.clear();
+  int tool = 0;
+  for (std::size_t n = first; n < block.size(); ++n) {
+    const Snapshot& now = block[n];
+    piece_ = path_.piece_at(now.s, piece_);
+    const ProgramPath::Piece& piece = path_.piece(piece_);
+    if (n == first) tool = piece.tool_offset;
+    if (piece.tool_offset != tool) return n;
+    // Rotary axes turn at standing s, too, and nobody displaces them: theirs is the reference.
+    Joints Q_prog = machine_.chain.layout.joints(path_.at(piece_, now.s));
+    Q_prog.tail<kJoints - kLinearJoints>() = now.Q_ref.tail<kJoints - kLinearJoints>();
+    pieces_.push_back(piece_);
+    Q_prog_.push_back(Q_prog);
+    Q_true_.push_back(now.Q_true);
+  }
+  return block.size();
+}
 
-  // where the tool is and where it should be
-  const ToolPose nominal = plant::forward(machine_.chain, Q_prog, p_ST);
-  const ToolPose actual = truth_.forward(now.Q_true, p_ST);
-  const auto Q_equal = plant::inverse_fixed_rotary(machine_.chain, actual.p_WT, Q_prog, p_ST);
-  const double contour_error =
-      Q_equal ? path_.distance(Q_equal->head<3>(), piece_) : (actual.p_WT - nominal.p_WT).norm();
+// Where the tool is and where it should be.
+void Recorder::Rows::find_poses() {
+  const auto tip = tips_.find(path_.piece(pieces_.front()).tool_offset);
+  p_ST_ = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;
+  nominal_.resize(Q_prog_.size());
+  actual_.resize(Q_prog_.size());
+  ideal_.poses(Q_prog_, p_ST_, nominal_);
+  truth_.poses(Q_true_, p_ST_, actual_);
+  if (imposed_ == nullptr) return;
+  displacement_.resize(Q_prog_.size());
+  imposed_->joint_offsets(Q_prog_, p_ST_, displacement_);
+}
+
+void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to) {
+  const ProgramPath::Piece& piece = path_.piece(pieces_[place]);
+  const ToolPose &nominal = nominal_[place], &actual = actual_[place];
+  const auto Q_equal =
+      plant::inverse_fixed_rotary(machine_.chain, actual.p_WT, Q_prog_[place], p_ST_);
+  const double contour_error = Q_equal ? path_.distance(Q_equal->head<3>(), pieces_[place])
+                                       : (actual.p_WT - nominal.p_WT).norm();
 
   RowWriter row(to);
   row.put(now.time);
@@ -219,7 +259,7 @@ void Recorder::Rows::make_row(const Snapshot& now, double* to) {
   per_axis(now.torque, 1.0, 1.0);
   if (imposed_ != nullptr) {
     Joints displacement = Joints::Zero();
-    displacement.head<3>() = imposed_->joint_offset(Q_prog, p_ST);
+    displacement.head<3>() = displacement_[place];
     row.put(displacement, linear_, um);
   }
   row.put(nominal.p_WT, mm);
