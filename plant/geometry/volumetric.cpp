@@ -179,6 +179,20 @@ void VolumetricModel::joint_offsets(std::span<const Joints> Q, const Vector3d& p
   }
 }
 
+void VolumetricModel::joint_offsets(const LaneArray (&Q)[kJoints], const Vector3d& p_ST,
+                                    LaneArray (&out)[kLinearJoints]) const {
+  if (linear_axes_are_orthogonal_) {
+    evaluation_->offsets(Q, p_ST, out);
+    return;
+  }
+  for (std::size_t lane = 0; lane < kLaneWidth; ++lane) {
+    Joints at;
+    for (int j = 0; j < kJoints; ++j) at[j] = Q[j][lane];
+    const Vector3d d = joint_offset(at, p_ST);
+    for (int i = 0; i < kLinearJoints; ++i) out[i][lane] = d[i];
+  }
+}
+
 PoseJacobian VolumetricModel::jacobian(const Joints& Q, const Vector3d& p_ST) const {
   PoseAndJacobian tool{{p_ST, Vector3d::UnitZ()}, {}};
   for (std::size_t i = chain_.axes.size(); i-- > 0;) {

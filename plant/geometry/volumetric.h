@@ -10,6 +10,7 @@
 
 #include "plant/geometry/error_model.h"
 #include "plant/kinematics/chain.h"
+#include "plant/vocabulary/lanes.h"
 
 namespace servomill::plant {
 
@@ -69,6 +70,13 @@ class VolumetricModel {
               std::span<VolumetricError> out) const;
   void joint_offsets(std::span<const Joints> Q, const Eigen::Vector3d& p_ST,
                      std::span<Eigen::Vector3d> out) const;
+
+  /// joint_offsets of eight poses in lanes, as simulations of eight runs hold them. All eight are
+  /// computed: the joints in lanes that are not used must be numbers.
+  /// @param Q    joint coordinates (5)
+  /// @param out  shifts of X, Y, Z (3; m)
+  void joint_offsets(const LaneArray (&Q)[kJoints], const Eigen::Vector3d& p_ST,
+                     LaneArray (&out)[kLinearJoints]) const;
 
   /// Derivatives of forward() with respect to all joints, error functions included.
   PoseJacobian jacobian(const Joints& Q, const Eigen::Vector3d& p_ST) const;

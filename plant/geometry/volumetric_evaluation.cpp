@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <limits>
 
 #include "plant/geometry/turn.h"
 
@@ -13,6 +14,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 static_assert(kMachineJoints == kJoints && kErrorComponents == kErrorDirections);
+static_assert(kStraightAxes == kLinearJoints);
 static_assert(sizeof(Joints) == kMachineJoints * sizeof(double));  // poses lie without gaps
 
 VolumetricKernel kernel_of(SimdLevel level) {
@@ -30,22 +32,57 @@ VolumetricKernel kernel_of(SimdLevel level) {
   return kernel;
 }
 
+StraightKernel straight_kernel_of(SimdLevel level) {
+  const auto make = [](SimdLevel of) {
+    return at_simd_level(of, []<SimdLevel l>() { return make_straight_kernel<l>(); });
+  };
+  StraightKernel kernel = make(level);
+  if (level == SimdLevel::avx512) kernel.one = make(SimdLevel::avx2).one;  // as above
+  return kernel;
+}
+
+Vector3d turn_of_location(const ChainAxis& axis, const ErrorModel& errors) {
+  Vector3d angles;
+  for (int i = 0; i < 3; ++i) {
+    angles[i] = errors.location({kAllAxes[static_cast<std::size_t>(i) + 3], axis.axis, true});
+  }
+  return angles;
+}
+
+using Functions = std::array<ErrorFunction, kErrorDirections>;
+
+// The errors of an axis that grow with its coordinate: [direction]. A linear axis goes along L d
+// instead of d, whose location errors thus count as well.
+Functions functions_of(const ChainAxis& axis, const ErrorModel& errors) {
+  Functions all;
+  for (const Axis direction : kAllAxes) {
+    all[static_cast<std::size_t>(index_of(direction))] =
+        errors.component({direction, axis.axis, false});
+  }
+  const Vector3d angles = turn_of_location(axis, errors);
+  if (!is_linear(axis.axis) || angles.isZero(0.0)) return all;
+  const Vector3d d = Vector3d::Unit(index_of(axis.axis)), Ld = TurnOf(angles).matrix() * d;
+  for (int i = 0; i < 3; ++i) {
+    ErrorFunction& f = all[static_cast<std::size_t>(i)];
+    f = f + polynomial({0.0, Ld[i] - d[i]});
+  }
+  return all;
+}
+
 // What an axis has.
 struct Faults {
   Vector3d shift, angles;  // location errors
-  bool has_components = false, has_component_angles = false;
+  bool has_functions = false, has_angles = false;
 
-  Faults(const ChainAxis& axis, const ErrorModel& errors) {
-    for (const Axis direction : kAllAxes) {
-      if (!errors.component({direction, axis.axis, false}).is_zero()) {
-        has_components = true;
-        if (!is_linear(direction)) has_component_angles = true;
-      }
+  Faults(const ChainAxis& axis, const ErrorModel& errors, const Functions& functions)
+      : angles(turn_of_location(axis, errors)) {
+    for (std::size_t i = 0; i < kErrorComponents; ++i) {
+      if (functions[i].is_zero()) continue;
+      has_functions = true;
+      if (i >= 3) has_angles = true;
     }
     for (int i = 0; i < 3; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      shift[i] = errors.location({kAllAxes[k], axis.axis, true});
-      angles[i] = errors.location({kAllAxes[k + 3], axis.axis, true});
+      shift[i] = errors.location({kAllAxes[static_cast<std::size_t>(i)], axis.axis, true});
     }
   }
   bool has_location() const { return !shift.isZero(0.0) || !angles.isZero(0.0); }
@@ -91,100 +128,33 @@ double TableLookup::value(double at) const {
   return intervals_[i].error + intervals_[i].slope * (at - intervals_[i].s);
 }
 
-// --- preparation --------------------------------------------------------------------------------
+// --- functions ----------------------------------------------------------------------------------
 
-VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const ErrorModel& errors,
-                                           SimdLevel level)
-    : kernel_(kernel_of(level)), powers_(4) {
-  for (auto a = chain.axes.rbegin(); a != chain.axes.rend(); ++a) {
-    add_steps_of(*a, errors);
-    add_functions_of(*a, errors);
-    if (!is_linear(a->axis)) rotary_.push_back(*a);
+void PreparedFunctions::add(std::size_t axis, std::size_t component, std::size_t joint,
+                            const ErrorFunction& f) {
+  if (f.is_zero()) return;
+  for (std::size_t i = 0; i < f.polynomial.size(); ++i) {
+    add_coefficient(i, component, axis, f.polynomial[i]);
   }
-  add_harmonics();
-  find_ends();
-  if (powers_.size() % 2 == 1) powers_.emplace_back();
-  program_.steps = steps_.data();
-  program_.number_of_steps = steps_.size();
-  program_.polynomial = powers_.data();
-  program_.pairs = powers_.size() / 2;
-  program_.waves = waves_.data();
-  program_.wave_blocks = waves_.size();
-  program_.harmonics = harmonics_.data();
-  program_.number_of_harmonics = harmonics_.size();
-  program_.has_terms = !harmonics_.empty() || !tables_.empty();
-  program_.is_cubic = powers_.size() == 4 && !program_.has_terms;
+  for (const Harmonic& h : f.harmonics) {
+    all_waves_.push_back({axis, component, h.amplitude, h.omega(), h.phase});
+  }
+  for (const LinearTable& t : f.tables) tables_.push_back({axis, component, joint, TableLookup(t)});
+  functions_.axes = std::max(functions_.axes, axis + 1);
+  functions_.has_angles = functions_.has_angles || component >= 3;
 }
 
-void VolumetricEvaluation::add_coefficient(std::size_t power, std::size_t component, int joint,
-                                           double value) {
+void PreparedFunctions::add_coefficient(std::size_t power, std::size_t component, std::size_t axis,
+                                        double value) {
   if (value == 0.0) return;  // does not raise the degree
   if (power >= powers_.size()) powers_.resize(power + 1);
-  powers_[power].e[component][static_cast<std::size_t>(joint)] += value;
-}
-
-void VolumetricEvaluation::add_steps_of(const ChainAxis& axis, const ErrorModel& errors) {
-  const Faults faults(axis, errors);
-  VolumetricStep step{};
-  step.direction = static_cast<std::uint8_t>(index_of(axis.axis) % 3);
-  step.joint = static_cast<std::uint8_t>(axis.joint);
-  step.has_angles = faults.has_component_angles;
-  Vector3d::Map(step.centre) = axis.centre;
-  // L = Rot(angles) Trans(shift)
-  const Matrix3d R = TurnOf(faults.angles).matrix();
-  for (int i = 0; i < 3; ++i) {
-    step.t[i] = faults.shift[i];
-    for (int j = 0; j < 3; ++j) step.R[i][j] = R(i, j);
-  }
-  const bool linear = is_linear(axis.axis), workpiece = axis.side == Side::workpiece;
-  if (linear) {
-    step.move = VolumetricMove::shift;
-    if (faults.has_components || faults.has_location()) step.move = VolumetricMove::faulty_shift;
-    // L T(q) L^-1 is a shift along R d; what it differs from d is counted as errors growing with q
-    const Vector3d d = Vector3d::Unit(step.direction), Rd = R * d;
-    if (!faults.angles.isZero(0.0)) {
-      for (int i = 0; i < 3; ++i) {
-        add_coefficient(1, static_cast<std::size_t>(i), axis.joint, Rd[i] - d[i]);
-      }
-    }
-    if (workpiece) Vector3d::Map(step.lever_slope) = Rd;
-    step.has_lever = workpiece || !axis.centre.isZero(0.0);
-    steps_.push_back(step);
-  } else {
-    step.has_lever = !axis.centre.isZero(0.0);
-    VolumetricStep fault = step;
-    fault.move = VolumetricMove::fault;
-    step.move = faults.has_location() ? VolumetricMove::tilted_turn : VolumetricMove::turn;
-    if (faults.has_components && !workpiece) steps_.push_back(fault);
-    steps_.push_back(step);
-    if (faults.has_components && workpiece) steps_.push_back(fault);
-  }
-  if (faults.has_components || (linear && faults.has_location())) {
-    program_.joints = std::max(program_.joints, static_cast<std::size_t>(axis.joint) + 1);
-  }
-  program_.has_angles = program_.has_angles || faults.has_component_angles;
-}
-
-void VolumetricEvaluation::add_functions_of(const ChainAxis& axis, const ErrorModel& errors) {
-  const auto joint = static_cast<std::size_t>(axis.joint);
-  for (const Axis direction : kAllAxes) {
-    const ErrorFunction& f = errors.component({direction, axis.axis, false});
-    if (f.is_zero()) continue;
-    const auto component = static_cast<std::size_t>(index_of(direction));
-    for (std::size_t i = 0; i < f.polynomial.size(); ++i) {
-      add_coefficient(i, component, axis.joint, f.polynomial[i]);
-    }
-    for (const Harmonic& h : f.harmonics) {
-      all_waves_.push_back({component, joint, h.amplitude, h.omega(), h.phase});
-    }
-    for (const LinearTable& t : f.tables) tables_.push_back({joint, component, TableLookup(t)});
-  }
+  powers_[power].e[component][axis] += value;
 }
 
 // Waves that differ in amplitude only share a sine.
-void VolumetricEvaluation::add_harmonics() {
+void PreparedFunctions::join_waves() {
   const auto same = [](const Wave& a, const Wave& b) {
-    return a.joint == b.joint && a.omega == b.omega && a.phase == b.phase;
+    return a.axis == b.axis && a.omega == b.omega && a.phase == b.phase;
   };
   std::size_t wave = 0;
   for (std::size_t i = 0; i < all_waves_.size(); ++i) {
@@ -195,11 +165,79 @@ void VolumetricEvaluation::add_harmonics() {
     if (lane == 0) waves_.emplace_back(VolumetricWaves{});
     waves_.back().omega[lane] = first.omega;
     waves_.back().phase[lane] = first.phase;
-    waves_.back().joint[lane] = static_cast<std::uint8_t>(first.joint);
+    waves_.back().axis[lane] = static_cast<std::uint8_t>(first.axis);
     std::for_each(here, all_waves_.end(), [&](const Wave& w) {
-      if (same(w, first)) harmonics_.push_back({wave, w.component, w.joint, w.amplitude});
+      if (!same(w, first)) return;
+      VolumetricHarmonic& h = harmonics_.emplace_back(VolumetricHarmonic{wave, w.component, {}});
+      h.amplitude[w.axis] = w.amplitude;
     });
     ++wave;
+  }
+  functions_.number_of_waves = wave;
+  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  harmonics_.emplace_back(VolumetricHarmonic{kNone, 0, {}});
+}
+
+VolumetricFunctions PreparedFunctions::finish() {
+  join_waves();
+  constexpr std::size_t kCubic = 4;  // coefficients
+  powers_.resize(std::max(powers_.size() + powers_.size() % 2, kCubic));
+  functions_.polynomial = powers_.data();
+  functions_.pairs = powers_.size() / 2;
+  functions_.waves = waves_.data();
+  functions_.harmonics = harmonics_.data();
+  functions_.has_terms = !waves_.empty() || !tables_.empty();
+  functions_.is_cubic = powers_.size() == kCubic && !functions_.has_terms;
+  return functions_;
+}
+
+// --- preparation --------------------------------------------------------------------------------
+
+VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const ErrorModel& errors,
+                                           SimdLevel level)
+    : kernel_(kernel_of(level)), straight_kernel_(straight_kernel_of(level)) {
+  for (auto a = chain.axes.rbegin(); a != chain.axes.rend(); ++a) {
+    add_steps_of(*a, errors);
+    if (!is_linear(a->axis)) rotary_.push_back(*a);
+  }
+  find_ends();
+  program_.steps = steps_.data();
+  program_.number_of_steps = steps_.size();
+  program_.functions = functions_.finish();
+  find_straight_way(chain, errors);
+}
+
+void VolumetricEvaluation::add_steps_of(const ChainAxis& axis, const ErrorModel& errors) {
+  const auto functions = functions_of(axis, errors);
+  const Faults faults(axis, errors, functions);
+  const auto joint = static_cast<std::size_t>(axis.joint);
+  for (std::size_t i = 0; i < kErrorComponents; ++i) functions_.add(joint, i, joint, functions[i]);
+  VolumetricStep step{};
+  step.direction = static_cast<std::uint8_t>(index_of(axis.axis) % 3);
+  step.joint = static_cast<std::uint8_t>(axis.joint);
+  step.has_angles = faults.has_angles;
+  Vector3d::Map(step.centre) = axis.centre;
+  // L = Rot(angles) Trans(shift)
+  const Matrix3d R = TurnOf(faults.angles).matrix();
+  for (int i = 0; i < 3; ++i) {
+    step.t[i] = faults.shift[i];
+    for (int j = 0; j < 3; ++j) step.R[i][j] = R(i, j);
+  }
+  const bool linear = is_linear(axis.axis), workpiece = axis.side == Side::workpiece;
+  if (linear) {
+    step.move = VolumetricMove::shift;
+    if (faults.has_functions) step.move = VolumetricMove::faulty_shift;
+    if (workpiece) Vector3d::Map(step.lever_slope) = R.col(step.direction);
+    step.has_lever = workpiece || !axis.centre.isZero(0.0);
+    steps_.push_back(step);
+  } else {
+    step.has_lever = !axis.centre.isZero(0.0);
+    VolumetricStep fault = step;
+    fault.move = VolumetricMove::fault;
+    step.move = faults.has_location() ? VolumetricMove::tilted_turn : VolumetricMove::turn;
+    if (faults.has_functions && !workpiece) steps_.push_back(fault);
+    steps_.push_back(step);
+    if (faults.has_functions && workpiece) steps_.push_back(fault);
   }
 }
 
@@ -215,6 +253,41 @@ void VolumetricEvaluation::find_ends() {
   offset_rotary_ = static_cast<std::size_t>(std::count_if(steps_.begin(), end, is_turn));
 }
 
+// Turns, which place the tip, and then three linear axes; what follows are turns that do not count.
+void VolumetricEvaluation::find_straight_way(const MachineChain& chain, const ErrorModel& errors) {
+  const std::size_t end = program_.offset_steps;
+  tip_turns_ = offset_rotary_;
+  if (end != tip_turns_ + kStraightAxes) return;
+  for (std::size_t n = 0; n < end; ++n) {
+    const VolumetricStep& step = steps_[n];
+    if (n < tip_turns_ ? step.move != VolumetricMove::turn : !is_shift(step)) return;
+  }
+  is_straight_ = true;
+  for (std::size_t n = 0; n < kStraightAxes; ++n) {
+    straight_.joint[n] = steps_[tip_turns_ + n].joint;
+  }
+  for (std::size_t n = 0; n < kStraightAxes; ++n) add_straight_axis(n, chain, errors);
+  straight_.functions = straight_functions_.finish();
+  straight_.functions.axes = kStraightAxes;
+}
+
+void VolumetricEvaluation::add_straight_axis(std::size_t n, const MachineChain& chain,
+                                             const ErrorModel& errors) {
+  const VolumetricStep& step = steps_[tip_turns_ + n];
+  const auto& order = straight_.joint;
+  const bool is_mirrored = (order[0] + 1) % 3 != order[1];
+  const auto functions = functions_of(chain.at(kAllAxes[step.direction]), errors);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t k = order[i];
+    straight_.lever[n].slope[i] = step.lever_slope[k];
+    straight_.lever[n].centre[i] = step.centre[k];
+    straight_functions_.add(n, i, step.joint, functions[k]);
+    straight_functions_.add(n, 3 + i, step.joint,
+                            scaled(functions[3 + k], is_mirrored ? -1.0 : 1.0));
+  }
+  straight_.lever[n].exists = step.has_lever;
+}
+
 // --- evaluation ---------------------------------------------------------------------------------
 
 void VolumetricEvaluation::one_with_data(VolumetricKernel::One call, std::size_t turned,
@@ -226,10 +299,11 @@ void VolumetricEvaluation::one_with_data(VolumetricKernel::One call, std::size_t
     data.cosine[joint] = m.cosine;
     data.sine[joint] = m.sine;
   }
-  if (program_.has_terms) data.tables = {};
-  for (const Table& t : tables_) {
-    data.tables.e[t.component][t.joint] += t.lookup.value(Q[static_cast<int>(t.joint)]);
-  }
+  if (program_.functions.has_terms) data.tables = {};
+  functions_.tables_at([&](std::size_t joint) { return Q[static_cast<int>(joint)]; },
+                       [&](std::size_t axis, std::size_t component, double value) {
+                         data.tables.e[component][axis] += value;
+                       });
   call(program_, &data, Q.data(), p_ST.data(), out);
 }
 
@@ -249,48 +323,150 @@ void VolumetricEvaluation::eight(VolumetricKernel::Many call, std::size_t turned
       data.sine[joint][lane] = m.sine;
     }
   }
-  if (program_.has_terms) {
-    for (std::size_t joint = 0; joint < program_.joints; ++joint) data.tables[joint] = {};
+  if (program_.functions.has_terms) {
+    for (std::size_t joint = 0; joint < program_.functions.axes; ++joint) data.tables[joint] = {};
   }
-  for (const Table& t : tables_) {
-    LaneArray& sum = data.tables[t.joint].e[t.component];
-    for (std::size_t lane = 0; lane < kLaneWidth; ++lane) {
-      sum[lane] += t.lookup.value(Q[lane][static_cast<int>(t.joint)]);
-    }
+  for (std::size_t lane = 0; lane < kLaneWidth; ++lane) {
+    functions_.tables_at([&](std::size_t joint) { return Q[lane][static_cast<int>(joint)]; },
+                         [&](std::size_t axis, std::size_t component, double value) {
+                           data.tables[axis].e[component][lane] += value;
+                         });
   }
   call(program_, &data, Q->data(), 1, p_ST.data(), out);
 }
 
-void VolumetricEvaluation::many(VolumetricKernel::Many call, std::size_t turned,
-                                std::size_t numbers, std::span<const Joints> Q,
-                                const Vector3d& p_ST, double* out) const {
+namespace {
+
+// Calls f(poses, number of blocks, out) for all whole blocks of eight, and for what is left with
+// its last pose repeated.
+template <class F>
+void in_blocks(std::span<const Joints> Q, std::size_t numbers, double* out, F f) {
   const std::size_t blocks = Q.size() / kLaneWidth, rest = Q.size() % kLaneWidth;
-  const bool alone = turned == 0 && tables_.empty();
-  if (alone && blocks > 0) call(program_, nullptr, Q.front().data(), blocks, p_ST.data(), out);
-  for (std::size_t block = 0; !alone && block < blocks; ++block) {
-    eight(call, turned, &Q[block * kLaneWidth], p_ST, out + block * kLaneWidth * numbers);
-  }
+  if (blocks > 0) f(Q.data(), blocks, out);
   if (rest == 0) return;
-  // the last ones with their last repeated
   std::array<Joints, kLaneWidth> filled;
   filled.fill(Q.back());
   std::copy(Q.end() - static_cast<std::ptrdiff_t>(rest), Q.end(), filled.begin());
   std::array<double, kLaneWidth * 6> result;
-  eight(call, turned, filled.data(), p_ST, result.data());
+  f(filled.data(), std::size_t{1}, result.data());
   std::copy_n(result.begin(), rest * numbers, out + blocks * kLaneWidth * numbers);
+}
+
+constexpr std::size_t kTool = 6, kOffset = 3;  // numbers
+
+}  // namespace
+
+void VolumetricEvaluation::many(VolumetricKernel::Many call, std::size_t turned,
+                                std::size_t numbers, std::span<const Joints> Q,
+                                const Vector3d& p_ST, double* out) const {
+  in_blocks(Q, numbers, out, [&](const Joints* poses, std::size_t blocks, double* to) {
+    if (turned == 0 && !functions_.has_tables()) {
+      call(program_, nullptr, poses->data(), blocks, p_ST.data(), to);
+      return;
+    }
+    for (std::size_t n = 0; n < blocks; ++n) {
+      eight(call, turned, poses + n * kLaneWidth, p_ST, to + n * kLaneWidth * numbers);
+    }
+  });
 }
 
 void VolumetricEvaluation::tools(std::span<const Joints> Q, const Vector3d& p_ST,
                                  double* out) const {
-  many(kernel_.tools, rotary_.size(), 6, Q, p_ST, out);
+  many(kernel_.tools, rotary_.size(), kTool, Q, p_ST, out);
 }
 void VolumetricEvaluation::errors(std::span<const Joints> Q, const Vector3d& p_ST,
                                   double* out) const {
-  many(kernel_.errors, rotary_.size(), 6, Q, p_ST, out);
+  many(kernel_.errors, rotary_.size(), kTool, Q, p_ST, out);
 }
+
+// --- offsets ------------------------------------------------------------------------------------
+
+template <class Coordinate>
+Vector3d VolumetricEvaluation::tip_before_linear_axes(const Coordinate& q,
+                                                      const Vector3d& p_ST) const {
+  ToolPose tip{p_ST};
+  for (std::size_t n = 0; n < tip_turns_; ++n) {
+    const ChainAxis& axis = rotary_[n];
+    apply(axis, motion_at(axis, q(static_cast<std::size_t>(axis.joint))), tip);
+  }
+  return tip.p_WT;
+}
+
+// q(lane, joint)
+template <class Coordinate>
+StraightData VolumetricEvaluation::data_of_eight(const Coordinate& q, const Vector3d& p_ST) const {
+  StraightData data{};
+  for (std::size_t lane = 0; lane < kLaneWidth; ++lane) {
+    const auto at = [&](std::size_t joint) { return q(lane, joint); };
+    const Vector3d tip = tip_before_linear_axes(at, p_ST);
+    for (std::size_t i = 0; i < kOffset; ++i) data.tip[i][lane] = tip[static_cast<int>(i)];
+    straight_functions_.tables_at(at, [&](std::size_t axis, std::size_t component, double value) {
+      data.tables[axis].e[component][lane] += value;
+    });
+  }
+  return data;
+}
+
+void VolumetricEvaluation::other_offset(const Joints& Q, const Vector3d& p_ST, double* out) const {
+  if (!is_straight_) {
+    one(kernel_.offset, offset_rotary_, Q, p_ST, out);
+    return;
+  }
+  const auto at = [&](std::size_t joint) { return Q[static_cast<int>(joint)]; };
+  VolumetricPower tables{};
+  straight_functions_.tables_at(at, [&](std::size_t axis, std::size_t component, double value) {
+    tables.e[component][axis] += value;
+  });
+  const Vector3d tip = tip_before_linear_axes(at, p_ST);
+  straight_kernel_.one(straight_, &tables, tip.data(), Q.data(), out);
+}
+
 void VolumetricEvaluation::offsets(std::span<const Joints> Q, const Vector3d& p_ST,
                                    double* out) const {
-  many(kernel_.offsets, offset_rotary_, 3, Q, p_ST, out);
+  if (is_straight_) {
+    straight_offsets(Q, p_ST, out);
+  } else {
+    many(kernel_.offsets, offset_rotary_, kOffset, Q, p_ST, out);
+  }
+}
+
+void VolumetricEvaluation::straight_offsets(std::span<const Joints> Q, const Vector3d& p_ST,
+                                            double* out) const {
+  in_blocks(Q, kOffset, out, [&](const Joints* poses, std::size_t blocks, double* to) {
+    if (is_plain()) {
+      straight_kernel_.many(straight_, nullptr, p_ST.data(), poses->data(), blocks, to);
+      return;
+    }
+    for (std::size_t n = 0; n < blocks; ++n, poses += kLaneWidth, to += kOffset * kLaneWidth) {
+      const StraightData data = data_of_eight(
+          [&](std::size_t lane, std::size_t joint) { return poses[lane][static_cast<int>(joint)]; },
+          p_ST);
+      straight_kernel_.many(straight_, &data, p_ST.data(), poses->data(), 1, to);
+    }
+  });
+}
+
+void VolumetricEvaluation::offsets(const LaneArray (&Q)[kJoints], const Vector3d& p_ST,
+                                   LaneArray (&out)[kLinearJoints]) const {
+  if (is_plain()) {
+    straight_kernel_.lanes(straight_, nullptr, p_ST.data(), Q, out);
+    return;
+  }
+  if (is_straight_) {
+    const StraightData data =
+        data_of_eight([&](std::size_t lane, std::size_t joint) { return Q[joint][lane]; }, p_ST);
+    straight_kernel_.lanes(straight_, &data, p_ST.data(), Q, out);
+    return;
+  }
+  std::array<Joints, kLaneWidth> poses;
+  std::array<double, kOffset * kLaneWidth> result;
+  for (std::size_t lane = 0; lane < kLaneWidth; ++lane) {
+    for (std::size_t j = 0; j < kMachineJoints; ++j) poses[lane][static_cast<int>(j)] = Q[j][lane];
+  }
+  offsets(poses, p_ST, result.data());
+  for (std::size_t lane = 0; lane < kLaneWidth; ++lane) {
+    for (std::size_t i = 0; i < kOffset; ++i) out[i][lane] = result[kOffset * lane + i];
+  }
 }
 
 }  // namespace servomill::plant

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "plant/geometry/error_model.h"
+#include "plant/geometry/straight_kernel.h"
 #include "plant/geometry/volumetric_kernel.h"
 #include "plant/kinematics/chain.h"
 
@@ -28,6 +29,45 @@ class TableLookup {
   std::vector<std::uint32_t> interval_of_bucket_;  // in which the bucket begins
 };
 
+/// The functions of axes, laid out for kernels.
+class PreparedFunctions {
+ public:
+  /// Adds the function of an error.
+  /// @param axis   as the program counts axes
+  /// @param joint  its place in Joints
+  void add(std::size_t axis, std::size_t component, std::size_t joint, const ErrorFunction& f);
+
+  /// All that were added. Points into this.
+  VolumetricFunctions finish();
+
+  bool has_tables() const { return !tables_.empty(); }
+  /// add(axis, component, value) for the value of each table at q(joint).
+  template <class Coordinate, class Add>
+  void tables_at(const Coordinate& q, const Add& add_value) const {
+    for (const Table& t : tables_) add_value(t.axis, t.component, t.lookup.value(q(t.joint)));
+  }
+
+ private:
+  struct Table {
+    std::size_t axis, component, joint;
+    TableLookup lookup;
+  };
+  struct Wave {
+    std::size_t axis, component;
+    double amplitude, omega, phase;
+  };
+
+  void add_coefficient(std::size_t power, std::size_t component, std::size_t axis, double value);
+  void join_waves();
+
+  std::vector<VolumetricPower> powers_;  // c0, c1, ...
+  std::vector<Wave> all_waves_;
+  std::vector<VolumetricWaves> waves_;
+  std::vector<VolumetricHarmonic> harmonics_;
+  std::vector<Table> tables_;
+  VolumetricFunctions functions_{};
+};
+
 /// Constant after construction. Numbers behind `out`: 6 of a tool (tip, axis), 6 of an error (of
 /// the tip, of the axis), 3 of an offset (X, Y, Z; only where three linear axes are orthogonal),
 /// for each pose.
@@ -45,26 +85,35 @@ class VolumetricEvaluation {
     one(kernel_.error, rotary_.size(), Q, p_ST, out);
   }
   void offset(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const {
-    one(kernel_.offset, offset_rotary_, Q, p_ST, out);
+    if (is_plain()) {
+      straight_kernel_.one(straight_, nullptr, p_ST.data(), Q.data(), out);
+    } else {
+      other_offset(Q, p_ST, out);
+    }
   }
   void tools(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
   void errors(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
   void offsets(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
+  void offsets(const LaneArray (&Q)[kJoints], const Eigen::Vector3d& p_ST,
+               LaneArray (&out)[kLinearJoints]) const;
+
+  /// The offset goes the straight way (straight_kernel.h).
+  bool is_straight() const { return is_straight_; }
 
  private:
-  struct Table {
-    std::size_t joint, component;
-    TableLookup lookup;
-  };
+  // Straight, and nothing is to be found before the kernel is called.
+  bool is_plain() const {
+    return is_straight_ && tip_turns_ == 0 && !straight_functions_.has_tables();
+  }
 
   void add_steps_of(const ChainAxis& axis, const ErrorModel& errors);
-  void add_functions_of(const ChainAxis& axis, const ErrorModel& errors);
-  void add_harmonics();
-  void add_coefficient(std::size_t power, std::size_t component, int joint, double value);
   void find_ends();
+  void find_straight_way(const MachineChain& chain, const ErrorModel& errors);
+  void add_straight_axis(std::size_t n, const MachineChain& chain, const ErrorModel& errors);
+
   void one(VolumetricKernel::One call, std::size_t turned, const Joints& Q,
            const Eigen::Vector3d& p_ST, double* out) const {
-    if (turned == 0 && tables_.empty()) {
+    if (turned == 0 && !functions_.has_tables()) {
       call(program_, nullptr, Q.data(), p_ST.data(), out);
     } else {
       one_with_data(call, turned, Q, p_ST, out);
@@ -72,25 +121,29 @@ class VolumetricEvaluation {
   }
   void one_with_data(VolumetricKernel::One call, std::size_t turned, const Joints& Q,
                      const Eigen::Vector3d& p_ST, double* out) const;
+  void other_offset(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const;
   void many(VolumetricKernel::Many call, std::size_t turned, std::size_t numbers,
             std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
   void eight(VolumetricKernel::Many call, std::size_t turned, const Joints* Q,
              const Eigen::Vector3d& p_ST, double* out) const;
+  void straight_offsets(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
+  template <class Coordinate>
+  Eigen::Vector3d tip_before_linear_axes(const Coordinate& q, const Eigen::Vector3d& p_ST) const;
+  template <class Coordinate>
+  StraightData data_of_eight(const Coordinate& q, const Eigen::Vector3d& p_ST) const;
 
   VolumetricKernel kernel_;
   VolumetricProgram program_{};
   std::vector<VolumetricStep> steps_;
-  std::vector<VolumetricPower> powers_;  // c0, c1, ...
-  std::vector<VolumetricWaves> waves_;
-  struct Wave {
-    std::size_t component, joint;
-    double amplitude, omega, phase;
-  };
-  std::vector<Wave> all_waves_;
-  std::vector<VolumetricHarmonic> harmonics_;
-  std::vector<Table> tables_;
+  PreparedFunctions functions_;    // axes counted as joints
   std::vector<ChainAxis> rotary_;  // in the order of the steps
   std::size_t offset_rotary_ = 0;  // those among the steps that offsets need
+
+  bool is_straight_ = false;
+  StraightKernel straight_kernel_;
+  StraightProgram straight_{};
+  PreparedFunctions straight_functions_;  // axes counted as the tool passes them
+  std::size_t tip_turns_ = 0;             // rotary axes before the linear ones
 };
 
 }  // namespace servomill::plant

@@ -1,4 +1,5 @@
-/// The arithmetic of VolumetricModel, compiled for each instruction set (plant/vocabulary/simd.h).
+/// The arithmetic of VolumetricModel in general, compiled for each instruction set
+/// (plant/vocabulary/simd.h).
 ///
 /// The tool travels through a list of steps, from the spindle to the workpiece. A fault, the errors
 /// of one axis, moves it by
@@ -9,6 +10,8 @@
 /// with the axes in lanes, for many with the poses in lanes. Both run the same formulas with the
 /// same roundings, so that a pose has the same bits alone and among others. Machines with AVX2 and
 /// with AVX-512 agree in every bit; the baseline, which rounds a b + c twice, differs by rounding.
+///
+/// The offset of most machines needs less: straight_kernel.h.
 #pragma once
 
 #include <cstddef>
@@ -42,40 +45,45 @@ struct VolumetricStep {
   double R[3][3], t[3];           // m; a tilted turn is R T J T^-1 R^T with T = Trans(t)
 };
 
-/// Eight waves amplitude sin(omega q + phase), amplitudes aside.
+/// Eight waves sin(omega q + phase).
 struct VolumetricWaves {
   LaneArray omega, phase;  // 1/m or 1, rad
-  std::uint8_t joint[kLaneWidth];
+  std::uint8_t axis[kLaneWidth];
 };
 
 /// What one wave adds to one error.
 struct VolumetricHarmonic {
   std::size_t wave;  // 8 x block + lane
-  std::size_t component, joint;
-  double amplitude;  // m or rad
+  std::size_t component;
+  LaneArray amplitude;  // m or rad; lanes: axes, 0 in all but that of the wave
 };
 
-/// A power of q times the coefficients of each error: [component], lanes: joints.
+/// The coefficients of a power of q, or other numbers: [component], lanes: axes.
 struct VolumetricPower {
   LaneArray e[kErrorComponents];
+};
+
+/// Polynomials and harmonics of axes, which are counted as the program that uses them does.
+struct VolumetricFunctions {
+  const VolumetricPower* polynomial;  // c0, c1, ...; an even number of them
+  std::size_t pairs;                  // of coefficients, >= 2
+  const VolumetricWaves* waves;
+  std::size_t number_of_waves;
+  const VolumetricHarmonic* harmonics;  // in the order of their waves; behind the last one stands
+                                        // one of a wave that there is not
+  std::size_t axes;                     // 1 + the last axis that has errors, or 0
+  bool has_angles;                      // some error is an angle
+  bool has_terms;                       // beyond polynomials: harmonics or tables
+  bool is_cubic;                        // degree 3, no terms
 };
 
 /// A machine and its errors. Points into memory of its owner.
 struct VolumetricProgram {
   const VolumetricStep* steps;  // in the order in which they move the tool
   std::size_t number_of_steps;
-  std::size_t offset_steps;  // without the last ones, ideal turns, which offsets undo at once
-  std::size_t linear_end;    // behind the last linear step: what follows are turns and faults
-  const VolumetricPower* polynomial;  // c0, c1, ...; an even number of them
-  std::size_t pairs;                  // of coefficients, >= 2
-  bool is_cubic;                      // degree 3, all c0 are 0, no terms
-  bool has_angles;                    // some error is an angle
-  std::size_t joints;                 // 1 + the last joint that has errors, or 0
-  const VolumetricWaves* waves;
-  std::size_t wave_blocks;
-  const VolumetricHarmonic* harmonics;
-  std::size_t number_of_harmonics;
-  bool has_terms;  // beyond polynomials: harmonics or tables
+  std::size_t offset_steps;       // without the last ones, ideal turns, which offsets undo at once
+  std::size_t linear_end;         // behind the last linear step: what follows are turns and faults
+  VolumetricFunctions functions;  // counted as joints
 };
 
 /// What the kernel does not compute: turned rotary joints, and values of tables.

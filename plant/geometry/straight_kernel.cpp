@@ -1,0 +1,241 @@
+#include "plant/geometry/straight_kernel.h"
+
+#include <cstring>
+
+#include "plant/geometry/volumetric_faults.h"
+
+namespace servomill::plant {
+namespace {
+
+// --- the way of the tool ------------------------------------------------------------------------
+
+template <class N>
+SERVOMILL_INLINE Vector<N> plus(const Vector<N>& p, const Vector<N>& q) {
+  return {p.v[0] + q.v[0], p.v[1] + q.v[1], p.v[2] + q.v[2]};
+}
+
+template <class N>
+SERVOMILL_INLINE Vector<N> lever_at(const StraightLever& lever, const N& q) {
+  Vector<N> l;
+  for (std::size_t i = 0; i < 3; ++i) {
+    l.v[i] = fms(q, all<N>(lever.slope[i]), all<N>(lever.centre[i]));
+  }
+  return l;
+}
+
+// D behind the last axis. P: ideal tip before the first. fault(axis).
+template <class N, class F>
+SERVOMILL_INLINE Vector<N> deviation(const StraightProgram& program, const N (&q)[kStraightAxes],
+                                     Vector<N> P, F fault) {
+  Vector<N> D;
+  repeat<kStraightAxes>([&](auto axis) {
+    const auto f = fault(axis);
+    const Vector<N> w{f.w(0), f.w(1), f.w(2)};
+    Vector<N> u = axis == 0 ? P : plus(P, D);
+    D = axis == 0 ? w : plus(D, w);
+    if (program.functions.has_angles) {
+      if (program.lever[axis].exists) u = plus(u, lever_at(program.lever[axis], q[axis]));
+      D = turned_by(f, u, D);
+    }
+    P.v[axis] = P.v[axis] + q[axis];
+  });
+  return D;
+}
+
+// Numbers along X, Y, Z in the order of the axes.
+template <class N>
+SERVOMILL_INLINE Vector<N> in_order(const StraightProgram& program, const N* xyz) {
+  return {xyz[program.joint[0]], xyz[program.joint[1]], xyz[program.joint[2]]};
+}
+
+// --- one pose -----------------------------------------------------------------------------------
+
+// False where this way does not lead to the end.
+template <Way way>
+SERVOMILL_INLINE bool try_one(const StraightProgram& program, const VolumetricPower* tables,
+                              const double* tip, const double* Q, double* out) {
+  const Vector<double> q = in_order(program, Q);
+  OnePoseFaults faults;
+  if (!find_faults<way, kStraightAxes>(program.functions, tables, q.v, faults)) return false;
+  const Vector<double> D = deviation(program, q.v, in_order(program, tip), [&](std::size_t axis) {
+    return FaultInMemory{faults, axis};
+  });
+  for (std::size_t n = 0; n < 3; ++n) out[program.joint[n]] = D.v[n];
+  return true;
+}
+
+[[gnu::noinline]] void one_in_general(const StraightProgram& program, const VolumetricPower* tables,
+                                      const double* tip, const double* Q, double* out) {
+  try_one<Way::general>(program, tables, tip, Q, out);
+}
+
+[[gnu::noinline]] void one_with_terms(const StraightProgram& program, const VolumetricPower* tables,
+                                      const double* tip, const double* Q, double* out) {
+  if (!try_one<Way::small>(program, tables, tip, Q, out)) {
+    one_in_general(program, tables, tip, Q, out);
+  }
+}
+
+void one(const StraightProgram& program, const VolumetricPower* tables, const double* tip,
+         const double* Q, double* out) {
+  if (!program.functions.is_cubic) {
+    one_with_terms(program, tables, tip, Q, out);
+  } else if (!try_one<Way::cubic>(program, tables, tip, Q, out)) {
+    one_in_general(program, tables, tip, Q, out);
+  }
+}
+
+// --- many poses in lanes ------------------------------------------------------------------------
+
+// Some of eight poses: the lanes from `first` on of the data, and X, Y, Z of their joints.
+struct Poses {
+  const StraightData* data;
+  const double* tip;
+  std::size_t first;
+  Register Q[3];
+};
+
+SERVOMILL_INLINE Vector<Register> tip_of(const StraightProgram& program, const Poses& poses) {
+  Vector<Register> tip;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const std::size_t i = program.joint[n];
+    tip.v[n] =
+        poses.data != nullptr ? load(poses.data->tip[i], poses.first) : all<Register>(poses.tip[i]);
+  }
+  return tip;
+}
+
+template <Way way>
+SERVOMILL_INLINE bool try_many(const StraightProgram& program, const Poses& poses,
+                               Register (&out)[3]) {
+  const VolumetricFunctions& functions = program.functions;
+  const Vector<Register> q = in_order(program, poses.Q);
+  Register sums[kStraightAxes][kErrorComponents];
+  if constexpr (way != Way::cubic) {
+    const VolumetricPower* const tables = poses.data != nullptr ? poses.data->tables : nullptr;
+    if (functions.has_terms) find_terms(functions, tables, poses.first, q.v, sums);
+  }
+  Register t2_max{};
+  const Vector<Register> D = deviation(program, q.v, tip_of(program, poses), [&](std::size_t axis) {
+    const auto coefficient = [&](std::size_t power, std::size_t component) {
+      return all<Register>(functions.polynomial[power].e[component][axis]);
+    };
+    const auto terms = [&](std::size_t component) { return sums[axis][component]; };
+    Fault f;
+    find_fault<way>(functions, functions.has_angles, q.v[axis], coefficient, terms, f, t2_max);
+    return f;
+  });
+  for (std::size_t n = 0; n < 3; ++n) out[program.joint[n]] = D.v[n];
+  return way == Way::general || are_small_turns(t2_max);
+}
+
+[[gnu::noinline]] void many_in_general(const StraightProgram& program, const Poses& poses,
+                                       Register (&out)[3]) {
+  try_many<Way::general>(program, poses, out);
+}
+
+SERVOMILL_INLINE void find_offsets(const StraightProgram& program, const Poses& poses,
+                                   Register (&out)[3]) {
+  const bool done = program.functions.is_cubic ? try_many<Way::cubic>(program, poses, out)
+                                               : try_many<Way::small>(program, poses, out);
+  if (!done) many_in_general(program, poses, out);
+}
+
+void lanes(const StraightProgram& program, const StraightData* data, const double* tip,
+           const LaneArray* Q, LaneArray* out) {
+  for (std::size_t first = 0; first < kLaneWidth; first += kRegister) {
+    const Poses poses{data, tip, first, {load(Q[0], first), load(Q[1], first), load(Q[2], first)}};
+    Register offset[3];
+    find_offsets(program, poses, offset);
+    repeat<3>([&](auto i) { store(offset[i], out[i], first); });
+  }
+}
+
+// --- poses one behind the other -----------------------------------------------------------------
+
+// X, Y, Z of one pose and the number behind them.
+using Pose [[gnu::vector_size(4 * sizeof(double))]] = double;
+
+#if defined(__AVX__)
+// Four, or two times four, transposed: pairs of poses first, then pairs of pairs.
+SERVOMILL_INLINE Pose pose_at(const double* Q) {
+  Pose P;
+  std::memcpy(&P, Q, sizeof P);
+  return P;
+}
+#if defined(__AVX512F__)
+SERVOMILL_INLINE void take_poses(const double* Q, Register (&xyz)[3]) {
+  const auto two = [Q](std::size_t n) {  // poses n and n + 2
+    return __builtin_shufflevector(pose_at(Q + kMachineJoints * n),
+                                   pose_at(Q + kMachineJoints * (n + 2)), 0, 1, 2, 3, 4, 5, 6, 7);
+  };
+  const Register p02 = two(0), p13 = two(1), p46 = two(4), p57 = two(5);
+  const Register xz_low = __builtin_shufflevector(p02, p13, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Register xz_high = __builtin_shufflevector(p46, p57, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Register y_low = __builtin_shufflevector(p02, p13, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Register y_high = __builtin_shufflevector(p46, p57, 1, 9, 3, 11, 5, 13, 7, 15);
+  xyz[0] = __builtin_shufflevector(xz_low, xz_high, 0, 1, 4, 5, 8, 9, 12, 13);
+  xyz[1] = __builtin_shufflevector(y_low, y_high, 0, 1, 4, 5, 8, 9, 12, 13);
+  xyz[2] = __builtin_shufflevector(xz_low, xz_high, 2, 3, 6, 7, 10, 11, 14, 15);
+}
+#else
+SERVOMILL_INLINE void take_poses(const double* Q, Register (&xyz)[3]) {
+  const auto at = [Q](std::size_t n) { return pose_at(Q + kMachineJoints * n); };
+  const Register p0 = at(0), p1 = at(1), p2 = at(2), p3 = at(3);
+  const Register xz_low = __builtin_shufflevector(p0, p1, 0, 4, 2, 6);
+  const Register xz_high = __builtin_shufflevector(p2, p3, 0, 4, 2, 6);
+  const Register y_low = __builtin_shufflevector(p0, p1, 1, 5, 3, 7);
+  const Register y_high = __builtin_shufflevector(p2, p3, 1, 5, 3, 7);
+  xyz[0] = __builtin_shufflevector(xz_low, xz_high, 0, 1, 4, 5);
+  xyz[1] = __builtin_shufflevector(y_low, y_high, 0, 1, 4, 5);
+  xyz[2] = __builtin_shufflevector(xz_low, xz_high, 2, 3, 6, 7);
+}
+#endif
+#else
+SERVOMILL_INLINE void take_poses(const double* Q, Register (&xyz)[3]) {
+  repeat<3>([&](auto i) {
+    xyz[i] = lanes_from([&](std::size_t lane) { return Q[kMachineJoints * lane + i]; });
+  });
+}
+#endif
+
+// Number `flat` of the poses one behind the other: among the lanes of X and Y, or of those and Z.
+constexpr int place_in_xy(std::size_t flat) {
+  const std::size_t direction = flat % 3;
+  return static_cast<int>(direction == 2 ? 0 : direction * kRegister + flat / 3);
+}
+constexpr int place_in_xyz(std::size_t flat, std::size_t lane) {
+  return static_cast<int>(flat % 3 == 2 ? kRegister + flat / 3 : lane);
+}
+
+template <std::size_t... lane>
+SERVOMILL_INLINE void put_poses(const Register (&xyz)[3], double* out,
+                                std::index_sequence<lane...>) {
+  repeat<3>([&](auto part) {
+    constexpr std::size_t first = part() * kRegister;
+    const Register xy = __builtin_shufflevector(xyz[0], xyz[1], place_in_xy(first + lane)...);
+    store(__builtin_shufflevector(xy, xyz[2], place_in_xyz(first + lane, lane)...), out + first);
+  });
+}
+
+void many(const StraightProgram& program, const StraightData* data, const double* tip,
+          const double* Q, std::size_t blocks, double* out) {
+  for (std::size_t n = 0; n < blocks * kLaneWidth; n += kRegister) {
+    Poses poses{data, tip, n % kLaneWidth, {}};
+    take_poses(Q, poses.Q);
+    Register offset[3];
+    find_offsets(program, poses, offset);
+    put_poses(offset, out, std::make_index_sequence<kRegister>());
+    Q += kMachineJoints * kRegister;
+    out += 3 * kRegister;
+  }
+}
+
+}  // namespace
+
+template <>
+StraightKernel make_straight_kernel<SERVOMILL_LEVEL>() {
+  return {&one, &many, &lanes};
+}
+
+}  // namespace servomill::plant

@@ -1,0 +1,66 @@
+/// The offset of a straight machine, the rule among machines: X, Y and Z follow each other in any
+/// order and on any side of the bed, and no other axis has errors. The tool travels through the
+/// three, from the spindle to the workpiece; each shifts the ideal tip P by q along its direction
+/// and adds to the deviation D of the true tip
+///
+///     D <- D + w + (R - 1)(P + D + slope q - c)        P <- P + q
+///
+/// with the shift w and the turn R of its errors, both about c. What is left after the third is the
+/// offset: ideal turns behind it are undone at once, ideal turns before it only place the tip.
+///
+/// Directions are renamed in the order in which the tool passes their axes: axis 0 moves along
+/// direction 0. Where that mirrors X Y Z, all angles are counted with the opposite sign.
+#pragma once
+
+#include "plant/geometry/volumetric_kernel.h"
+
+namespace servomill::plant {
+
+inline constexpr std::size_t kStraightAxes = 3;
+
+/// The lever of a turn begins at c - slope q (plant/geometry/volumetric_kernel.h).
+struct StraightLever {
+  bool exists;                                         // one of the numbers is not 0
+  double slope[kStraightAxes], centre[kStraightAxes];  // m/m, m
+};
+
+/// Points into memory of its owner.
+struct StraightProgram {
+  std::uint8_t joint[kStraightAxes];  // place in Joints and direction of axes 0, 1, 2
+  StraightLever lever[kStraightAxes];
+  VolumetricFunctions functions;
+};
+
+/// What the kernel does not compute of eight poses (lanes: poses): values of tables, and the tip
+/// before it passes the first axis (m; X, Y, Z).
+struct StraightData {
+  VolumetricPower tables[kStraightAxes];
+  LaneArray tip[kStraightAxes];
+};
+
+/// Q: joints of one pose (5), of `blocks` times eight poses one behind the other, or of eight in
+/// lanes ([5]). out: offset along X, Y, Z (m), in the same form.
+/// tables, tip: of one pose; no tables: null. data: of eight poses, for one block only; null where
+/// there are no tables and the tip is that of all.
+struct StraightKernel {
+  void (*one)(const StraightProgram&, const VolumetricPower* tables, const double* tip,
+              const double* Q, double* out);
+  void (*many)(const StraightProgram&, const StraightData* data, const double* tip, const double* Q,
+               std::size_t blocks, double* out);
+  void (*lanes)(const StraightProgram&, const StraightData* data, const double* tip,
+                const LaneArray* Q, LaneArray* out);
+};
+
+template <SimdLevel level>
+StraightKernel make_straight_kernel();
+
+template <>
+StraightKernel make_straight_kernel<SimdLevel::baseline>();
+#ifdef SERVOMILL_X86
+template <>
+StraightKernel make_straight_kernel<SimdLevel::avx2>();
+template <>
+StraightKernel make_straight_kernel<SimdLevel::avx512>();
+#endif
+
+}  // namespace servomill::plant

@@ -1,0 +1,210 @@
+/// The errors of the axes at given coordinates, and how they move the tool: what the volumetric
+/// kernels share. Only kernels include this.
+///
+/// A fault, the errors of one axis, moves the tool by p <- R (p - c) + c + w, k <- R k.
+#pragma once
+
+#include "plant/geometry/volumetric_kernel.h"
+#include "plant/geometry/volumetric_registers.h"
+
+namespace servomill::plant {
+namespace {  // NOLINT: one copy for each instruction set
+
+// --- the turn of a vector of angles -------------------------------------------------------------
+
+// Rot(e) v = v + a e x (v + h e x v), with h = tan(t/2)/t, a = sin t/t for t = |e|.
+struct TurnFactors {
+  Register a, h;
+};
+
+SERVOMILL_INLINE TurnFactors small_turn_factors(const Register& t2) {
+  return {fnma(t2, all<Register>(1.0 / 6.0), all<Register>(1.0)),
+          fma(t2, all<Register>(1.0 / 24.0), all<Register>(0.5))};
+}
+
+// a is computed from h: what belongs together turns by some angle, even where h is large.
+inline TurnFactors turn_factors(const Register& t2) {
+  TurnFactors f = small_turn_factors(t2);
+  for (std::size_t n = 0; n < kRegister; ++n) {
+    if (t2[n] < kSmallTurn * kSmallTurn) continue;
+    const double t = std::sqrt(t2[n]), quarter = sine(0.25 * t);
+    const double cosine = fnma(2.0 * quarter, quarter, 1.0);
+    const double tangent = sine(0.5 * t) / (cosine == 0.0 ? 0x1p-54 : cosine);
+    f.h[n] = tangent / t;
+    f.a[n] = 2.0 * f.h[n] / fma(tangent, tangent, 1.0);
+  }
+  return f;
+}
+
+// v + (R - 1) p
+template <class N, class F>
+SERVOMILL_INLINE Vector<N> turned_by(const F& f, const Vector<N>& p, const Vector<N>& v) {
+  const Vector<N> a{f.a(0), f.a(1), f.a(2)}, h{f.h(0), f.h(1), f.h(2)};
+  return plus_cross(v, a, plus_cross(p, h, p));
+}
+
+// Ways through the same formulas, each for more cases than the one before. One that finds a turn
+// too large for it is given up, to be gone again in general.
+enum class Way {
+  cubic,   // cubic polynomials and small turns: calls nothing
+  small,   // any functions, small turns
+  general  // any functions, any turns
+};
+
+SERVOMILL_INLINE bool are_small_turns(const Register& t2_max) {
+  return !xsimd::any(Batch(t2_max) >= Batch(kSmallTurn * kSmallTurn));
+}
+
+// --- the errors of an axis ----------------------------------------------------------------------
+
+// w, and the turn as a e and h e.
+struct Fault {
+  Register w_[3], a_[3], h_[3];
+
+  SERVOMILL_INLINE const Register& w(std::size_t i) const { return w_[i]; }
+  SERVOMILL_INLINE const Register& a(std::size_t i) const { return a_[i]; }
+  SERVOMILL_INLINE const Register& h(std::size_t i) const { return h_[i]; }
+};
+
+// Several components at once; coefficient(power, component), terms(component). Even and odd pairs
+// of powers, (c0 + c1 q) + (c2 + c3 q) q^2 + ..., which wait for each other half as long as
+// Horner's rule.
+template <Way way, std::size_t kComponents, class F, class G>
+SERVOMILL_INLINE void evaluate(const VolumetricFunctions& functions, const Register& q,
+                               F coefficient, G terms, Register (&e)[kErrorComponents]) {
+  const Register q2 = q * q;
+  const auto pair = [&](std::size_t i, auto c) {
+    return fma(coefficient(2 * i + 1, c), q, coefficient(2 * i, c));
+  };
+  const std::size_t last = way == Way::cubic ? 1 : functions.pairs - 1;
+  repeat<kComponents>([&](auto c) { e[c] = pair(last, c); });
+  for (std::size_t i = last; i-- > 0;) {
+    repeat<kComponents>([&](auto c) { e[c] = fma(e[c], q2, pair(i, c)); });
+  }
+  if constexpr (way != Way::cubic) {
+    if (functions.has_terms) repeat<kComponents>([&](auto c) { e[c] = e[c] + terms(c); });
+  }
+}
+
+template <Way way>
+SERVOMILL_INLINE void set_turn(const Register (&e)[kErrorComponents], Fault& fault,
+                               Register& t2_max) {
+  const Register t2 = fma(e[5], e[5], fma(e[4], e[4], e[3] * e[3]));
+  const auto [a, h] = way == Way::general ? turn_factors(t2) : small_turn_factors(t2);
+  t2_max = xsimd::max(Batch(t2_max), Batch(t2));
+  for (std::size_t i = 0; i < 3; ++i) {
+    fault.a_[i] = a * e[3 + i];
+    fault.h_[i] = h * e[3 + i];
+  }
+}
+
+template <Way way, class F, class G>
+SERVOMILL_INLINE void find_fault(const VolumetricFunctions& functions, bool has_angles,
+                                 const Register& q, F coefficient, G terms, Fault& fault,
+                                 Register& t2_max) {
+  Register e[kErrorComponents];
+  if (has_angles) {
+    evaluate<way, 6>(functions, q, coefficient, terms, e);
+    set_turn<way>(e, fault, t2_max);
+  } else {
+    evaluate<way, 3>(functions, q, coefficient, terms, e);
+  }
+  for (std::size_t i = 0; i < 3; ++i) fault.w_[i] = e[i];
+}
+
+// --- one pose: axes in lanes --------------------------------------------------------------------
+
+// Harmonics and tables at q. What is summed is read and written in whole registers only: a register
+// that was written number by number is slow to be read.
+inline void find_terms(const VolumetricFunctions& functions, const VolumetricPower* tables,
+                       const double* q, VolumetricPower& sums) {
+  if (tables != nullptr) {
+    sums = *tables;
+  } else {
+    sums = {};
+  }
+  const VolumetricHarmonic* h = functions.harmonics;
+  for (std::size_t first = 0; first < functions.number_of_waves; first += kRegister) {
+    const VolumetricWaves& waves = functions.waves[first / kLaneWidth];
+    const std::size_t lane = first % kLaneWidth;
+    const Register at = lanes_from([&](std::size_t n) { return q[waves.axis[lane + n]]; });
+    double sines[kRegister];
+    store(sine<Register>(load(waves.omega, lane) * at + load(waves.phase, lane)), sines);
+    for (; h->wave < first + kRegister; ++h) {
+      const Register value = all<Register>(sines[h->wave - first]);
+      for (std::size_t n = 0; n < functions.axes; n += kRegister) {
+        LaneArray& sum = sums.e[h->component];
+        store(fma(load(h->amplitude, n), value, load(sum, n)), sum, n);
+      }
+    }
+  }
+}
+
+// Faults of all axes, one of which is read where it lies.
+struct OnePoseFaults {
+  LaneArray w_[3], a_[3], h_[3];
+};
+struct FaultInMemory {
+  const OnePoseFaults& all;
+  std::size_t axis;
+
+  SERVOMILL_INLINE const double& w(std::size_t i) const { return all.w_[i][axis]; }
+  SERVOMILL_INLINE const double& a(std::size_t i) const { return all.a_[i][axis]; }
+  SERVOMILL_INLINE const double& h(std::size_t i) const { return all.h_[i][axis]; }
+};
+
+// False where a turn is too large for this way. q: of the first kAxes axes.
+template <Way way, std::size_t kAxes>
+SERVOMILL_INLINE bool find_faults(const VolumetricFunctions& functions,
+                                  const VolumetricPower* tables, const double* q,
+                                  OnePoseFaults& faults) {
+  VolumetricPower sums;
+  if constexpr (way != Way::cubic) {
+    if (functions.has_terms) find_terms(functions, tables, q, sums);
+  }
+  Register t2_max{};
+  repeat<(kAxes + kRegister - 1) / kRegister>([&](auto block) {
+    constexpr std::size_t first = block() * kRegister;
+    if (first >= functions.axes) return;
+    const auto coefficient = [&](std::size_t power, std::size_t component) {
+      return load(functions.polynomial[power].e[component], first);
+    };
+    const auto terms = [&](std::size_t component) { return load(sums.e[component], first); };
+    const Register at =
+        lanes_from([&](std::size_t n) { return first + n < kAxes ? q[first + n] : 0.0; });
+    Fault f;
+    find_fault<way>(functions, functions.has_angles, at, coefficient, terms, f, t2_max);
+    repeat<3>([&](auto i) { store(f.w_[i], faults.w_[i], first); });
+    if (!functions.has_angles) return;
+    repeat<3>([&](auto i) { store(f.a_[i], faults.a_[i], first); });
+    repeat<3>([&](auto i) { store(f.h_[i], faults.h_[i], first); });
+  });
+  return way == Way::general || are_small_turns(t2_max);
+}
+
+// --- many poses: poses in lanes -----------------------------------------------------------------
+
+// Harmonics and tables at q[axis], the lanes from `first` on of eight.
+template <std::size_t kAxes>
+inline void find_terms(const VolumetricFunctions& functions, const VolumetricPower* tables,
+                       std::size_t first, const Register (&q)[kAxes],
+                       Register (&sums)[kAxes][kErrorComponents]) {
+  for (std::size_t axis = 0; axis < functions.axes; ++axis) {
+    for (std::size_t c = 0; c < kErrorComponents; ++c) {
+      sums[axis][c] = tables != nullptr ? load(tables[axis].e[c], first) : Register{};
+    }
+  }
+  const VolumetricHarmonic* h = functions.harmonics;
+  for (std::size_t wave = 0; wave < functions.number_of_waves; ++wave) {
+    const VolumetricWaves& waves = functions.waves[wave / kLaneWidth];
+    const std::size_t lane = wave % kLaneWidth, axis = waves.axis[lane];
+    const Register value = sine<Register>(waves.omega[lane] * q[axis] + waves.phase[lane]);
+    for (; h->wave == wave; ++h) {
+      Register& sum = sums[axis][h->component];
+      sum = fma(all<Register>(h->amplitude[axis]), value, sum);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace servomill::plant
