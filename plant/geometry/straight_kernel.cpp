@@ -23,21 +23,21 @@ SERVOMILL_INLINE Vector<N> lever_at(const StraightLever& lever, const N& q) {
   return l;
 }
 
-// D behind the last axis. P: ideal tip before the first. fault(axis).
-template <class N, class F>
-SERVOMILL_INLINE Vector<N> deviation(const StraightProgram& program, const N (&q)[kStraightAxes],
-                                     Vector<N> P, F fault) {
+// The deviation behind the last axis. P: ideal tip before the first. fault(axis).
+template <bool kAngles, class N, class Fault>
+SERVOMILL_INLINE Vector<N> deviation(const StraightProgram& program, const Vector<N>& q,
+                                     Vector<N> P, Fault&& fault) {
   Vector<N> D;
   repeat<kStraightAxes>([&](auto axis) {
     const auto f = fault(axis);
     const Vector<N> w{f.w(0), f.w(1), f.w(2)};
     Vector<N> u = axis == 0 ? P : plus(P, D);
     D = axis == 0 ? w : plus(D, w);
-    if (program.functions.has_angles) {
-      if (program.lever[axis].exists) u = plus(u, lever_at(program.lever[axis], q[axis]));
+    if constexpr (kAngles) {
+      if (program.lever[axis].exists) u = plus(u, lever_at(program.lever[axis], q.v[axis]));
       D = turned_by(f, u, D);
     }
-    P.v[axis] = P.v[axis] + q[axis];
+    P.v[axis] = P.v[axis] + q.v[axis];
   });
   return D;
 }
@@ -51,36 +51,29 @@ SERVOMILL_INLINE Vector<N> in_order(const StraightProgram& program, const N* xyz
 // --- one pose -----------------------------------------------------------------------------------
 
 // False where this way does not lead to the end.
-template <Way way>
+template <Way way, bool kAngles>
 SERVOMILL_INLINE bool try_one(const StraightProgram& program, const VolumetricPower* tables,
                               const double* tip, const double* Q, double* out) {
   const Vector<double> q = in_order(program, Q);
   OnePoseFaults faults;
-  if (!find_faults<way, kStraightAxes>(program.functions, tables, q.v, faults)) return false;
-  const Vector<double> D = deviation(program, q.v, in_order(program, tip), [&](std::size_t axis) {
-    return FaultInMemory{faults, axis};
-  });
+  if (!find_faults<way, kStraightAxes>(program.functions, kAngles, tables, q.v, faults)) {
+    return false;
+  }
+  const auto fault = [&](std::size_t axis) { return FaultInMemory{faults, axis}; };
+  const Vector<double> D = deviation<kAngles>(program, q, in_order(program, tip), fault);
   for (std::size_t n = 0; n < 3; ++n) out[program.joint[n]] = D.v[n];
   return true;
 }
 
 [[gnu::noinline]] void one_in_general(const StraightProgram& program, const VolumetricPower* tables,
                                       const double* tip, const double* Q, double* out) {
-  try_one<Way::general>(program, tables, tip, Q, out);
+  try_one<Way::general, true>(program, tables, tip, Q, out);
 }
 
-[[gnu::noinline]] void one_with_terms(const StraightProgram& program, const VolumetricPower* tables,
-                                      const double* tip, const double* Q, double* out) {
-  if (!try_one<Way::small>(program, tables, tip, Q, out)) {
-    one_in_general(program, tables, tip, Q, out);
-  }
-}
-
+template <Way way, bool kAngles>
 void one(const StraightProgram& program, const VolumetricPower* tables, const double* tip,
          const double* Q, double* out) {
-  if (!program.functions.is_cubic) {
-    one_with_terms(program, tables, tip, Q, out);
-  } else if (!try_one<Way::cubic>(program, tables, tip, Q, out)) {
+  if (!try_one<way, kAngles>(program, tables, tip, Q, out)) {
     one_in_general(program, tables, tip, Q, out);
   }
 }
@@ -105,48 +98,57 @@ SERVOMILL_INLINE Vector<Register> tip_of(const StraightProgram& program, const P
   return tip;
 }
 
-template <Way way>
-SERVOMILL_INLINE bool try_many(const StraightProgram& program, const Poses& poses,
-                               Register (&out)[3]) {
-  const VolumetricFunctions& functions = program.functions;
-  const Vector<Register> q = in_order(program, poses.Q);
+template <Way way, bool kAngles>
+struct FaultsOfPoses {
+  const VolumetricFunctions& functions;
+  const Vector<Register>& q;
   Register sums[kStraightAxes][kErrorComponents];
-  if constexpr (way != Way::cubic) {
-    const VolumetricPower* const tables = poses.data != nullptr ? poses.data->tables : nullptr;
-    if (functions.has_terms) find_terms(functions, tables, poses.first, q.v, sums);
-  }
-  Register t2_max{};
-  const Vector<Register> D = deviation(program, q.v, tip_of(program, poses), [&](std::size_t axis) {
+  Register t2_max;
+
+  SERVOMILL_INLINE Fault operator()(std::size_t axis) {
     const auto coefficient = [&](std::size_t power, std::size_t component) {
       return all<Register>(functions.polynomial[power].e[component][axis]);
     };
     const auto terms = [&](std::size_t component) { return sums[axis][component]; };
     Fault f;
-    find_fault<way>(functions, functions.has_angles, q.v[axis], coefficient, terms, f, t2_max);
+    find_fault<way>(functions, kAngles, q.v[axis], coefficient, terms, f, t2_max);
     return f;
-  });
+  }
+};
+
+template <Way way, bool kAngles>
+SERVOMILL_INLINE bool try_many(const StraightProgram& program, const Poses& poses,
+                               Register (&out)[3]) {
+  const VolumetricFunctions& functions = program.functions;
+  const Vector<Register> q = in_order(program, poses.Q);
+  FaultsOfPoses<way, kAngles> fault{functions, q, {}, {}};
+  if constexpr (way != Way::cubic) {
+    const VolumetricPower* const tables = poses.data != nullptr ? poses.data->tables : nullptr;
+    if (functions.has_terms) find_terms(functions, tables, poses.first, q.v, fault.sums);
+  }
+  const Vector<Register> D = deviation<kAngles>(program, q, tip_of(program, poses), fault);
   for (std::size_t n = 0; n < 3; ++n) out[program.joint[n]] = D.v[n];
-  return way == Way::general || are_small_turns(t2_max);
+  return way == Way::general || !kAngles || are_small_turns(fault.t2_max);
 }
 
 [[gnu::noinline]] void many_in_general(const StraightProgram& program, const Poses& poses,
                                        Register (&out)[3]) {
-  try_many<Way::general>(program, poses, out);
+  try_many<Way::general, true>(program, poses, out);
 }
 
+template <Way way, bool kAngles>
 SERVOMILL_INLINE void find_offsets(const StraightProgram& program, const Poses& poses,
                                    Register (&out)[3]) {
-  const bool done = program.functions.is_cubic ? try_many<Way::cubic>(program, poses, out)
-                                               : try_many<Way::small>(program, poses, out);
-  if (!done) many_in_general(program, poses, out);
+  if (!try_many<way, kAngles>(program, poses, out)) many_in_general(program, poses, out);
 }
 
+template <Way way, bool kAngles>
 void lanes(const StraightProgram& program, const StraightData* data, const double* tip,
            const LaneArray* Q, LaneArray* out) {
   for (std::size_t first = 0; first < kLaneWidth; first += kRegister) {
     const Poses poses{data, tip, first, {load(Q[0], first), load(Q[1], first), load(Q[2], first)}};
     Register offset[3];
-    find_offsets(program, poses, offset);
+    find_offsets<way, kAngles>(program, poses, offset);
     repeat<3>([&](auto i) { store(offset[i], out[i], first); });
   }
 }
@@ -218,24 +220,31 @@ SERVOMILL_INLINE void put_poses(const Register (&xyz)[3], double* out,
   });
 }
 
+template <Way way, bool kAngles>
 void many(const StraightProgram& program, const StraightData* data, const double* tip,
           const double* Q, std::size_t blocks, double* out) {
   for (std::size_t n = 0; n < blocks * kLaneWidth; n += kRegister) {
     Poses poses{data, tip, n % kLaneWidth, {}};
     take_poses(Q, poses.Q);
     Register offset[3];
-    find_offsets(program, poses, offset);
+    find_offsets<way, kAngles>(program, poses, offset);
     put_poses(offset, out, std::make_index_sequence<kRegister>());
     Q += kMachineJoints * kRegister;
     out += 3 * kRegister;
   }
 }
 
+template <Way way, bool kAngles>
+StraightKernel kernel() {
+  return {&one<way, kAngles>, &many<way, kAngles>, &lanes<way, kAngles>};
+}
+
 }  // namespace
 
 template <>
-StraightKernel make_straight_kernel<SERVOMILL_LEVEL>() {
-  return {&one, &many, &lanes};
+StraightKernel make_straight_kernel<SERVOMILL_LEVEL>(const VolumetricFunctions& of) {
+  if (of.is_cubic) return of.has_angles ? kernel<Way::cubic, true>() : kernel<Way::cubic, false>();
+  return of.has_angles ? kernel<Way::small, true>() : kernel<Way::small, false>();
 }
 
 }  // namespace servomill::plant

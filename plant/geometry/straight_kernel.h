@@ -51,16 +51,17 @@ struct StraightKernel {
                 const LaneArray* Q, LaneArray* out);
 };
 
+/// For programs with these functions.
 template <SimdLevel level>
-StraightKernel make_straight_kernel();
+StraightKernel make_straight_kernel(const VolumetricFunctions& of);
 
 template <>
-StraightKernel make_straight_kernel<SimdLevel::baseline>();
+StraightKernel make_straight_kernel<SimdLevel::baseline>(const VolumetricFunctions& of);
 #ifdef SERVOMILL_X86
 template <>
-StraightKernel make_straight_kernel<SimdLevel::avx2>();
+StraightKernel make_straight_kernel<SimdLevel::avx2>(const VolumetricFunctions& of);
 template <>
-StraightKernel make_straight_kernel<SimdLevel::avx512>();
+StraightKernel make_straight_kernel<SimdLevel::avx512>(const VolumetricFunctions& of);
 #endif
 
 }  // namespace servomill::plant

@@ -32,9 +32,9 @@ VolumetricKernel kernel_of(SimdLevel level) {
   return kernel;
 }
 
-StraightKernel straight_kernel_of(SimdLevel level) {
-  const auto make = [](SimdLevel of) {
-    return at_simd_level(of, []<SimdLevel l>() { return make_straight_kernel<l>(); });
+StraightKernel straight_kernel_of(const VolumetricFunctions& functions, SimdLevel level) {
+  const auto make = [&](SimdLevel of) {
+    return at_simd_level(of, [&]<SimdLevel l>() { return make_straight_kernel<l>(functions); });
   };
   StraightKernel kernel = make(level);
   if (level == SimdLevel::avx512) kernel.one = make(SimdLevel::avx2).one;  // as above
@@ -195,7 +195,7 @@ VolumetricFunctions PreparedFunctions::finish() {
 
 VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const ErrorModel& errors,
                                            SimdLevel level)
-    : kernel_(kernel_of(level)), straight_kernel_(straight_kernel_of(level)) {
+    : kernel_(kernel_of(level)) {
   for (auto a = chain.axes.rbegin(); a != chain.axes.rend(); ++a) {
     add_steps_of(*a, errors);
     if (!is_linear(a->axis)) rotary_.push_back(*a);
@@ -205,6 +205,7 @@ VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const Erro
   program_.number_of_steps = steps_.size();
   program_.functions = functions_.finish();
   find_straight_way(chain, errors);
+  if (is_straight_) straight_kernel_ = straight_kernel_of(straight_.functions, level);
 }
 
 void VolumetricEvaluation::add_steps_of(const ChainAxis& axis, const ErrorModel& errors) {

@@ -140,7 +140,7 @@ class VolumetricEvaluation {
   std::size_t offset_rotary_ = 0;  // those among the steps that offsets need
 
   bool is_straight_ = false;
-  StraightKernel straight_kernel_;
+  StraightKernel straight_kernel_{};
   StraightProgram straight_{};
   PreparedFunctions straight_functions_;  // axes counted as the tool passes them
   std::size_t tip_turns_ = 0;             // rotary axes before the linear ones

@@ -155,7 +155,7 @@ struct FaultInMemory {
 
 // False where a turn is too large for this way. q: of the first kAxes axes.
 template <Way way, std::size_t kAxes>
-SERVOMILL_INLINE bool find_faults(const VolumetricFunctions& functions,
+SERVOMILL_INLINE bool find_faults(const VolumetricFunctions& functions, bool has_angles,
                                   const VolumetricPower* tables, const double* q,
                                   OnePoseFaults& faults) {
   VolumetricPower sums;
@@ -173,13 +173,13 @@ SERVOMILL_INLINE bool find_faults(const VolumetricFunctions& functions,
     const Register at =
         lanes_from([&](std::size_t n) { return first + n < kAxes ? q[first + n] : 0.0; });
     Fault f;
-    find_fault<way>(functions, functions.has_angles, at, coefficient, terms, f, t2_max);
+    find_fault<way>(functions, has_angles, at, coefficient, terms, f, t2_max);
     repeat<3>([&](auto i) { store(f.w_[i], faults.w_[i], first); });
-    if (!functions.has_angles) return;
+    if (!has_angles) return;
     repeat<3>([&](auto i) { store(f.a_[i], faults.a_[i], first); });
     repeat<3>([&](auto i) { store(f.h_[i], faults.h_[i], first); });
   });
-  return way == Way::general || are_small_turns(t2_max);
+  return way == Way::general || !has_angles || are_small_turns(t2_max);
 }
 
 // --- many poses: poses in lanes -----------------------------------------------------------------

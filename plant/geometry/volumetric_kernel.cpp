@@ -158,7 +158,10 @@ SERVOMILL_INLINE bool try_one(const VolumetricProgram& program, const OnePoseDat
                               const double* Q, const double* p_ST, double* out) {
   OnePoseFaults faults;
   const VolumetricPower* const tables = data != nullptr ? &data->tables : nullptr;
-  if (!find_faults<way, kMachineJoints>(program.functions, tables, Q, faults)) return false;
+  const VolumetricFunctions& functions = program.functions;
+  if (!find_faults<way, kMachineJoints>(functions, functions.has_angles, tables, Q, faults)) {
+    return false;
+  }
   OnePose at{data, Q, faults};
   solve<wanted>(program, at, p_ST, out);
   return true;
