@@ -138,25 +138,19 @@ void DriveBank::prepare_lane(std::size_t block, std::size_t j, const PreparedDri
   }
 }
 
-void DriveBank::advance(DriveState& s, const DriveInput& input, Tick step) const {
-  assert(static_cast<std::size_t>(step) < first_of_step_.size());
-  assert(s.blocks.size() == constants_.size() && input.blocks.size() == constants_.size());
-  assert(first_of_step_[static_cast<std::size_t>(step)] >= 0);
-  const BlockStep* const steps =
-      block_steps_.data() + first_of_step_[static_cast<std::size_t>(step)];
+void DriveBank::advance_rest(DriveState& s, const DriveInput& input, Tick step,
+                             const BlockStep* steps, LanesLeft left) const {
   const std::size_t end = constants_.size();
-  for (std::size_t first = 0; first < end;) {
-    LanesLeft left = kernel_.advance(s.blocks.data(), input.blocks.data(), steps, first, end);
-    first = left.block + 1;
-    while (left.lanes != 0) {
-      const auto j = static_cast<std::size_t>(std::countr_zero(left.lanes));
-      left.lanes &= static_cast<LaneBits>(left.lanes - 1U);
+  while (left.block != end) {
+    for (unsigned lanes = left.lanes; lanes != 0; lanes &= lanes - 1U) {
+      const auto j = static_cast<std::size_t>(std::countr_zero(lanes));
       const std::size_t l = left.block * kLaneWidth + j;
       const DriveInputBlock& in = input.blocks[left.block];
       LaneState lane = s.lane(l);
       drives_[l]->exact->advance(lane, in.command[j], in.F[j], step);
       s.set_lane(l, lane);
     }
+    left = kernel_.advance(s.blocks.data(), input.blocks.data(), steps, left.block + 1, end);
   }
 }
 

@@ -1,6 +1,7 @@
 /// Drives in lanes, moved between instants of the base clock.
 #pragma once
 
+#include <cassert>
 #include <memory>
 #include <span>
 #include <vector>
@@ -35,7 +36,16 @@ class DriveBank {
 
   /// Moves the active lanes by `step` ticks. @pre step is one of those given at construction; state
   /// and input have the blocks of lanes()
-  void advance(DriveState& state, const DriveInput& input, Tick step) const;
+  void advance(DriveState& state, const DriveInput& input, Tick step) const {
+    assert(static_cast<std::size_t>(step) < first_of_step_.size());
+    assert(state.blocks.size() == constants_.size() && input.blocks.size() == constants_.size());
+    assert(first_of_step_[static_cast<std::size_t>(step)] >= 0);
+    const BlockStep* const steps =
+        block_steps_.data() + first_of_step_[static_cast<std::size_t>(step)];
+    const std::size_t end = constants_.size();
+    const LanesLeft left = kernel_.advance(state.blocks.data(), input.blocks.data(), steps, 0, end);
+    if (left.block != end) advance_rest(state, input, step, steps, left);
+  }
 
   /// Motor angle (rad) of a lane: (delta + x) / r.
   double motor_angle(const DriveState& state, std::size_t lane) const {
@@ -53,6 +63,9 @@ class DriveBank {
   }
 
  private:
+  // From the first block of which lanes are left.
+  void advance_rest(DriveState& state, const DriveInput& input, Tick step, const BlockStep* steps,
+                    LanesLeft left) const;
   void prepare_block(std::size_t block);
   void prepare_lane(std::size_t block, std::size_t j, const PreparedDrive& drive);
 

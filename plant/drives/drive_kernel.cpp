@@ -90,6 +90,29 @@ struct Motion {
   P i, w, delta, v, x, z;
 };
 
+// Friction where the last sub-step ended, which is where the next one begins unless the slide has
+// moved otherwise since: at the speed `v` the force and its slope; of LuGre, dz/dt and nothing.
+template <class Arch>
+struct KnownFriction {
+  using P = Pack<Arch>;
+  P v, value, slope;
+
+  explicit KnownFriction(const DriveBlock& s)
+      : v(s.known_v), value(s.known_friction), slope(s.known_slope) {}
+  KnownFriction(const P& at, const P& is, const P& rises) : v(at), value(is), slope(rises) {}
+  void store(DriveBlock& s) const {
+    v.store(s.known_v);
+    value.store(s.known_friction);
+    slope.store(s.known_slope);
+  }
+};
+template <class Arch>
+KnownFriction<Arch> select(const PackMask<Arch>& mask, const KnownFriction<Arch>& yes,
+                           const KnownFriction<Arch>& no) {
+  return {select(mask, yes.v, no.v), select(mask, yes.value, no.value),
+          select(mask, yes.slope, no.slope)};
+}
+
 template <class Arch, bool same, std::size_t n>
 Pack<Arch> coefficient(const Coefficients<n>& from, std::size_t which) {
   if constexpr (same) return Pack<Arch>(from.of_all[which]);
@@ -118,11 +141,12 @@ class SubStep {
   P error;       // m; infinite if the collocation was not solved
   P kink = 0.0;  // halvings to before a reversal, 0: there is none
 
-  SubStep(const Motion<Arch>& s, const P& command, const P& load, const FrictionPack<Arch>& p,
-          const DriveConstants& c, const ParabolaBlock& block, const Mask& active)
+  SubStep(const Motion<Arch>& s, const KnownFriction<Arch>& known, const P& command, const P& load,
+          const FrictionPack<Arch>& p, const DriveConstants& c, const ParabolaBlock& block,
+          const Mask& active)
       : s_(s), load_(load), p_(p), block_(block), h_(block.h) {
     const P start[5] = {s.i, s.w, s.delta, s.v, command};
-    begin();
+    begin(known, active);
 #pragma GCC unroll 8
     for (std::size_t row = 0; row < 8; ++row) {
       y_[row] = fma(weight(row, 5), f_[0],
@@ -138,6 +162,7 @@ class SubStep {
     if (kind == FrictionKind::lugre) end.z = z_at(3);
   }
 
+  KnownFriction<Arch> friction_at_end() const { return {end.v, friction_end_, slope_end_}; }
   Mask resolved(const P& tolerance) const { return (error <= tolerance) & (kink == P(0.0)); }
 
  private:
@@ -151,16 +176,28 @@ class SubStep {
   }
   P z_at(int node) const { return fma(h_, parabola(kIntegral[node], dz_), s_.z); }
 
-  // The force at the start, and with its slope the speeds where they would be if it went on so.
-  void begin() {
-    if (kind == FrictionKind::lugre) {
-      dz_[0] = bristle_rate(p_, s_.v, s_.z);
-      f_[0] = load_ + fma(p_.sigma0, s_.z, p_.sigma1 * dz_[0]);
-      slope_ = P(0.0);
+  // Friction at the start and its slope; of LuGre, dz/dt.
+  WithSlope<P> at_start() const {
+    if constexpr (kind == FrictionKind::lugre) {
+      return {bristle_rate(p_, s_.v, s_.z), P(0.0)};
     } else {
-      const WithSlope<P> at = regularised(p_, s_.v);
+      return regularised(p_, s_.v);
+    }
+  }
+
+  void begin(const KnownFriction<Arch>& known, const Mask& active) {
+    WithSlope<P> at = {known.value, known.slope};
+    const Mask is_known = s_.v == known.v;
+    if ((active & !is_known).any()) {
+      const WithSlope<P> computed = at_start();
+      at = {select(is_known, at.value, computed.value), select(is_known, at.slope, computed.slope)};
+    }
+    slope_ = at.slope;
+    if (kind == FrictionKind::lugre) {
+      dz_[0] = at.value;
+      f_[0] = load_ + fma(p_.sigma0, s_.z, p_.sigma1 * dz_[0]);
+    } else {
       f_[0] = load_ + at.value;
-      slope_ = at.slope;
     }
   }
 
@@ -196,6 +233,10 @@ class SubStep {
       }
       newton(C, at.df, residual, dv);
       const P change = max(abs(dv[0]), abs(dv[1]));
+      if constexpr (kind == FrictionKind::regularised) {
+        slope_end_ = select(open, at.df.d, slope_end_);
+        friction_end_ = select(open, fma(at.df.d, dv[1], at.f[1]), friction_end_);
+      }
       follow(f, at.df, dv);
       f_[1] = select(open, f[0], f_[1]);
       f_[2] = select(open, f[1], f_[2]);
@@ -203,7 +244,7 @@ class SubStep {
       if constexpr (kind == FrictionKind::lugre) {
         follow(at.rate, at.drate, dv);
         dz_[1] = select(open, at.rate[0], dz_[1]);
-        dz_[2] = select(open, at.rate[1], dz_[2]);
+        dz_[2] = friction_end_ = select(open, at.rate[1], dz_[2]);
       }
       open = open & !(change <= fma(P(1e-13), abs(v[1]), tolerance));
       if (!open.any()) break;
@@ -276,10 +317,11 @@ class SubStep {
   const FrictionPack<Arch>& p_;
   const ParabolaBlock& block_;
   const P h_;
-  P y_[8];        // v at the four nodes, i, w, delta, and the way of x
-  P f_[3];        // N, at 0, h/2, h
-  P dz_[3] = {};  // m/s, there
-  P slope_;       // N s/m, of f at 0
+  P y_[8];                                  // v at the four nodes, i, w, delta, and the way of x
+  P f_[3];                                  // N, at 0, h/2, h
+  P dz_[3] = {};                            // m/s, there
+  P slope_;                                 // N s/m, of f at 0
+  P friction_end_ = 0.0, slope_end_ = 0.0;  // as KnownFriction, at h
 };
 
 template <class Arch>
@@ -334,6 +376,7 @@ template <class Arch, FrictionKind kind, bool same>
   const FrictionPack<Arch> p(c, lanes);
   const P tolerance(c.tolerance);
   Motion<Arch> now = start.at;
+  KnownFriction<Arch> known(s);
 
   const int all = ladder.ticks << Ladder::kDepth, whole = log2_of(all);
   int wanted[kLaneWidth], rest[kLaneWidth];  // rungs; lengths of the lowest
@@ -359,10 +402,12 @@ template <class Arch, FrictionKind kind, bool same>
     }
     const ParabolaBlock& block = rung == kWhole ? *ladder.whole : ladder.rungs[rung];
     const Mask active = Mask::of(turn);
-    const SubStep<Arch, kind, same> step(now, start.command, start.load, p, c, block, active);
+    const SubStep<Arch, kind, same> step(now, known, start.command, start.load, p, c, block,
+                                         active);
     const Mask good = active & step.resolved(tolerance);
     const unsigned accepted = good.bits();
     now = select(good, step.end, now);
+    known = select(good, step.friction_at_end(), known);
 
     // those that arrived, and how far the others go next
     LaneArray error, kink;
@@ -392,6 +437,7 @@ template <class Arch, FrictionKind kind, bool same>
     if (arrived >> j & 1U) s.control[j].halvings = c.coarsest[j] - wanted[j];
   }
   store(select(Mask::of(arrived), now, motion_of<Arch>(s)), s);
+  select(Mask::of(arrived), known, KnownFriction<Arch>(s)).store(s);
   return others;
 }
 
@@ -411,10 +457,12 @@ template <class Arch, FrictionKind kind, bool same>
     const Start<Arch> start = start_of<Arch>(s, input, c);
     const FrictionPack<Arch> p(c, lanes);
     const Mask active = Mask::of(lanes);
-    const SubStep<Arch, kind, same> step(start.at, start.command, start.load, p, c, *ladder.whole,
-                                         active);
+    const KnownFriction<Arch> known(s);
+    const SubStep<Arch, kind, same> step(start.at, known, start.command, start.load, p, c,
+                                         *ladder.whole, active);
     if ((active & step.resolved(P(c.tolerance))).bits() == lanes) {
       store(select(active, step.end, motion_of<Arch>(s)), s);
+      select(active, step.friction_at_end(), known).store(s);
       return 0;
     }
   }
@@ -432,9 +480,9 @@ Motion<Arch> held(const HoldBlock& hold, const Motion<Arch>& at,
 }
 
 template <class Arch, bool same>
-SERVOMILL_FLATTEN void advance_linear(DriveBlock& s, const DriveInputBlock& input,
-                                      const HoldBlock& hold, const DriveConstants& c,
-                                      unsigned active) {
+[[gnu::always_inline]] inline void advance_linear(DriveBlock& s, const DriveInputBlock& input,
+                                                  const HoldBlock& hold, const DriveConstants& c) {
+  const unsigned active = bits_of(input.active);
   const Start<Arch> start = start_of<Arch>(s, input, c);
   const Motion<Arch>& at = start.at;
   const Motion<Arch> end =
@@ -480,13 +528,10 @@ SERVOMILL_FLATTEN unsigned glide(DriveBlock& s, const DriveInputBlock& input, co
 }
 
 template <class Arch, bool same>
-LaneBits advance_block(DriveBlock& s, const DriveInputBlock& input, const BlockStep& step) {
+[[gnu::noinline]] LaneBits advance_with_friction(DriveBlock& s, const DriveInputBlock& input,
+                                                 const BlockStep& step) {
   const DriveConstants& c = *step.constants;
   const unsigned active = bits_of(input.active);
-  if (c.linear) {
-    advance_linear<Arch, same>(s, input, *step.hold, c, active);
-    return 0;
-  }
   const unsigned stay = glide<Arch, same>(s, input, *step.hold, c, active);
   unsigned others = stay & ~(c.regularised | c.lugre);
   if (const auto lanes = static_cast<LaneBits>(stay & c.regularised)) {
@@ -496,6 +541,13 @@ LaneBits advance_block(DriveBlock& s, const DriveInputBlock& input, const BlockS
     others |= through_zone<Arch, FrictionKind::lugre, same>(s, input, c, step.ladder, lanes);
   }
   return static_cast<LaneBits>(others);
+}
+
+template <class Arch, bool same>
+LaneBits advance_block(DriveBlock& s, const DriveInputBlock& input, const BlockStep& step) {
+  if (!step.constants->linear) return advance_with_friction<Arch, same>(s, input, step);
+  advance_linear<Arch, same>(s, input, *step.hold, *step.constants);
+  return 0;
 }
 
 // Only the registers of AVX-512 take one number for all as they read it.
@@ -508,8 +560,8 @@ LaneBits advance_one(DriveBlock& s, const DriveInputBlock& input, const BlockSte
 }
 
 template <class Arch>
-LanesLeft advance(DriveBlock* states, const DriveInputBlock* inputs, const BlockStep* steps,
-                  std::size_t first, std::size_t end) {
+SERVOMILL_FLATTEN LanesLeft advance(DriveBlock* states, const DriveInputBlock* inputs,
+                                    const BlockStep* steps, std::size_t first, std::size_t end) {
   for (std::size_t n = first; n < end; ++n) {
     if (const LaneBits lanes = advance_one<Arch>(states[n], inputs[n], steps[n]); lanes != 0) {
       return {n, lanes};

@@ -22,6 +22,7 @@ void DriveState::set_lane(std::size_t l, const LaneState& s) {
   b.v[j] = s.v;
   b.x[j] = s.x;
   b.z[j] = s.z;
+  b.known_v[j] = std::numeric_limits<double>::quiet_NaN();
   b.slide[j] = s.slide;
   b.contact[j] = s.contact;
   b.control[j] = s.control;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "plant/vocabulary/lanes.h"
@@ -35,12 +36,23 @@ struct LaneState {
   StepControl control{};
 };
 
+/// One number eight times.
+constexpr LaneArray all_lanes(double value) {
+  LaneArray all{};
+  for (double& one : all) one = value;
+  return all;
+}
+
 /// States of eight drives.
 struct DriveBlock {
   LaneArray i{}, w{};  // A, rad/s
   LaneArray delta{};   // m (carried instead of phi: no cancellation)
   LaneArray v{}, x{};  // m/s, m
   LaneArray z{};       // m
+  // What the kernel knows of friction from its last step: at which speed (m/s; NaN: it knows
+  // nothing), the force (N) and its slope (N s/m); of LuGre dz/dt (m/s). It follows from the rest.
+  LaneArray known_v = all_lanes(std::numeric_limits<double>::quiet_NaN());
+  LaneArray known_friction{}, known_slope{};
   std::array<SlideMode, kLaneWidth> slide{};
   std::array<ContactMode, kLaneWidth> contact{};
   std::array<StepControl, kLaneWidth> control{};
