@@ -59,6 +59,19 @@ std::vector<plant::FeedDriveParams> params_of(const std::vector<const MachineSet
 
 }  // namespace
 
+namespace {
+
+// A whole block is one register.
+void copy(const double* from, double* to, std::size_t count) {
+  if (count == kLaneWidth) {
+    std::copy_n(from, kLaneWidth, to);
+  } else {
+    for (std::size_t n = 0; n < count; ++n) to[n] = from[n];
+  }
+}
+
+}  // namespace
+
 const ServoKernel& servo_kernel() {
   static const ServoKernel kKernel =
       at_simd_level(simd_level(), []<SimdLevel level>() { return make_servo_kernel<level>(); });
@@ -69,6 +82,7 @@ ServoAxes::ServoAxes(std::vector<const MachineSettings*> machines, std::vector<i
                      const std::vector<Instant>& schedule, plant::PreparedDrives* kept)
     : machines_(std::move(machines)),
       joints_(std::move(joints)),
+      places_(machines_.size()),
       params_(params_of(machines_, joints_)),
       drives_(
           params_, machines_[0]->nc.periods.base,
@@ -81,7 +95,11 @@ ServoAxes::ServoAxes(std::vector<const MachineSettings*> machines, std::vector<i
       kernel_(servo_kernel()) {
   for (const int j : joints_) {
     first_lane_[static_cast<std::size_t>(j)] = axes_.size();
-    for (std::size_t run = 0; run < machines_.size(); ++run) axes_.push_back({run, j});
+    for (std::size_t run = 0; run < machines_.size(); ++run) {
+      const std::size_t l = axes_.size();
+      places_[run][static_cast<std::size_t>(j)] = {block(l), place(l), true};
+      axes_.push_back({run, j});
+    }
   }
   if (machines_[0]->integrator == Integrator::cvode) {
     cvode_.emplace(params_, machines_[0]->nc.periods.base);
@@ -114,6 +132,7 @@ void ServoAxes::describe(std::size_t l) {
 
   const controllers::SupervisionParams& supervision = functions.supervision;
   const bool rigid = params_[l].is_rigid();  // the motor turns as the slide moves
+  set(&ServoBlock::rigid, rigid ? 1.0 : 0.0);
   set(&ServoBlock::most_following_error, supervision.following_error);
   set(&ServoBlock::most_speed,
       std::min(machine.scale[j].fastest(),
@@ -123,6 +142,7 @@ void ServoAxes::describe(std::size_t l) {
                               supervision.encoder_difference < controllers::kNoLimit ||
                               machine.marks[j].has_value());
 
+  if (always_looked_at_.back() || !params_[l].is_linear()) watched_.push_back(l);
   if (!machine.motor[j].is_plain() || !machine.screw[j].is_zero()) own_motor_reading_.push_back(l);
   if (!machine.scale[j].is_plain()) own_scale_reading_.push_back(l);
   if (machine.marks[j]) marked_.push_back(l);
@@ -188,6 +208,32 @@ void ServoAxes::displace(const Eigen::Vector3d& displacement, std::size_t run) {
   for (const int j : joints_) {
     if (j < kLinearJoints) at(&ServoBlock::displacement, lane(run, j)) = displacement[j];
   }
+}
+
+template <class What>
+void ServoAxes::each_stretch(std::size_t first, What what) const {
+  const std::size_t runs_here = std::min(kLaneWidth, runs() - first);
+  for (const int j : joints_) {
+    for (std::size_t n = 0; n < runs_here;) {
+      const std::size_t l = lane(first + n, j);
+      const std::size_t count = std::min(runs_here - n, kLaneWidth - place(l));
+      what(static_cast<std::size_t>(j), n, block(l), place(l), count);
+      n += count;
+    }
+  }
+}
+
+void ServoAxes::displace(const LinearJointLanes& displacement, std::size_t first) {
+  each_stretch(first, [&](std::size_t j, std::size_t n, std::size_t block, std::size_t place,
+                          std::size_t count) {
+    if (j < kLinearJoints) copy(&displacement[j][n], &servos_[block].displacement[place], count);
+  });
+}
+
+void ServoAxes::read_true(JointLanes& Q, std::size_t first) const {
+  each_stretch(first,
+               [&](std::size_t j, std::size_t n, std::size_t block, std::size_t place,
+                   std::size_t count) { copy(&state_.blocks[block].x[place], &Q[j][n], count); });
 }
 
 void ServoAxes::follow(const AxisSetPoint& set, std::size_t run) {
@@ -266,7 +312,7 @@ void ServoAxes::run_position_loops() {
       at(&ServoBlock::v_add, l) = ramp.rate;
     }
   }
-  kernel_.position_loops(servos_.data(), state_.blocks.data(), servos_.size());
+  suspects_ = kernel_.position_loops(servos_.data(), state_.blocks.data(), servos_.size());
 }
 
 void ServoAxes::run_current_loops() {
@@ -288,35 +334,26 @@ void ServoAxes::run_velocity_loops() {
 }
 
 Joints ServoAxes::motor_angle(std::size_t run) const {
-  Joints phi = Joints::Zero();
-  for (const int j : joints_) phi[j] = drives_.motor_angle(state_, lane(run, j));
-  return phi;
+  return each_joint(run, [&](const Place& p) {
+    const plant::DriveBlock& state = state_.blocks[p.block];
+    return (state.delta[p.place] + state.x[p.place]) * servos_[p.block].per_r[p.place];
+  });
 }
 
 Joints ServoAxes::motor_speed(std::size_t run) const {
-  Joints w = Joints::Zero();
-  for (const int j : joints_) {
-    const std::size_t l = lane(run, j);
-    const plant::DriveBlock& state = state_.blocks[block(l)];
-    w[j] = params_[l].is_rigid() ? state.v[place(l)] / params_[l].r : state.w[place(l)];
-  }
-  return w;
+  return each_joint(run, [&](const Place& p) {
+    const plant::DriveBlock& state = state_.blocks[p.block];
+    const ServoBlock& servo = servos_[p.block];
+    return servo.rigid[p.place] > 0.0 ? state.v[p.place] * servo.per_r[p.place] : state.w[p.place];
+  });
 }
 
 Joints ServoAxes::measured_speed(std::size_t run) const {
-  Joints w = Joints::Zero();
-  for (const int j : joints_) {
-    w[j] = servos_[block(lane(run, j))].cascade_state.w[place(lane(run, j))];
-  }
-  return w;
+  return each_joint(run, [&](const Place& p) { return servos_[p.block].cascade_state.w[p.place]; });
 }
 
 Joints ServoAxes::speed_error(std::size_t run) const {
-  Joints e = Joints::Zero();
-  for (const int j : joints_) {
-    e[j] = servos_[block(lane(run, j))].cascade_state.e[place(lane(run, j))];
-  }
-  return e;
+  return each_joint(run, [&](const Place& p) { return servos_[p.block].cascade_state.e[p.place]; });
 }
 
 std::optional<ServoAxes::Fault> ServoAxes::supervise(std::size_t run) {

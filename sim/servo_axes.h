@@ -32,6 +32,10 @@ struct AxisSetPoint {
   Joints ddQ_ff = Joints::Zero();
 };
 
+/// Eight runs side by side, joint by joint (m, rad): [joint][run].
+using JointLanes = LaneArray[kJoints];
+using LinearJointLanes = LaneArray[kLinearJoints];
+
 /// Added from outside to the signals of one axis, to measure how it responds; zero in a case.
 struct Injection {
   double force = 0.0;     // N, N m: on the slide, along +x
@@ -66,6 +70,8 @@ class ServoAxes {
   void settle(const Joints& Q, const Eigen::Vector3d& displacement, std::size_t run = 0);
   /// What a virtual encoder adds to the readings of the linear joints (3; m), from now on.
   void displace(const Eigen::Vector3d& displacement, std::size_t run = 0);
+  /// The same for eight runs side by side, from run `first` on.
+  void displace(const LinearJointLanes& displacement, std::size_t first = 0);
   /// What the position loops follow, from now on.
   void follow(const AxisSetPoint& set, std::size_t run = 0);
   /// What is added to a joint from now on.
@@ -98,6 +104,9 @@ class ServoAxes {
   /// What the position loops read last.
   Joints Q_read(std::size_t run = 0) const { return joints_of(&ServoBlock::Q_read, run); }
   Joints Q_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::x, run); }
+  /// The same of eight runs side by side, from run `first` on. Joints that do not take part and
+  /// runs beyond the last are left as they are.
+  void read_true(JointLanes& Q, std::size_t first = 0) const;
   Joints dQ_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::v, run); }
   Joints current(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::i, run); }
   /// What acts on the drives: A, with a winding V.
@@ -118,6 +127,8 @@ class ServoAxes {
     std::string reason;
   };
   std::optional<Fault> supervise(std::size_t run = 0);
+  /// After the position loops: supervise() has nothing to say of any run.
+  bool all_well() const { return watched_.empty() && !suspects_; }
 
   /// Visits what of one axis of the first run changes with time, as double&: drive, loops, reading.
   /// States that cannot move (no integral part, no current lag, ...) are left out.
@@ -138,19 +149,32 @@ class ServoAxes {
     int joint;
   };
 
+  // Where the lane of a joint lies; of a joint that does not take part, somewhere.
+  struct Place {
+    std::size_t block = 0, place = 0;
+    bool present = false;
+  };
+
   std::size_t lane(std::size_t run, int joint) const {
     return first_lane_[static_cast<std::size_t>(joint)] + run;
   }
   static std::size_t block(std::size_t lane) { return lane / kLaneWidth; }
   static std::size_t place(std::size_t lane) { return lane % kLaneWidth; }
-  template <class Blocks, class Member>
-  Joints gathered(const Blocks& blocks, Member member, std::size_t run) const {
-    Joints Q = Joints::Zero();
-    for (const int j : joints_) {
-      const std::size_t l = lane(run, j);
-      Q[j] = (blocks[block(l)].*member)[place(l)];
+  // All joints without a question in between, so that they go through registers.
+  template <class Value>
+  Joints each_joint(std::size_t run, Value value) const {
+    const std::array<Place, kJoints>& at = places_[run];
+    Joints Q;
+    for (int j = 0; j < kJoints; ++j) {
+      const Place& p = at[static_cast<std::size_t>(j)];
+      const double there = value(p);
+      Q[j] = p.present ? there : 0.0;
     }
     return Q;
+  }
+  template <class Blocks, class Member>
+  Joints gathered(const Blocks& blocks, Member member, std::size_t run) const {
+    return each_joint(run, [&](const Place& p) { return (blocks[p.block].*member)[p.place]; });
   }
   Joints joints_of(LaneArray ServoBlock::*member, std::size_t run) const {
     return gathered(servos_, member, run);
@@ -158,6 +182,10 @@ class ServoAxes {
   Joints drives_of(LaneArray plant::DriveBlock::*member, std::size_t run) const {
     return gathered(state_.blocks, member, run);
   }
+  // Calls what(joint, n, block, place, count) where the runs first + n and following of a joint lie
+  // in one block.
+  template <class What>
+  void each_stretch(std::size_t first, What what) const;
   double& at(LaneArray ServoBlock::*member, std::size_t lane) {
     return (servos_[block(lane)].*member)[place(lane)];
   }
@@ -174,7 +202,8 @@ class ServoAxes {
   std::vector<int> joints_;
   std::vector<Axis> axes_;  // by lane: joint by joint
   std::array<std::size_t, kJoints> first_lane_{};
-  std::vector<plant::FeedDriveParams> params_;  // by lane
+  std::vector<std::array<Place, kJoints>> places_;  // by run
+  std::vector<plant::FeedDriveParams> params_;      // by lane
   plant::DriveBank drives_;
   std::optional<plant::CvodeBank> cvode_;  // moves the drives instead, if asked for
   plant::DriveState state_;
@@ -183,6 +212,8 @@ class ServoAxes {
   std::vector<Functions> functions_;  // by lane
   // lanes that need more than the kernel does
   std::vector<bool> always_looked_at_;  // by supervision
+  std::vector<std::size_t> watched_;    // lanes of which the kernel cannot tell that all is well
+  bool suspects_ = false;               // some lane is suspect
   std::vector<std::size_t> own_motor_reading_, own_scale_reading_, marked_, with_backlash_,
       with_friction_;
   const ServoKernel& kernel_;

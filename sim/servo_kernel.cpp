@@ -45,16 +45,19 @@ void take_readings(ServoBlock* servos, std::size_t count) {
   }
 }
 
-void position_loops(ServoBlock* servos, const DriveBlock* drives, std::size_t count) {
+bool position_loops(ServoBlock* servos, const DriveBlock* drives, std::size_t count) {
+  bool suspects = false;
   for (std::size_t n = 0; n < count; ++n) {
     ServoBlock& s = servos[n];
     const auto fine = (abs(Number(s.Q_cmd) - Number(s.Q_read)) <= Number(s.most_following_error)) &
                       (abs(Number(drives[n].v)) <= Number(s.most_speed)) &
                       (abs(Number(drives[n].w)) <= Number(s.most_motor_speed));  // false with NaN
     put(s.suspect, select(fine, Number(0.0), Number(1.0)));
+    suspects |= !fine.all();
     controllers::position_loop(s.cascade, s.cascade_state, Number(s.Q_cmd), Number(s.Q_read),
                                Number(s.dQ_ff), Number(s.ddQ_ff), Number(s.v_add));
   }
+  return suspects;
 }
 
 void velocity_loops(ServoBlock* servos, std::size_t count) {

@@ -20,6 +20,7 @@ struct ServoBlock {
   LaneArray reads_scale;                 // 1: the scale closes the position loop
   LaneArray feedback_gain;               // of controllers::position_feedback, otherwise
   LaneArray has_winding;                 // 1: behind the current command is a current loop
+  LaneArray rigid;                       // 1: the motor turns as the slide moves
   LaneArray most_following_error;        // m or rad: beyond one of these the NC looks closer
   LaneArray most_speed;                  // m/s or rad/s, of the slide
   LaneArray most_motor_speed;            // rad/s
@@ -51,8 +52,8 @@ struct ServoKernel {
   void (*read_scales)(ServoBlock* servos, const plant::DriveBlock* drives, std::size_t count);
   /// Q_read from phi and scale.
   void (*take_readings)(ServoBlock* servos, std::size_t count);
-  /// Also tells suspects.
-  void (*position_loops)(ServoBlock* servos, const plant::DriveBlock* drives, std::size_t count);
+  /// Also marks suspects; whether there are any.
+  bool (*position_loops)(ServoBlock* servos, const plant::DriveBlock* drives, std::size_t count);
   void (*velocity_loops)(ServoBlock* servos, std::size_t count);
   /// The command that was computed before acts from now on.
   void (*current_loops)(ServoBlock* servos, const plant::DriveBlock* drives,

@@ -127,15 +127,17 @@ class CaseRun {
     axes_.follow(set_, run_);
   }
 
-  void supervise(Tick n) {
+  // False if the machine stops.
+  bool supervise(Tick n) {
     const auto fault = axes_.supervise(run_);
-    if (!fault || !result_.outcome.finished) return;
+    if (!fault || !result_.outcome.finished) return result_.outcome.finished;
     Outcome& outcome = result_.outcome;
     outcome.finished = false;
     outcome.axis = in_.machine.chain.layout.letter_of(fault->joint);
     outcome.time = nc_.periods.seconds(n);
     outcome.reason =
         fmt::format("axis {}: {} at {:.4f} s", outcome.axis, fault->reason, outcome.time);
+    return false;
   }
 
   void record(Tick n) {
@@ -218,9 +220,8 @@ class Lockstep {
       progress.store(static_cast<float>(n) / static_cast<float>(longest_),
                      std::memory_order_relaxed);
       if (stop.load(std::memory_order_relaxed)) {
-        for (auto& run : runs_) {
-          if (run) run->interrupt(n);
-        }
+        each([&](CaseRun& run) { run.interrupt(n); });
+        next_end_ = n;
       }
       for (const Instant& instant : schedule_) {
         if (end_those_done(n, results)) return results;
@@ -252,11 +253,17 @@ class Lockstep {
     if (due & kPositionLoop) {
       each([&](CaseRun& run) { run.interpolate(n); });
       axes_.run_position_loops();
-      each([&](CaseRun& run) { run.supervise(n); });
+      if (!axes_.all_well()) supervise(n);
     }
     if (due & kCurrentLoop) axes_.run_current_loops();
     if (due & kVelocityLoop) axes_.run_velocity_loops();
     if (due & kRecord) each([&](CaseRun& run) { run.record(n); });
+  }
+
+  void supervise(Tick n) {
+    each([&](CaseRun& run) {
+      if (!run.supervise(n)) next_end_ = n;
+    });
   }
 
   template <class Do>
@@ -268,10 +275,13 @@ class Lockstep {
 
   // Takes out the runs that end before n; whether none is left.
   bool end_those_done(Tick n, std::vector<CaseResult>& results) {
+    if (n < next_end_) return false;
+    next_end_ = std::numeric_limits<Tick>::max();
     bool none_left = true;
     for (std::size_t run = 0; run < runs_.size(); ++run) {
       if (!runs_[run]) continue;
       if (runs_[run]->goes_on_at(n)) {
+        next_end_ = std::min(next_end_, runs_[run]->end() + 1);
         none_left = false;
         continue;
       }
@@ -287,6 +297,7 @@ class Lockstep {
   std::vector<std::unique_ptr<Reference>> references_;
   std::vector<std::unique_ptr<CaseRun>> runs_;
   Tick longest_ = 0;
+  Tick next_end_ = 0;  // until then none of them ends
 };
 
 // Axes that stand where the NC wants them: what remains is the strategy's own error.

@@ -162,8 +162,7 @@ class Problem {
                                       {sim::kRecord, kRecord, 0}})),
         axes_(machines, {0, 1, 2, 3, 4}, schedule_),
         volumetric_(volumetric),
-        Q_(machines.size()),
-        next_(machines.size(), Eigen::Vector3d::Zero()) {
+        next_(blocks_of(machines.size())) {
     for (std::size_t run = 0; run < machines.size(); ++run) {
       axes_.settle(Joints::Zero(), Eigen::Vector3d::Zero(), run);
     }
@@ -186,6 +185,10 @@ class Problem {
   }
 
  private:
+  struct Next {
+    sim::LinearJointLanes displacement{};
+  };
+
   // The velocity loop before the current loop, which uses its result at once.
   void visit(std::uint8_t due, Tick n) {
     if (due & sim::kErrorModel) displace();
@@ -203,19 +206,27 @@ class Problem {
   }
 
   void displace() {
-    for (std::size_t run = 0; run < axes_.runs(); ++run) {
-      axes_.displace(next_[run], run);
-      Q_[run] = axes_.Q_true(run);
+    if (axes_.runs() == 1) return displace_one();
+    for (std::size_t first = 0; first < axes_.runs(); first += kLaneWidth) {
+      Next& next = next_[first / kLaneWidth];
+      axes_.displace(next.displacement, first);
+      axes_.read_true(Q_, first);
+      volumetric_.joint_offsets(Q_, p_ST_, next.displacement);
     }
-    volumetric_.joint_offsets(Q_, p_ST_, next_);
+  }
+
+  void displace_one() {
+    axes_.displace(next_of_one_);
+    next_of_one_ = volumetric_.joint_offset(axes_.Q_true(), p_ST_);
   }
 
   std::vector<sim::Instant> schedule_;
   sim::ServoAxes axes_;
   const plant::VolumetricModel& volumetric_;
   const Eigen::Vector3d p_ST_{0.0, 0.0, -0.15};
-  std::vector<Joints> Q_;
-  std::vector<Eigen::Vector3d> next_;
+  sim::JointLanes Q_{};
+  std::vector<Next> next_;  // of eight runs each
+  Eigen::Vector3d next_of_one_ = Eigen::Vector3d::Zero();
   SetPoint set_point_;
   sim::AxisSetPoint set_;
 };
