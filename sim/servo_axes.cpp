@@ -169,10 +169,9 @@ void ServoAxes::settle(std::size_t l, double Q, double d) {
   state_.set_lane(l, state);
   const double phi = motor_reading(l), scale = scale_reading(l);
   const double y_motor = drive.r * phi, y_scale = scale + d;
-  const auto feedback = controllers::standing_at(functions.position_feedback, y_motor, y_scale);
-  auto after = feedback;
+  auto feedback = controllers::standing_at(functions.position_feedback, y_motor, y_scale);
   const double Q_read =
-      controllers::position_feedback(functions.position_feedback, after, y_motor, y_scale);
+      controllers::position_feedback(functions.position_feedback, feedback, y_motor, y_scale);
 
   ServoBlock& servo = servos_[block(l)];
   set_lane(servo.cascade_state, place(l), controllers::standing_at(cascade, phi, current.i_cmd));
@@ -186,7 +185,7 @@ void ServoAxes::settle(std::size_t l, double Q, double d) {
   set(&ServoBlock::scale, scale);
   set(&ServoBlock::y_motor, y_motor);
   set(&ServoBlock::y_scale, y_scale);
-  set(&ServoBlock::difference, after.difference);
+  set(&ServoBlock::difference, feedback.difference);
   set(&ServoBlock::Q_read, Q_read);
   set(&ServoBlock::Q_cmd, Q_read);
   for (const auto member :
