@@ -7,39 +7,20 @@
 namespace servomill::plant {
 namespace {
 
-// --- the way of the tool ------------------------------------------------------------------------
-
-template <class N>
-SERVOMILL_INLINE Vector<N> plus(const Vector<N>& p, const Vector<N>& q) {
-  return {p.v[0] + q.v[0], p.v[1] + q.v[1], p.v[2] + q.v[2]};
+// What an axis adds by itself, g, to the deviation. u: lever.
+template <bool kAngles>
+SERVOMILL_INLINE Vector<Register> gain(const Fault& f, const Vector<Register>& u) {
+  const Vector<Register> w{f.w(0), f.w(1), f.w(2)};
+  if constexpr (kAngles) return turned_by(f, u, w);
+  return w;
 }
 
-template <class N>
-SERVOMILL_INLINE Vector<N> lever_at(const StraightLever& lever, const N& q) {
-  Vector<N> l;
-  for (std::size_t i = 0; i < 3; ++i) {
-    l.v[i] = fms(q, all<N>(lever.slope[i]), all<N>(lever.centre[i]));
-  }
-  return l;
-}
-
-// The deviation behind the last axis. P: ideal tip before the first. fault(axis).
-template <bool kAngles, class N, class Fault>
-SERVOMILL_INLINE Vector<N> deviation(const StraightProgram& program, const Vector<N>& q,
-                                     Vector<N> P, Fault&& fault) {
-  Vector<N> D;
-  repeat<kStraightAxes>([&](auto axis) {
-    const auto f = fault(axis);
-    const Vector<N> w{f.w(0), f.w(1), f.w(2)};
-    Vector<N> u = axis == 0 ? P : plus(P, D);
-    D = axis == 0 ? w : plus(D, w);
-    if constexpr (kAngles) {
-      if (program.lever[axis].exists) u = plus(u, lever_at(program.lever[axis], q.v[axis]));
-      D = turned_by(f, u, D);
-    }
-    P.v[axis] = P.v[axis] + q.v[axis];
-  });
-  return D;
+// The deviation behind an axis.
+template <bool kAngles, class N, class F>
+SERVOMILL_INLINE Vector<N> behind(const F& f, const Vector<N>& g, const Vector<N>& D) {
+  const Vector<N> sum{g.v[0] + D.v[0], g.v[1] + D.v[1], g.v[2] + D.v[2]};
+  if constexpr (kAngles) return turned_by(f, D, sum);
+  return sum;
 }
 
 // Numbers along X, Y, Z in the order of the axes.
@@ -50,17 +31,60 @@ SERVOMILL_INLINE Vector<N> in_order(const StraightProgram& program, const N* xyz
 
 // --- one pose -----------------------------------------------------------------------------------
 
+// From the spindle to each axis and on its lever; lanes: axes from `first` on.
+template <std::size_t first>
+SERVOMILL_INLINE Vector<Register> levers(const StraightProgram& program, const double* tip,
+                                         const Vector<double>& q, const Register& own_q) {
+  Vector<Register> u;
+  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
+    const double p = tip[program.joint[i]];
+    u.v[i] = lanes_from([&](std::size_t lane)
+                            SERVOMILL_INLINE_LAMBDA { return first + lane > i ? p + q.v[i] : p; });
+    if (program.has_levers) {
+      u.v[i] = u.v[i] + fms(own_q, load(program.lever_slope[i], first),
+                            load(program.lever_centre[i], first));
+    }
+  });
+  return u;
+}
+
+// Gains and turns of all axes, one of which is read where it lies.
+struct Gains {
+  LaneArray g_[3], a_[3], h_[3];
+};
+struct TurnInMemory {
+  const Gains& all;
+  std::size_t axis;
+
+  SERVOMILL_INLINE Vector<double> g() const {
+    return {all.g_[0][axis], all.g_[1][axis], all.g_[2][axis]};
+  }
+  SERVOMILL_INLINE const double& a(std::size_t i) const { return all.a_[i][axis]; }
+  SERVOMILL_INLINE const double& h(std::size_t i) const { return all.h_[i][axis]; }
+};
+
 // False where this way does not lead to the end.
 template <Way way, bool kAngles>
 SERVOMILL_INLINE bool try_one(const StraightProgram& program, const VolumetricPower* tables,
                               const double* tip, const double* Q, double* out) {
   const Vector<double> q = in_order(program, Q);
-  OnePoseFaults faults;
-  if (!find_faults<way, kStraightAxes>(program.functions, kAngles, tables, q.v, faults)) {
-    return false;
-  }
-  const auto fault = [&](std::size_t axis) { return FaultInMemory{faults, axis}; };
-  const Vector<double> D = deviation<kAngles>(program, q, in_order(program, tip), fault);
+  Gains gains;
+  const auto keep = [&](auto block, const Register& own_q, const Fault& f) SERVOMILL_INLINE_LAMBDA {
+    constexpr std::size_t first = block() * kRegister;
+    const auto g = gain<kAngles>(f, levers<first>(program, tip, q, own_q));
+    repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
+      store(g.v[i], gains.g_[i], first);
+      if constexpr (kAngles) {
+        store(f.a_[i], gains.a_[i], first);
+        store(f.h_[i], gains.h_[i], first);
+      }
+    });
+  };
+  if (!find_faults<way, kStraightAxes>(program.functions, kAngles, tables, q.v, keep)) return false;
+  const TurnInMemory first{gains, 0}, second{gains, 1}, third{gains, 2};
+  Vector<double> D = first.g();
+  D = behind<kAngles>(second, second.g(), D);
+  D = behind<kAngles>(third, third.g(), D);
   for (std::size_t n = 0; n < 3; ++n) out[program.joint[n]] = D.v[n];
   return true;
 }
@@ -99,36 +123,38 @@ SERVOMILL_INLINE Vector<Register> tip_of(const StraightProgram& program, const P
 }
 
 template <Way way, bool kAngles>
-struct FaultsOfPoses {
-  const VolumetricFunctions& functions;
-  const Vector<Register>& q;
-  Register sums[kStraightAxes][kErrorComponents];
-  Register t2_max;
-
-  SERVOMILL_INLINE Fault operator()(std::size_t axis) {
-    const auto coefficient = [&](std::size_t power, std::size_t component) {
-      return all<Register>(functions.polynomial[power].e[component][axis]);
-    };
-    const auto terms = [&](std::size_t component) { return sums[axis][component]; };
-    Fault f;
-    find_fault<way>(functions, kAngles, q.v[axis], coefficient, terms, f, t2_max);
-    return f;
-  }
-};
-
-template <Way way, bool kAngles>
 SERVOMILL_INLINE bool try_many(const StraightProgram& program, const Poses& poses,
                                Register (&out)[3]) {
   const VolumetricFunctions& functions = program.functions;
   const Vector<Register> q = in_order(program, poses.Q);
-  FaultsOfPoses<way, kAngles> fault{functions, q, {}, {}};
+  Register sums[kStraightAxes][kErrorComponents];
   if constexpr (way != Way::cubic) {
     const VolumetricPower* const tables = poses.data != nullptr ? poses.data->tables : nullptr;
-    if (functions.has_terms) find_terms(functions, tables, poses.first, q.v, fault.sums);
+    if (functions.has_terms) find_terms(functions, tables, poses.first, q.v, sums);
   }
-  const Vector<Register> D = deviation<kAngles>(program, q, tip_of(program, poses), fault);
+  Vector<Register> P = tip_of(program, poses), D;
+  Register t2_max{};
+  repeat<kStraightAxes>([&](auto axis) SERVOMILL_INLINE_LAMBDA {
+    const auto coefficient = [&](std::size_t power, std::size_t component) SERVOMILL_INLINE_LAMBDA {
+      return all<Register>(functions.polynomial[power].e[component][axis]);
+    };
+    const auto terms = [&](std::size_t component)
+                           SERVOMILL_INLINE_LAMBDA { return sums[axis][component]; };
+    Fault f;
+    find_fault<way>(functions, kAngles, q.v[axis], coefficient, terms, f, t2_max);
+    Vector<Register> u = P;
+    if (program.has_levers) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        u.v[i] = u.v[i] + fms(q.v[axis], all<Register>(program.lever_slope[i][axis]),
+                              all<Register>(program.lever_centre[i][axis]));
+      }
+    }
+    const Vector<Register> g = gain<kAngles>(f, u);
+    D = axis == 0 ? g : behind<kAngles>(f, g, D);
+    P.v[axis] = P.v[axis] + q.v[axis];
+  });
   for (std::size_t n = 0; n < 3; ++n) out[program.joint[n]] = D.v[n];
-  return way == Way::general || !kAngles || are_small_turns(fault.t2_max);
+  return way == Way::general || !kAngles || are_small_turns(t2_max);
 }
 
 [[gnu::noinline]] void many_in_general(const StraightProgram& program, const Poses& poses,
@@ -149,7 +175,7 @@ void lanes(const StraightProgram& program, const StraightData* data, const doubl
     const Poses poses{data, tip, first, {load(Q[0], first), load(Q[1], first), load(Q[2], first)}};
     Register offset[3];
     find_offsets<way, kAngles>(program, poses, offset);
-    repeat<3>([&](auto i) { store(offset[i], out[i], first); });
+    repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { store(offset[i], out[i], first); });
   }
 }
 
@@ -195,7 +221,7 @@ SERVOMILL_INLINE void take_poses(const double* Q, Register (&xyz)[3]) {
 #endif
 #else
 SERVOMILL_INLINE void take_poses(const double* Q, Register (&xyz)[3]) {
-  repeat<3>([&](auto i) {
+  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
     xyz[i] = lanes_from([&](std::size_t lane) { return Q[kMachineJoints * lane + i]; });
   });
 }
@@ -213,7 +239,7 @@ constexpr int place_in_xyz(std::size_t flat, std::size_t lane) {
 template <std::size_t... lane>
 SERVOMILL_INLINE void put_poses(const Register (&xyz)[3], double* out,
                                 std::index_sequence<lane...>) {
-  repeat<3>([&](auto part) {
+  repeat<3>([&](auto part) SERVOMILL_INLINE_LAMBDA {
     constexpr std::size_t first = part() * kRegister;
     const Register xy = __builtin_shufflevector(xyz[0], xyz[1], place_in_xy(first + lane)...);
     store(__builtin_shufflevector(xy, xyz[2], place_in_xyz(first + lane, lane)...), out + first);
@@ -224,7 +250,10 @@ template <Way way, bool kAngles>
 void many(const StraightProgram& program, const StraightData* data, const double* tip,
           const double* Q, std::size_t blocks, double* out) {
   for (std::size_t n = 0; n < blocks * kLaneWidth; n += kRegister) {
-    Poses poses{data, tip, n % kLaneWidth, {}};
+    Poses poses;
+    poses.data = data;
+    poses.tip = tip;
+    poses.first = n % kLaneWidth;
     take_poses(Q, poses.Q);
     Register offset[3];
     find_offsets<way, kAngles>(program, poses, offset);

@@ -1,12 +1,12 @@
 /// The offset of a straight machine, the rule among machines: X, Y and Z follow each other in any
 /// order and on any side of the bed, and no other axis has errors. The tool travels through the
 /// three, from the spindle to the workpiece; each shifts the ideal tip P by q along its direction
-/// and adds to the deviation D of the true tip
+/// and adds to the deviation D of the true tip. With the shift w and the turn R of its errors
 ///
-///     D <- D + w + (R - 1)(P + D + slope q - c)        P <- P + q
+///     g = w + (R - 1)(P + slope q - c)     D <- g + D + (R - 1) D     P <- P + q
 ///
-/// with the shift w and the turn R of its errors, both about c. What is left after the third is the
-/// offset: ideal turns behind it are undone at once, ideal turns before it only place the tip.
+/// where g does not wait for the axes before. What is left behind the third axis is the offset:
+/// ideal turns behind it are undone at once, ideal turns before it only place the tip.
 ///
 /// Directions are renamed in the order in which the tool passes their axes: axis 0 moves along
 /// direction 0. Where that mirrors X Y Z, all angles are counted with the opposite sign.
@@ -18,16 +18,11 @@ namespace servomill::plant {
 
 inline constexpr std::size_t kStraightAxes = 3;
 
-/// The lever of a turn begins at c - slope q (plant/geometry/volumetric_kernel.h).
-struct StraightLever {
-  bool exists;                                         // one of the numbers is not 0
-  double slope[kStraightAxes], centre[kStraightAxes];  // m/m, m
-};
-
 /// Points into memory of its owner.
 struct StraightProgram {
   std::uint8_t joint[kStraightAxes];  // place in Joints and direction of axes 0, 1, 2
-  StraightLever lever[kStraightAxes];
+  bool has_levers;                    // slope or c is not 0 for some axis
+  LaneArray lever_slope[kStraightAxes], lever_centre[kStraightAxes];  // m/m, m; lanes: axes
   VolumetricFunctions functions;
 };
 

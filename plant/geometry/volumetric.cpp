@@ -160,12 +160,21 @@ VolumetricError VolumetricModel::first_order_error(const Joints& Q, const Vector
 }
 
 Vector3d VolumetricModel::joint_offset(const Joints& Q, const Vector3d& p_ST) const {
-  if (!linear_axes_are_orthogonal_) {
-    return least_squares(linear_jacobian(chain_, Q), error(Q, p_ST).dp_W).x;
-  }
   Vector3d d;
-  evaluation_->offset(Q, p_ST, d.data());
+  if (evaluation_->is_plain()) {
+    evaluation_->plain_offset(Q, p_ST, d.data());
+  } else {
+    find_offset(Q, p_ST, d);
+  }
   return d;
+}
+
+void VolumetricModel::find_offset(const Joints& Q, const Vector3d& p_ST, Vector3d& d) const {
+  if (linear_axes_are_orthogonal_) {
+    evaluation_->offset(Q, p_ST, d.data());
+  } else {
+    d = least_squares(linear_jacobian(chain_, Q), error(Q, p_ST).dp_W).x;
+  }
 }
 
 void VolumetricModel::joint_offsets(std::span<const Joints> Q, const Vector3d& p_ST,

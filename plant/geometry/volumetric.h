@@ -114,6 +114,9 @@ class VolumetricModel {
     Eigen::Matrix3d R_location = Eigen::Matrix3d::Identity();  // of L
   };
 
+  // joint_offset by the longer ways.
+  void find_offset(const Joints& Q, const Eigen::Vector3d& p_ST, Eigen::Vector3d& d) const;
+
   static Eigen::Vector3d shift_of(const Screw& e) { return e.head<3>(); }
   static Eigen::Vector3d turn_of(const Screw& e) { return e.segment<3>(4); }
   static Prepared prepare(const ChainAxis& axis, const ErrorModel& errors);

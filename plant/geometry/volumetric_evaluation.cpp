@@ -181,9 +181,9 @@ void PreparedFunctions::join_waves() {
 VolumetricFunctions PreparedFunctions::finish() {
   join_waves();
   constexpr std::size_t kCubic = 4;  // coefficients
-  powers_.resize(std::max(powers_.size() + powers_.size() % 2, kCubic));
+  powers_.resize(std::max(powers_.size(), kCubic));
   functions_.polynomial = powers_.data();
-  functions_.pairs = powers_.size() / 2;
+  functions_.degree = powers_.size() - 1;
   functions_.waves = waves_.data();
   functions_.harmonics = harmonics_.data();
   functions_.has_terms = !waves_.empty() || !tables_.empty();
@@ -270,6 +270,7 @@ void VolumetricEvaluation::find_straight_way(const MachineChain& chain, const Er
   for (std::size_t n = 0; n < kStraightAxes; ++n) add_straight_axis(n, chain, errors);
   straight_.functions = straight_functions_.finish();
   straight_.functions.axes = kStraightAxes;
+  is_plain_ = tip_turns_ == 0 && !straight_functions_.has_tables();
 }
 
 void VolumetricEvaluation::add_straight_axis(std::size_t n, const MachineChain& chain,
@@ -280,13 +281,13 @@ void VolumetricEvaluation::add_straight_axis(std::size_t n, const MachineChain& 
   const auto functions = functions_of(chain.at(kAllAxes[step.direction]), errors);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = order[i];
-    straight_.lever[n].slope[i] = step.lever_slope[k];
-    straight_.lever[n].centre[i] = step.centre[k];
+    straight_.lever_slope[i][n] = step.lever_slope[k];
+    straight_.lever_centre[i][n] = step.centre[k];
     straight_functions_.add(n, i, step.joint, functions[k]);
     straight_functions_.add(n, 3 + i, step.joint,
                             scaled(functions[3 + k], is_mirrored ? -1.0 : 1.0));
   }
-  straight_.lever[n].exists = step.has_lever;
+  straight_.has_levers = straight_.has_levers || step.has_lever;
 }
 
 // --- evaluation ---------------------------------------------------------------------------------
@@ -408,7 +409,11 @@ StraightData VolumetricEvaluation::data_of_eight(const Coordinate& q, const Vect
   return data;
 }
 
-void VolumetricEvaluation::other_offset(const Joints& Q, const Vector3d& p_ST, double* out) const {
+void VolumetricEvaluation::offset(const Joints& Q, const Vector3d& p_ST, double* out) const {
+  if (is_plain_) {
+    plain_offset(Q, p_ST, out);
+    return;
+  }
   if (!is_straight_) {
     one(kernel_.offset, offset_rotary_, Q, p_ST, out);
     return;
@@ -434,7 +439,7 @@ void VolumetricEvaluation::offsets(std::span<const Joints> Q, const Vector3d& p_
 void VolumetricEvaluation::straight_offsets(std::span<const Joints> Q, const Vector3d& p_ST,
                                             double* out) const {
   in_blocks(Q, kOffset, out, [&](const Joints* poses, std::size_t blocks, double* to) {
-    if (is_plain()) {
+    if (is_plain_) {
       straight_kernel_.many(straight_, nullptr, p_ST.data(), poses->data(), blocks, to);
       return;
     }
@@ -449,7 +454,7 @@ void VolumetricEvaluation::straight_offsets(std::span<const Joints> Q, const Vec
 
 void VolumetricEvaluation::offsets(const LaneArray (&Q)[kJoints], const Vector3d& p_ST,
                                    LaneArray (&out)[kLinearJoints]) const {
-  if (is_plain()) {
+  if (is_plain_) {
     straight_kernel_.lanes(straight_, nullptr, p_ST.data(), Q, out);
     return;
   }

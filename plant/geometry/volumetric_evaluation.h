@@ -84,28 +84,23 @@ class VolumetricEvaluation {
   void error(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const {
     one(kernel_.error, rotary_.size(), Q, p_ST, out);
   }
-  void offset(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const {
-    if (is_plain()) {
-      straight_kernel_.one(straight_, nullptr, p_ST.data(), Q.data(), out);
-    } else {
-      other_offset(Q, p_ST, out);
-    }
-  }
+  void offset(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const;
   void tools(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
   void errors(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
   void offsets(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
   void offsets(const LaneArray (&Q)[kJoints], const Eigen::Vector3d& p_ST,
                LaneArray (&out)[kLinearJoints]) const;
 
-  /// The offset goes the straight way (straight_kernel.h).
+  /// Offsets go the straight way (straight_kernel.h).
   bool is_straight() const { return is_straight_; }
-
- private:
-  // Straight, and nothing is to be found before the kernel is called.
-  bool is_plain() const {
-    return is_straight_ && tip_turns_ == 0 && !straight_functions_.has_tables();
+  /// They do, and nothing is to be found before.
+  bool is_plain() const { return is_plain_; }
+  /// The offset then.
+  void plain_offset(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const {
+    straight_kernel_.one(straight_, nullptr, p_ST.data(), Q.data(), out);
   }
 
+ private:
   void add_steps_of(const ChainAxis& axis, const ErrorModel& errors);
   void find_ends();
   void find_straight_way(const MachineChain& chain, const ErrorModel& errors);
@@ -121,7 +116,6 @@ class VolumetricEvaluation {
   }
   void one_with_data(VolumetricKernel::One call, std::size_t turned, const Joints& Q,
                      const Eigen::Vector3d& p_ST, double* out) const;
-  void other_offset(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const;
   void many(VolumetricKernel::Many call, std::size_t turned, std::size_t numbers,
             std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
   void eight(VolumetricKernel::Many call, std::size_t turned, const Joints* Q,
@@ -139,7 +133,7 @@ class VolumetricEvaluation {
   std::vector<ChainAxis> rotary_;  // in the order of the steps
   std::size_t offset_rotary_ = 0;  // those among the steps that offsets need
 
-  bool is_straight_ = false;
+  bool is_straight_ = false, is_plain_ = false;
   StraightKernel straight_kernel_{};
   StraightProgram straight_{};
   PreparedFunctions straight_functions_;  // axes counted as the tool passes them

@@ -23,7 +23,7 @@ SERVOMILL_INLINE TurnFactors small_turn_factors(const Register& t2) {
 }
 
 // a is computed from h: what belongs together turns by some angle, even where h is large.
-inline TurnFactors turn_factors(const Register& t2) {
+[[gnu::noinline]] inline TurnFactors turn_factors(const Register& t2) {
   TurnFactors f = small_turn_factors(t2);
   for (std::size_t n = 0; n < kRegister; ++n) {
     if (t2[n] < kSmallTurn * kSmallTurn) continue;
@@ -66,23 +66,23 @@ struct Fault {
   SERVOMILL_INLINE const Register& h(std::size_t i) const { return h_[i]; }
 };
 
-// Several components at once; coefficient(power, component), terms(component). Even and odd pairs
-// of powers, (c0 + c1 q) + (c2 + c3 q) q^2 + ..., which wait for each other half as long as
-// Horner's rule.
+// Several components at once, by Horner's rule; coefficient(power, component), terms(component).
 template <Way way, std::size_t kComponents, class F, class G>
 SERVOMILL_INLINE void evaluate(const VolumetricFunctions& functions, const Register& q,
                                F coefficient, G terms, Register (&e)[kErrorComponents]) {
-  const Register q2 = q * q;
-  const auto pair = [&](std::size_t i, auto c) {
-    return fma(coefficient(2 * i + 1, c), q, coefficient(2 * i, c));
+  const auto next = [&](std::size_t power) SERVOMILL_INLINE_LAMBDA {
+    repeat<kComponents>(
+        [&](auto c) SERVOMILL_INLINE_LAMBDA { e[c] = fma(e[c], q, coefficient(power, c)); });
   };
-  const std::size_t last = way == Way::cubic ? 1 : functions.pairs - 1;
-  repeat<kComponents>([&](auto c) { e[c] = pair(last, c); });
-  for (std::size_t i = last; i-- > 0;) {
-    repeat<kComponents>([&](auto c) { e[c] = fma(e[c], q2, pair(i, c)); });
-  }
-  if constexpr (way != Way::cubic) {
-    if (functions.has_terms) repeat<kComponents>([&](auto c) { e[c] = e[c] + terms(c); });
+  const std::size_t degree = way == Way::cubic ? 3 : functions.degree;
+  repeat<kComponents>([&](auto c) SERVOMILL_INLINE_LAMBDA { e[c] = coefficient(degree, c); });
+  if constexpr (way == Way::cubic) {
+    repeat<3>([&](auto done) SERVOMILL_INLINE_LAMBDA { next(2 - done); });
+  } else {
+    for (std::size_t i = degree; i-- > 0;) next(i);
+    if (functions.has_terms) {
+      repeat<kComponents>([&](auto c) SERVOMILL_INLINE_LAMBDA { e[c] = e[c] + terms(c); });
+    }
   }
 }
 
@@ -140,44 +140,30 @@ inline void find_terms(const VolumetricFunctions& functions, const VolumetricPow
   }
 }
 
-// Faults of all axes, one of which is read where it lies.
-struct OnePoseFaults {
-  LaneArray w_[3], a_[3], h_[3];
-};
-struct FaultInMemory {
-  const OnePoseFaults& all;
-  std::size_t axis;
-
-  SERVOMILL_INLINE const double& w(std::size_t i) const { return all.w_[i][axis]; }
-  SERVOMILL_INLINE const double& a(std::size_t i) const { return all.a_[i][axis]; }
-  SERVOMILL_INLINE const double& h(std::size_t i) const { return all.h_[i][axis]; }
-};
-
-// False where a turn is too large for this way. q: of the first kAxes axes.
-template <Way way, std::size_t kAxes>
+// Calls use(first, q, fault) for each register of axes, which begins with axis `first`. q: of the
+// first kAxes axes. False where a turn is too large for this way.
+template <Way way, std::size_t kAxes, class Use>
 SERVOMILL_INLINE bool find_faults(const VolumetricFunctions& functions, bool has_angles,
-                                  const VolumetricPower* tables, const double* q,
-                                  OnePoseFaults& faults) {
+                                  const VolumetricPower* tables, const double* q, Use use) {
   VolumetricPower sums;
   if constexpr (way != Way::cubic) {
     if (functions.has_terms) find_terms(functions, tables, q, sums);
   }
   Register t2_max{};
-  repeat<(kAxes + kRegister - 1) / kRegister>([&](auto block) {
+  repeat<(kAxes + kRegister - 1) / kRegister>([&](auto block) SERVOMILL_INLINE_LAMBDA {
     constexpr std::size_t first = block() * kRegister;
     if (first >= functions.axes) return;
-    const auto coefficient = [&](std::size_t power, std::size_t component) {
+    const auto coefficient = [&](std::size_t power, std::size_t component) SERVOMILL_INLINE_LAMBDA {
       return load(functions.polynomial[power].e[component], first);
     };
-    const auto terms = [&](std::size_t component) { return load(sums.e[component], first); };
-    const Register at =
-        lanes_from([&](std::size_t n) { return first + n < kAxes ? q[first + n] : 0.0; });
-    Fault f;
-    find_fault<way>(functions, has_angles, at, coefficient, terms, f, t2_max);
-    repeat<3>([&](auto i) { store(f.w_[i], faults.w_[i], first); });
-    if (!has_angles) return;
-    repeat<3>([&](auto i) { store(f.a_[i], faults.a_[i], first); });
-    repeat<3>([&](auto i) { store(f.h_[i], faults.h_[i], first); });
+    const auto terms = [&](std::size_t component)
+                           SERVOMILL_INLINE_LAMBDA { return load(sums.e[component], first); };
+    const Register at = lanes_from([&](std::size_t n) SERVOMILL_INLINE_LAMBDA {
+      return first + n < kAxes ? q[first + n] : 0.0;
+    });
+    Fault fault;
+    find_fault<way>(functions, has_angles, at, coefficient, terms, fault, t2_max);
+    use(block, at, fault);
   });
   return way == Way::general || !has_angles || are_small_turns(t2_max);
 }

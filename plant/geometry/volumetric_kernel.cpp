@@ -139,6 +139,28 @@ SERVOMILL_INLINE void solve(const VolumetricProgram& program, Source& at, const 
 
 // --- one pose: axes in lanes --------------------------------------------------------------------
 
+// Faults of all joints, one of which is read where it lies.
+struct OnePoseFaults {
+  LaneArray w_[3], a_[3], h_[3];
+
+  template <std::size_t block>
+  SERVOMILL_INLINE void put(const Fault& f, bool has_angles) {
+    constexpr std::size_t first = block * kRegister;
+    repeat<3>([&](auto i) { store(f.w_[i], w_[i], first); });
+    if (!has_angles) return;
+    repeat<3>([&](auto i) { store(f.a_[i], a_[i], first); });
+    repeat<3>([&](auto i) { store(f.h_[i], h_[i], first); });
+  }
+};
+struct FaultInMemory {
+  const OnePoseFaults& all;
+  std::size_t joint;
+
+  SERVOMILL_INLINE const double& w(std::size_t i) const { return all.w_[i][joint]; }
+  SERVOMILL_INLINE const double& a(std::size_t i) const { return all.a_[i][joint]; }
+  SERVOMILL_INLINE const double& h(std::size_t i) const { return all.h_[i][joint]; }
+};
+
 struct OnePose {
   const OnePoseData* data;
   const double* Q;
@@ -159,7 +181,10 @@ SERVOMILL_INLINE bool try_one(const VolumetricProgram& program, const OnePoseDat
   OnePoseFaults faults;
   const VolumetricPower* const tables = data != nullptr ? &data->tables : nullptr;
   const VolumetricFunctions& functions = program.functions;
-  if (!find_faults<way, kMachineJoints>(functions, functions.has_angles, tables, Q, faults)) {
+  const auto keep = [&](auto block, const Register&, const Fault& f) {
+    faults.put<block()>(f, functions.has_angles);
+  };
+  if (!find_faults<way, kMachineJoints>(functions, functions.has_angles, tables, Q, keep)) {
     return false;
   }
   OnePose at{data, Q, faults};

@@ -65,8 +65,8 @@ struct VolumetricPower {
 
 /// Polynomials and harmonics of axes, which are counted as the program that uses them does.
 struct VolumetricFunctions {
-  const VolumetricPower* polynomial;  // c0, c1, ...; an even number of them
-  std::size_t pairs;                  // of coefficients, >= 2
+  const VolumetricPower* polynomial;  // c0, c1, ...
+  std::size_t degree;                 // >= 3
   const VolumetricWaves* waves;
   std::size_t number_of_waves;
   const VolumetricHarmonic* harmonics;  // in the order of their waves; behind the last one stands

@@ -15,6 +15,7 @@
 #include "plant/vocabulary/lanes.h"
 
 #define SERVOMILL_INLINE [[gnu::always_inline]] inline
+#define SERVOMILL_INLINE_LAMBDA __attribute__((always_inline))
 
 namespace servomill::plant {
 namespace {  // NOLINT: one copy for each instruction set
@@ -80,22 +81,29 @@ SERVOMILL_INLINE N fms(const N& a, const N& b, const N& c) {
   return fma(a, b, -c);
 }
 
-// The next whole number below 2^51, ties to even, by the rounding of an addition.
+// As many whole numbers.
 template <class N>
-SERVOMILL_INLINE N nearest(const N& x) {
-  return (x + 0x1.8p52) - 0x1.8p52;
-}
+struct WholeNumbers {
+  using Type [[gnu::vector_size(sizeof(N))]] = long long;
+};
+template <>
+struct WholeNumbers<double> {
+  using Type = long long;
+};
 
 // The sine, with an error below one unit in the last place of 1: Taylor's series of x less the
 // nearest multiple n of pi, which is subtracted in three parts. The products of the first two are
-// exact for n < 2^20; beyond, their rounding is no larger than that of x itself.
+// exact for n < 2^20; beyond, their rounding is no larger than that of x itself. n is what the
+// rounding of an addition leaves in the last bits; the last one changes the sign.
 template <class N>
 SERVOMILL_INLINE N sine(const N& x) {
-  const N n = nearest<N>(x * 0x1.45f306dc9c883p-2);
-  const N odd = n - 2.0 * nearest<N>(0.5 * n);  // -1, 0, 1
+  using Whole = typename WholeNumbers<N>::Type;
+  const N shifted = x * 0x1.45f306dc9c883p-2 + 0x1.8p52;
+  const N n = shifted - 0x1.8p52;
+  const Whole sign = __builtin_bit_cast(Whole, shifted) << 63;
   const N rest = fnma(n, all<N>(0x1.3198a2e037073p-68),
                       fnma(n, all<N>(0x1.0b4611a6p-33), fnma(n, all<N>(0x1.921fb544p1), x)));
-  const N r = rest * (1.0 - 2.0 * odd * odd);
+  const N r = __builtin_bit_cast(N, __builtin_bit_cast(Whole, rest) ^ sign);
   const N z = r * r, zz = z * z;
   const auto series = [&zz](double c0, double c1, double c2, double c3, double c4) {
     N sum = fma(zz, all<N>(c4), all<N>(c3));

@@ -26,6 +26,8 @@ TEST(VolumetricModel, DoesNotAllocate) {
     model.poses(many, p_ST, poses);
     model.errors(many, p_ST, each);
     model.joint_offsets(many, p_ST, offsets);
+    LaneArray lanes[kJoints]{}, offsets_in_lanes[kLinearJoints];
+    model.joint_offsets(lanes, p_ST, offsets_in_lanes);
     const Eigen::Vector3d p_WT = model.forward(Q, p_ST).p_WT;
     const Eigen::Vector3d dp = model.error(Q, p_ST).dp_W;
     const Eigen::Vector3d first = model.first_order_error(Q, p_ST).dp_W;

@@ -95,9 +95,9 @@ ToolPose pose_by_matrices(const MachineChain& chain, const ErrorModel& errors, c
 // --- machines and errors that take all ways -----------------------------------------------------
 
 const char* const kMachines[] = {
-    "[w b X Y Z t]",        "[w C' B' b X Y Z t]", "[w X b Y Z t]",
-    "[w b X Y Z C B t]",    "[w C' X b B Z t]",    "[w Y' A' X' b Z C t]",
-    "[w X' Y' Z' b C A t]", "[w b Z Y X t]",       "[w C' b X Y t]"};
+    "[w b X Y Z t]",    "[w C' B' b X Y Z t]",  "[w X b Y Z t]",        "[w b X Y Z C B t]",
+    "[w C' X b B Z t]", "[w Y' A' X' b Z C t]", "[w X' Y' Z' b C A t]", "[w b Z Y X t]",
+    "[w C' b X Y t]",   "[w Y' b X Z A t]",     "[w b Z X Y t]",        "[w Y' Z' X' b t]"};
 
 ErrorModel cubics(Uniform& random, double size) {
   ErrorModel errors;
@@ -108,6 +108,14 @@ ErrorModel cubics(Uniform& random, double size) {
   }
   for (AxisWords& axis : errors.locations) {
     for (double& e : axis) e = size * random();
+  }
+  return errors;
+}
+
+ErrorModel of_linear_axes(ErrorModel errors) {
+  for (std::size_t axis = 3; axis < kAxisWords; ++axis) {
+    errors.components[axis] = {};
+    errors.locations[axis].setZero();
   }
   return errors;
 }
@@ -144,6 +152,17 @@ std::vector<ErrorCase> error_cases(Uniform& random) {
   straightness.component("EYX"_err) = harmonic(1e-5, 0.06, 0.2);
   straightness.location("EC0Y"_err) = 1e-5;
   all.push_back({"straightness", straightness});
+  // those of linear axes only: cubics, some turns too large for small ones, and all terms
+  all.push_back({"linear axes, cubic", of_linear_axes(cubics(random, 1e-5))});
+  all.push_back({"linear axes, large turns", of_linear_axes(cubics(random, 7e-4))});
+  all.push_back({"linear axes, mixed", of_linear_axes(mixed)});
+  all.push_back({"linear axes, mixed and large turns", of_linear_axes(scaled(mixed, 60.0))});
+  ErrorModel harmonics;  // more waves than a register holds
+  for (int n = 1; n < 12; ++n) {
+    auto& f = harmonics.component({kAllAxes[n % 6U], kAllAxes[n % 3U], false});
+    f = f + harmonic(1e-5 * random(), 0.05 * n);
+  }
+  all.push_back({"linear axes, harmonics", harmonics});
   all.push_back({"none", {}});
   return all;
 }
@@ -213,23 +232,89 @@ TEST(VolumetricLanes, ManyPosesHaveTheBitsOfEachAlone) {
   });
 }
 
+TEST(VolumetricLanes, EightPosesInLanesHaveTheBitsOfEachAlone) {
+  for_all_cases(75, [](const MachineChain& chain, const ErrorModel& errors, Uniform& random) {
+    const VolumetricModel model(chain, errors);
+    const Vector3d p_ST = 0.2 * random.vector();
+    const std::vector<Joints> Q = random_poses(chain, random, kLaneWidth);
+    LaneArray in_lanes[kJoints], d[kLinearJoints];
+    for (std::size_t lane = 0; lane < kLaneWidth; ++lane) {
+      for (int j = 0; j < kJoints; ++j) in_lanes[j][lane] = Q[lane][j];
+    }
+    model.joint_offsets(in_lanes, p_ST, d);
+    for (std::size_t lane = 0; lane < kLaneWidth; ++lane) {
+      const Vector3d alone = model.joint_offset(Q[lane], p_ST);
+      for (int i = 0; i < kLinearJoints; ++i) ASSERT_EQ(d[i][lane], alone[i]);
+    }
+  });
+}
+
+// Law (5) of VolumetricModel: the shift of the linear axes moves the ideal tip by the error. The
+// products of matrices know nothing of the ways on which offsets are computed.
+TEST(VolumetricLanes, OffsetsMoveTheIdealTipByTheErrorOfProductsOfMatrices) {
+  for_all_cases(76, [](const MachineChain& chain, const ErrorModel& errors, Uniform& random) {
+    if (number_of_linear_axes(chain) < kLinearJoints) return;
+    const VolumetricModel model(chain, errors);
+    const Vector3d p_ST = 0.2 * random.vector();
+    for (const Joints& Q : random_poses(chain, random, 4)) {
+      const Vector3d error = pose_by_matrices(chain, errors, Q, p_ST).p_WT -
+                             pose_by_matrices(chain, ErrorModel{}, Q, p_ST).p_WT;
+      const Vector3d d = model.joint_offset(Q, p_ST);
+      ASSERT_LT((linear_jacobian(chain, Q) * d - error).norm(), kRounding);
+    }
+  });
+}
+
+TEST(VolumetricLanes, MostMachinesGoTheStraightWay) {
+  const auto is_straight = [](const char* text, ErrorName name) {
+    ErrorModel errors;
+    if (name.is_location) {
+      errors.location(name) = 1e-5;
+    } else {
+      errors.component(name) = constant(1e-5);
+    }
+    return VolumetricEvaluation(make_chain(parse_structure(text)), errors).is_straight();
+  };
+  // linear axes in a row, of whatever order and side, which alone have errors
+  for (const char* text : {"[w b X Y Z t]", "[w b Z X Y t]", "[w C' B' X b Y Z t]",
+                           "[w Z' Y' X' b C A t]", "[w C' b Y Z X A t]"}) {
+    EXPECT_TRUE(is_straight(text, "EAX"_err)) << text;
+    EXPECT_TRUE(is_straight(text, "EC0Y"_err)) << text;
+  }
+  // a rotary axis between, one with errors, two linear axes
+  EXPECT_FALSE(is_straight("[w X b B Y Z t]", "EAX"_err));
+  EXPECT_FALSE(is_straight("[w C' B' X b Y Z t]", "EXC"_err));
+  EXPECT_FALSE(is_straight("[w b X Y Z C A t]", "EB0C"_err));
+  EXPECT_FALSE(is_straight("[w b X Y t]", "EAX"_err));
+}
+
 TEST(VolumetricLanes, AgreeOnAllInstructionSets) {
   for_all_cases(73, [](const MachineChain& chain, const ErrorModel& errors, Uniform& random) {
     const Vector3d p_ST = 0.2 * random.vector();
     const std::vector<Joints> Q = random_poses(chain, random, 8);
-    std::vector<std::array<double, 48>> results;
+    std::vector<std::array<double, 72>> results;  // eight tools, eight offsets
     for (const SimdLevel level : simd_levels()) {
       const VolumetricEvaluation evaluation(chain, errors, level);
       auto& many = results.emplace_back();
+      many.fill(0.0);
       evaluation.tools(Q, p_ST, many.data());
       for (std::size_t n = 0; n < Q.size(); ++n) {
         std::array<double, 6> alone;
         evaluation.tool(Q[n], p_ST, alone.data());
         for (std::size_t i = 0; i < 6; ++i) ASSERT_EQ(many[6 * n + i], alone[i]) << name_of(level);
       }
+      if (!evaluation.is_straight()) continue;
+      evaluation.offsets(Q, p_ST, many.data() + 48);
+      for (std::size_t n = 0; n < Q.size(); ++n) {
+        std::array<double, 3> alone;
+        evaluation.offset(Q[n], p_ST, alone.data());
+        for (std::size_t i = 0; i < 3; ++i) {
+          ASSERT_EQ(many[48 + 3 * n + i], alone[i]) << name_of(level);
+        }
+      }
     }
     for (std::size_t l = 1; l < results.size(); ++l) {
-      for (std::size_t i = 0; i < 48; ++i) ASSERT_NEAR(results[l][i], results[0][i], kRounding);
+      for (std::size_t i = 0; i < 72; ++i) ASSERT_NEAR(results[l][i], results[0][i], kRounding);
       ASSERT_EQ(results[l], results[1]);  // all but the baseline round once in a b + c
     }
   });
