@@ -115,10 +115,10 @@ class CaseRun {
   bool goes_on_at(Tick n) const { return n <= end_ && result_.outcome.finished; }
 
   // Feedback hardware: the model evaluated one period ago acts now, the next one is begun.
-  void evaluate_error_model() {
-    axes_.displace(d_next_, run_);
-    d_next_ = in_.feedback->evaluate(axes_.Q_meas(run_));
-  }
+  void displace() { axes_.displace(d_next_, run_); }
+  void displace_next(const Eigen::Vector3d& d) { d_next_ = d; }
+  strategies::FeedbackPart* feedback() const { return in_.feedback.get(); }
+  Joints Q_meas() const { return axes_.Q_meas(run_); }
 
   void interpolate(Tick n) {
     set_ = set_point_.advance(reference_.at(nc_.periods.seconds(n)));
@@ -201,6 +201,42 @@ class CaseRun {
   CaseResult result_;
 };
 
+// Feedback parts of runs that are evaluated together.
+class Feedbacks {
+ public:
+  bool take(CaseRun& run) {
+    if (!runs_.empty() && !parts_.front()->goes_with(*run.feedback())) return false;
+    runs_.push_back(&run);
+    parts_.push_back(run.feedback());
+    Q_meas_.emplace_back();
+    d_.emplace_back();
+    return true;
+  }
+  void drop(const CaseRun& run) {
+    const auto at = std::find(runs_.begin(), runs_.end(), &run);
+    if (at == runs_.end()) return;
+    parts_.erase(parts_.begin() + (at - runs_.begin()));
+    runs_.erase(at);
+    Q_meas_.resize(runs_.size());
+    d_.resize(runs_.size());
+  }
+  void evaluate() {
+    if (runs_.empty()) return;
+    for (std::size_t k = 0; k < runs_.size(); ++k) {
+      runs_[k]->displace();
+      Q_meas_[k] = runs_[k]->Q_meas();
+    }
+    parts_.front()->evaluate_together(parts_, Q_meas_, d_);
+    for (std::size_t k = 0; k < runs_.size(); ++k) runs_[k]->displace_next(d_[k]);
+  }
+
+ private:
+  std::vector<CaseRun*> runs_;
+  std::vector<strategies::FeedbackPart*> parts_;
+  std::vector<Joints> Q_meas_;
+  std::vector<Eigen::Vector3d> d_;
+};
+
 // Machines with their loops, stepped together from instant to instant of one static schedule.
 class Lockstep {
  public:
@@ -211,6 +247,7 @@ class Lockstep {
       CaseInputs& in = *together[run];
       runs_.push_back(std::make_unique<CaseRun>(in, axes_, run, reference_of(in.reference)));
       longest_ = std::max(longest_, runs_.back()->end());
+      if (in.feedback) add_feedback(*runs_.back());
     }
   }
 
@@ -239,6 +276,12 @@ class Lockstep {
     return machines;
   }
 
+  void add_feedback(CaseRun& run) {
+    const bool taken = std::any_of(feedbacks_.begin(), feedbacks_.end(),
+                                   [&](Feedbacks& together) { return together.take(run); });
+    if (!taken) feedbacks_.emplace_back().take(run);
+  }
+
   Reference& reference_of(const controllers::Trajectory& trajectory) {
     for (const auto& reference : references_) {
       if (reference->is(trajectory)) return *reference;
@@ -248,7 +291,9 @@ class Lockstep {
 
   void visit(std::uint8_t due, Tick n) {
     if (due & (kErrorModel | kRecord)) axes_.read_scales();
-    if (due & kErrorModel) each([](CaseRun& run) { run.evaluate_error_model(); });
+    if (due & kErrorModel) {
+      for (Feedbacks& together : feedbacks_) together.evaluate();
+    }
     if (due & kSample) axes_.take_readings();
     if (due & kPositionLoop) {
       each([&](CaseRun& run) { run.interpolate(n); });
@@ -286,6 +331,7 @@ class Lockstep {
         continue;
       }
       results[run] = runs_[run]->finish(n);
+      for (Feedbacks& together : feedbacks_) together.drop(*runs_[run]);
       runs_[run].reset();
       axes_.end(run);
     }
@@ -296,6 +342,7 @@ class Lockstep {
   ServoAxes axes_;
   std::vector<std::unique_ptr<Reference>> references_;
   std::vector<std::unique_ptr<CaseRun>> runs_;
+  std::vector<Feedbacks> feedbacks_;
   Tick longest_ = 0;
   Tick next_end_ = 0;  // until then none of them ends
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
 #include "plant/vocabulary/parameters.h"
 #include "strategies/strategy.h"
@@ -28,7 +29,8 @@ Eigen::Vector3d set_point_displacement(const Belief& belief, Sign sign, Iteratio
 ///   correct:               F_ni(Q) - F_i(Q), exact in one step: the reading is where the tool is
 ///   generate, one:         -(F_ni(Q) - F_i(Q)) at the measured position, as paper [G] does
 ///   generate, converged:   -(F_ni(Q_prog) - F_i(Q_prog)) with Q = Q_prog - d
-Eigen::Vector3d feedback_displacement(const Belief& belief, Sign sign, Iterations iterations,
-                                      const Joints& Q);
+/// @param Q, out  of several runs, each on its own
+void feedback_displacements(const Belief& belief, Sign sign, Iterations iterations,
+                            std::span<const Joints> Q, std::span<Eigen::Vector3d> out);
 
 }  // namespace servomill::strategies

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "plant/vocabulary/lanes.h"
 #include "strategies/compensation.h"
 
 namespace servomill::strategies {
@@ -83,38 +84,71 @@ class VirtualEncoder final : public FeedbackPart {
 
   Eigen::Vector3d settle(const Joints& Q_meas) override {
     velocity_.settle(Q_meas.head<3>());
-    out_ = limited(displacement(Q_meas));
+    find_displacements({&Q_meas, 1}, {&out_, 1});
+    out_ = limited(out_);
     return out_;
   }
 
-  Eigen::Vector3d evaluate(const Joints& Q_meas) override {
-    const Eigen::Vector3d wanted = limited(ahead(Q_meas));
-    out_ += (wanted - out_).cwiseMax(-max_change_).cwiseMin(max_change_);
-    return out_;
+  // One belief belongs to one strategy.
+  bool goes_with(const FeedbackPart& other) const override {
+    const auto* one = dynamic_cast<const VirtualEncoder*>(&other);
+    return one != nullptr && &one->belief_ == &belief_;
+  }
+
+  void evaluate_together(std::span<FeedbackPart* const> parts, std::span<const Joints> Q_meas,
+                         std::span<Eigen::Vector3d> d) override {
+    for (std::size_t first = 0; first < parts.size(); first += kLaneWidth) {
+      const std::size_t count = std::min(kLaneWidth, parts.size() - first);
+      evaluate_eight(parts.subspan(first, count), Q_meas.subspan(first, count),
+                     d.subspan(first, count));
+    }
   }
 
  private:
-  // Displacement where the machine will be when an axis has followed it: each displaced axis has
-  // its own lag, hence its own lead.
-  Eigen::Vector3d ahead(const Joints& Q_meas) {
-    const Eigen::Vector3d& lead = params_.lead;
-    if (lead.isZero(0.0)) return displacement(Q_meas);
-    const Eigen::Vector3d velocity = velocity_.advance(Q_meas.head<3>());
-    const auto after = [&](double time) {
-      Joints Q = Q_meas;
-      Q.head<3>() += time * velocity;
-      return displacement(Q);
-    };
-    Eigen::Vector3d d = after(lead[0]);
-    for (int j = 1; j < kLinearJoints; ++j) d[j] = lead[j] == lead[0] ? d[j] : after(lead[j])[j];
-    return d;
+  using Parts = std::span<FeedbackPart* const>;
+  static VirtualEncoder& of(FeedbackPart* part) { return static_cast<VirtualEncoder&>(*part); }
+
+  void evaluate_eight(Parts parts, std::span<const Joints> Q_meas,
+                      std::span<Eigen::Vector3d> d) const {
+    find_ahead(parts, Q_meas, d);
+    for (std::size_t k = 0; k < parts.size(); ++k) d[k] = of(parts[k]).approach(limited(d[k]));
   }
 
-  Eigen::Vector3d displacement(const Joints& Q) const {
-    return feedback_displacement(belief_, params_.sign, params_.iterations, Q);
+  // Displacement where the machine will be when an axis has followed it: each displaced axis has
+  // its own lag, hence its own lead.
+  void find_ahead(Parts parts, std::span<const Joints> Q_meas, std::span<Eigen::Vector3d> d) const {
+    const Eigen::Vector3d& lead = params_.lead;
+    if (lead.isZero(0.0)) return find_displacements(Q_meas, d);
+    const std::size_t count = parts.size();
+    std::array<Eigen::Vector3d, kLaneWidth> velocity, other;
+    for (std::size_t k = 0; k < count; ++k) {
+      velocity[k] = of(parts[k]).velocity_.advance(Q_meas[k].head<3>());
+    }
+    const auto find_after = [&](double time, std::span<Eigen::Vector3d> out) {
+      std::array<Joints, kLaneWidth> Q;
+      for (std::size_t k = 0; k < count; ++k) {
+        Q[k] = Q_meas[k];
+        Q[k].head<3>() += time * velocity[k];
+      }
+      find_displacements({Q.data(), count}, out);
+    };
+    find_after(lead[0], d);
+    for (int j = 1; j < kLinearJoints; ++j) {
+      if (lead[j] == lead[0]) continue;
+      find_after(lead[j], {other.data(), count});
+      for (std::size_t k = 0; k < count; ++k) d[k][j] = other[k][j];
+    }
+  }
+
+  void find_displacements(std::span<const Joints> Q, std::span<Eigen::Vector3d> d) const {
+    feedback_displacements(belief_, params_.sign, params_.iterations, Q, d);
   }
   Eigen::Vector3d limited(const Eigen::Vector3d& d) const {
     return d.cwiseMax(-params_.max).cwiseMin(params_.max);
+  }
+  const Eigen::Vector3d& approach(const Eigen::Vector3d& wanted) {
+    out_ += (wanted - out_).cwiseMax(-max_change_).cwiseMin(max_change_);
+    return out_;
   }
 
   const Belief& belief_;

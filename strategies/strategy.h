@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,20 @@ class FeedbackPart {
   virtual Eigen::Vector3d settle(const Joints& Q_meas) = 0;
   /// @param Q_meas  scale readings of this instant (5; m, rad)
   /// @return d for X, Y, Z (3; m), acting one model period later
-  virtual Eigen::Vector3d evaluate(const Joints& Q_meas) = 0;
+  Eigen::Vector3d evaluate(const Joints& Q_meas) {
+    FeedbackPart* const self = this;
+    Eigen::Vector3d d;
+    evaluate_together({&self, 1}, {&Q_meas, 1}, {&d, 1});
+    return d;
+  }
+
+  /// Whether this part and another one, of another run, can be evaluated together.
+  virtual bool goes_with(const FeedbackPart& other) const { return this == &other; }
+  /// Evaluates parts that all go with this one, in less time than one by one and with the same
+  /// bits.
+  /// @param Q_meas, d  as of `evaluate`, one for each part
+  virtual void evaluate_together(std::span<FeedbackPart* const> parts,
+                                 std::span<const Joints> Q_meas, std::span<Eigen::Vector3d> d) = 0;
 };
 
 /// Up to three parts, each optional. A strategy is constant and may be shared by runs; the parts
