@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "controllers/path/fair_spline.h"
 
@@ -70,17 +72,18 @@ class Smoother {
     const auto add = [&](std::size_t k) {
       const double y = w - std::abs(s_[k] - s_[i]);
       if (y <= 0.0) return false;
-      sum += dd_[k] * (y * y * y / (6.0 * w * w));
+      sum += dd_[k] * (y * y * y);
       return true;
     };
     for (std::size_t k = i; k < n_ && add(k);) ++k;
     for (std::size_t k = i; k > 1 && add(k - 1);) --k;
-    return sum;
+    return sum / (6.0 * w * w);
   }
 
   // Widest window of each vertex on its own, from wide to narrow.
   void choose_windows(double share) {
     w_.assign(n_ + 1, 0.0);
+    double widest_before = 0.0;
     for (std::size_t i = 1; i < n_; ++i) {
       const double tol_linear =
           share * std::min(v_[i].tolerance_linear, v_[i + 1].tolerance_linear);
@@ -92,12 +95,16 @@ class Smoother {
       if (i > kMaxReach) w = std::min(w, s_[i] - s_[i - kMaxReach]);
       if (i + kMaxReach < n_) w = std::min(w, s_[i + kMaxReach] - s_[i]);
       const double alone = std::min(w, std::min(s_[i] - s_[i - 1], s_[i + 1] - s_[i]));
+      // limit_slope would cut what is wider than that
+      const double most = std::min(w_[i - 1], widest_before) + (s_[i] - s_[i - 1]);
+      while (w * kShrink >= std::max(most, alone)) w *= kShrink;
       while (w > alone) {
         const Joints D = deviation_with(i, w);
         if (linear_norm(D) <= tol_linear && rotary_norm(D) <= tol_rotary) break;
         w *= kShrink;
       }
       w_[i] = std::max(w, alone);
+      widest_before = most;
     }
     limit_slope();
   }
@@ -108,29 +115,50 @@ class Smoother {
     w_[n_] = 0.0;
   }
 
-  // Calls f(begin, end, segment, first, last): windows first..last-1 are active on the piece.
+  // A part of the path between two knots; windows first..last-1 are active on it.
+  struct Span {
+    double from = 0.0, to = 0.0;  // m
+    std::size_t segment = 0;      // chord
+    std::size_t first = 0, last = 0;
+    double middle() const { return 0.5 * (from + to); }
+  };
+
+  // Calls f for every span from `begin` to `end`. Begins and ends of windows rise with their index.
   template <class F>
-  void for_each_piece(F&& f) const {
-    std::size_t i_begin = 1, i_centre = 1, i_end = 1;  // next knot of each kind
-    std::size_t first = 1, last = 1, segment = 0;
-    double at = 0.0;
-    const auto knot = [&](std::size_t i, double x) { return i < n_ ? x : s_[n_]; };
-    while (s_[n_] - at > kLeastPiece) {
-      const double next = std::min({knot(i_begin, i_begin < n_ ? s_[i_begin] - w_[i_begin] : 0.0),
-                                    knot(i_centre, i_centre < n_ ? s_[i_centre] : 0.0),
-                                    knot(i_end, i_end < n_ ? s_[i_end] + w_[i_end] : 0.0), s_[n_]});
-      double to = std::max(next, at);
-      while (i_begin < n_ && s_[i_begin] - w_[i_begin] <= next) ++i_begin;
-      while (i_centre < n_ && s_[i_centre] <= next) ++i_centre;
-      while (i_end < n_ && s_[i_end] + w_[i_end] <= next) ++i_end;
-      if (s_[n_] - to <= kLeastPiece) to = s_[n_];
-      if (to - at <= kLeastPiece) continue;
-      const double middle = 0.5 * (at + to);
-      while (segment + 1 < n_ && s_[segment + 1] <= middle) ++segment;
-      while (first < n_ && s_[first] + w_[first] <= middle) ++first;
-      while (last < n_ && s_[last] - w_[last] < middle) ++last;
-      f(at, to, segment, first, std::max(first, last));
-      at = to;
+  void for_each_span(double begin, double end, F&& f) const {
+    const auto first_behind = [&](auto&& knot) {
+      std::size_t low = 1, high = n_;
+      while (low < high) {
+        const std::size_t i = (low + high) / 2;
+        if (knot(i) <= begin)
+          low = i + 1;
+        else
+          high = i;
+      }
+      return low;
+    };
+    const auto rise = [&](std::size_t i) { return i < n_ ? s_[i] - w_[i] : end; };
+    const auto peak = [&](std::size_t i) { return i < n_ ? s_[i] : end; };
+    const auto fall = [&](std::size_t i) { return i < n_ ? s_[i] + w_[i] : end; };
+    // next knot of each kind
+    std::size_t i_rise = first_behind(rise), i_peak = first_behind(peak);
+    std::size_t i_fall = first_behind(fall);
+    Span span{begin, begin, i_peak - 1, i_fall, i_rise};
+    while (end - span.from > kLeastPiece) {
+      const double next = std::min({rise(i_rise), peak(i_peak), fall(i_fall), end});
+      span.to = std::max(next, span.from);
+      while (i_rise < n_ && rise(i_rise) <= next) ++i_rise;
+      while (i_peak < n_ && peak(i_peak) <= next) ++i_peak;
+      while (i_fall < n_ && fall(i_fall) <= next) ++i_fall;
+      if (end - span.to <= kLeastPiece) span.to = end;
+      if (span.to - span.from <= kLeastPiece) continue;
+      const double middle = span.middle();
+      while (span.segment + 1 < n_ && s_[span.segment + 1] <= middle) ++span.segment;
+      while (span.first < n_ && fall(span.first) <= middle) ++span.first;
+      while (span.last < n_ && rise(span.last) < middle) ++span.last;
+      span.last = std::max(span.first, span.last);
+      f(span);
+      span.from = span.to;
     }
   }
 
@@ -150,54 +178,110 @@ class Smoother {
     return D;
   }
 
-  // Ratio of the deviation on a piece to its tolerance, from the control points of the cubic.
-  double excess(const Deviation& D, double h, std::size_t segment) const {
-    const std::array<Joints, 4> control = {
-        D.d0, D.d0 + D.d1 * (h / 3.0), D.d0 + D.d1 * (2.0 * h / 3.0) + D.d2 * (h * h / 6.0),
-        D.d0 + D.d1 * h + D.d2 * (h * h / 2.0) + D.d3 * (h * h * h / 6.0)};
-    const PathVertex& to = v_[segment + 1];
-    double ratio = 0.0;
-    for (const Joints& c : control) {
-      ratio = std::max(ratio, linear_norm(c) / to.tolerance_linear);
-      ratio = std::max(ratio, rotary_norm(c) / to.tolerance_rotary);
+  // Deviation (2) on one span after the other. Between knots it is a cubic; a knot changes its
+  // third derivative by the curvature of one window, so that the sum over all of them is rarely
+  // needed.
+  class RollingDeviation {
+   public:
+    explicit RollingDeviation(const Smoother& path) : path_(path) {}
+
+    /// At the begin of the span.
+    const Deviation& at(const Span& span) {
+      if (!roll(span)) {
+        D_ = path_.deviation(span.from, span.middle(), span.first, span.last);
+        anchor_ = span.from;
+        narrowest_ = std::numeric_limits<double>::infinity();
+        steps_ = 0;
+      }
+      last_ = span;
+      return D_;
     }
-    return ratio;
+
+   private:
+    // Rounding of the third derivative, eps/w^2 for each window, grows like the cube of the way.
+    static constexpr int kMostSteps = 32;
+    static constexpr double kMostWindows = 16.0;
+
+    bool roll(const Span& span) {
+      if (++steps_ > kMostSteps || span.from != last_.to) return false;
+      const double h = span.from - last_.from;
+      D_.d0 += h * (D_.d1 + (0.5 * h) * (D_.d2 + (h / 3.0) * D_.d3));
+      D_.d1 += h * (D_.d2 + (0.5 * h) * D_.d3);
+      D_.d2 += h * D_.d3;
+      for (std::size_t i = last_.last; i < span.last; ++i) bend(i, 1.0);
+      for (std::size_t i = last_.segment + 1; i <= span.segment; ++i) {
+        D_.d1 -= path_.dd_[i];  // of the polyline
+        bend(i, -2.0);
+      }
+      for (std::size_t i = last_.first; i < span.first; ++i) bend(i, 1.0);
+      return span.to - anchor_ <= kMostWindows * narrowest_;
+    }
+    void bend(std::size_t i, double times) {
+      const double w = path_.w_[i];
+      D_.d3 += path_.dd_[i] * (times / (w * w));
+      narrowest_ = std::min(narrowest_, w);
+    }
+
+    const Smoother& path_;
+    Deviation D_;
+    Span last_;
+    double anchor_ = 0.0, narrowest_ = 0.0;  // m
+    int steps_ = kMostSteps;
+  };
+
+  // Square of the deviation on a span of length h over its tolerance, from the control points of
+  // the cubic.
+  double square_excess(const Deviation& D, double h, std::size_t segment) const {
+    const Joints b1 = D.d0 + (h / 3.0) * D.d1;
+    const Joints b2 = b1 + (h / 3.0) * (D.d1 + (0.5 * h) * D.d2);
+    const Joints b3 = D.d0 + h * (D.d1 + (0.5 * h) * (D.d2 + (h / 3.0) * D.d3));
+    const PathVertex& to = v_[segment + 1];
+    const auto largest = [&](auto&& square) {
+      return std::max({square(D.d0), square(b1), square(b2), square(b3)});
+    };
+    const double linear =
+        largest([](const Joints& b) { return b.head<kLinearJoints>().squaredNorm(); });
+    const double rotary =
+        largest([](const Joints& b) { return b.tail<kJoints - kLinearJoints>().squaredNorm(); });
+    return std::max(linear / (to.tolerance_linear * to.tolerance_linear),
+                    rotary / (to.tolerance_rotary * to.tolerance_rotary));
   }
 
   // Narrows the windows until the deviation is within `share` of the tolerance everywhere. From the
-  // second pass on only what a changed window covers is looked at.
+  // second pass on only what a changed window covers, or has covered, is looked at.
   void fit_windows(double share) {
+    const double most = share * (1.0 + kFits);
     std::vector<double> scale(n_ + 1), before;
-    std::vector<std::size_t> changes(n_ + 1);  // windows 0..i-1 that the last pass has changed
-    for (bool fits = false, first_pass = true; !fits; first_pass = false) {
-      fits = true;
+    std::vector<std::pair<double, double>> parts = {{0.0, s_[n_]}};
+    while (!parts.empty()) {
       std::fill(scale.begin(), scale.end(), 1.0);
-      std::size_t first_before = 1, last_before = 1;
-      for_each_piece(
-          [&](double from, double to, std::size_t segment, std::size_t first, std::size_t last) {
-            const double middle = 0.5 * (from + to);
-            if (!first_pass) {
-              while (first_before < n_ && s_[first_before] + before[first_before] <= middle) {
-                ++first_before;
-              }
-              while (last_before < n_ && s_[last_before] - before[last_before] < middle)
-                ++last_before;
-              // the windows have become narrower: what covers the piece now has covered it before
-              if (changes[std::max(first_before, last_before)] == changes[first_before]) return;
-            }
-            const double ratio =
-                excess(deviation(from, middle, first, last), to - from, segment) / share;
-            if (ratio <= 1.0 + kFits) return;
-            fits = false;
-            const double factor = std::max(0.5, 0.99 / std::sqrt(ratio));
-            for (std::size_t i = first; i < last; ++i) scale[i] = std::min(scale[i], factor);
-          });
+      bool fits = true;
+      RollingDeviation deviation(*this);
+      for (const auto& [begin, end] : parts) {
+        for_each_span(begin, end, [&](const Span& span) {
+          const double square =
+              square_excess(deviation.at(span), span.to - span.from, span.segment);
+          if (square <= most * most) return;
+          fits = false;
+          const double factor = std::max(0.5, 0.99 * std::sqrt(share / std::sqrt(square)));
+          for (std::size_t i = span.first; i < span.last; ++i) {
+            scale[i] = std::min(scale[i], factor);
+          }
+        });
+      }
       if (fits) return;
       before = w_;
       for (std::size_t i = 0; i <= n_; ++i) w_[i] *= scale[i];
       limit_slope();
-      for (std::size_t i = 0; i < n_; ++i)
-        changes[i + 1] = changes[i] + (w_[i] != before[i] ? 1 : 0);
+      parts.clear();
+      for (std::size_t i = 0; i < n_; ++i) {
+        if (w_[i] == before[i]) continue;
+        const double begin = s_[i] - before[i], end = s_[i] + before[i];
+        if (parts.empty() || parts.back().second < begin)
+          parts.emplace_back(begin, end);
+        else
+          parts.back().second = end;
+      }
     }
   }
 
@@ -353,8 +437,9 @@ class Smoother {
       path.pieces.push_back(
           {from, v_[k].u + d_[k] * (from - s_[k]) + D.d0, d_[k] + D.d1, D.d2, D.d3, k});
     };
-    for_each_piece([&](double from, double to, std::size_t k, std::size_t first, std::size_t last) {
-      const double middle = 0.5 * (from + to);
+    for_each_span(0.0, s_[n_], [&](const Span& span) {
+      const auto [from, to, k, first, last] = span;
+      const double middle = span.middle();
       while (next < faired_.size() && faired_[next].to <= from + kLeastPiece) ++next;
       double at = from;
       for (; next < faired_.size() && faired_[next].from < to; ++next) {
