@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "controllers/path/band.h"
+
 namespace servomill::controllers {
 namespace {
 
@@ -210,21 +212,7 @@ void FairSpline::solve() {
       c_[i] -= band_[i][N_ + k - i] * c_[N_ + k];
     }
   }
-  for (std::size_t k = 3; k < N_; ++k) {
-    std::array<double, 4>& row = band_[k];
-    const double inverse = 1.0 / row[0];
-    for (std::size_t i = 1; i < 4 && k + i < N_; ++i) {
-      const double L = row[i] * inverse;
-      for (std::size_t j = i; j < 4; ++j) band_[k + i][j - i] -= L * row[j];
-      c_[k + i] -= L * c_[k];
-    }
-    for (double& x : row) x *= inverse;
-    row[0] = inverse;
-  }
-  for (std::size_t k = N_; k-- > 3;) {
-    c_[k] *= band_[k][0];
-    for (std::size_t i = 1; i < 4 && k + i < N_; ++i) c_[k] -= band_[k][i] * c_[k + i];
-  }
+  solve_band(std::span(band_).subspan(3, N_ - 3), std::span(c_).subspan(3, N_ - 3));
 }
 
 // Are all vertices met?

@@ -4,7 +4,10 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
+#include <utility>
+
+#include "controllers/path/band.h"
+#include "controllers/path/barrier_kernel.h"
 
 namespace servomill::controllers {
 namespace {
@@ -12,27 +15,38 @@ namespace {
 constexpr double kMargin = 0.99;   // of jerk and acceleration, for what lies between points
 constexpr double kFirstMu = 5e-3;  // of the time that a point stands for
 constexpr double kLastMu = 1e-4;
-constexpr double kFall = 0.5;         // of mu, after a pass whose steps were not too short:
-constexpr double kShortStep = 0.2;    // of the Newton step, mean of a pass
-constexpr std::size_t kPasses = 12;   // four more gain 0.3 %
-constexpr std::size_t kBlock = 64;    // coefficients that move together
-constexpr double kFraction = 0.9;     // of a slack that one step may use
-constexpr double kIdle = 0.1;         // of a limit, below which it does not bend the search
-constexpr double kFirstScale = 0.81;  // of v^2, where the search begins
-constexpr double kLeastScale = 0.01;  // below it there is nothing to gain
-constexpr double kLongest = 8e-3;     // s, an interval
-constexpr double kShortest = 3e-3;    // s, an interval
-constexpr double kLeastSpeed = 1e-6;  // m/s
-constexpr std::size_t kLeast = 4;     // intervals
-constexpr int kHalvings = 3;          // of an interval, to bound the jerk between points
+constexpr double kFall = 0.5;           // of mu, after a pass whose steps were not too short:
+constexpr double kShortStep = 0.2;      // of the Newton step, mean of a pass
+constexpr std::size_t kPasses = 12;     // four more gain 0.3 %
+constexpr std::size_t kBlock = 64;      // coefficients that move together
+constexpr double kFraction = 0.9;       // of a slack that one step may use
+constexpr double kFirstScale = 0.81;    // of v^2, where the search begins
+constexpr double kLeastScale = 0.01;    // below it there is nothing to gain
+constexpr double kLongest = 8e-3;       // s, an interval
+constexpr double kShortest = 3e-3;      // s, an interval
+constexpr double kLeastLength = 1e-12;  // m, for which a point stands
+constexpr double kLeastSpeed = 1e-6;    // m/s
+constexpr std::size_t kLeast = 4;       // intervals
+constexpr int kHalvings = 3;            // of an interval, to bound the jerk between points
+
+static_assert(kBarrierJoints == kJoints);
 
 using Vector3 = Eigen::Vector3d;  // b, b', b''
+
+BarrierKernel barrier_kernel() {
+  return at_simd_level(simd_level(),
+                       []<SimdLevel level>() { return make_barrier_kernel<level>(); });
+}
 
 class Quickener {
  public:
   Quickener(const TimeLaw& law, const SmoothPath& path, std::span<const double> v_top,
             const JointLimits& limits)
-      : law_(law), path_(path), v_top_(v_top), limits_(limits) {}
+      : law_(law),
+        path_(path),
+        v_top_(v_top),
+        per_jerk_((limits.j * kMargin).cwiseInverse()),
+        ratio_(limits.j.cwiseQuotient(limits.a)) {}
 
   bool run(TimeLaw& out) {
     if (!find_region()) return false;
@@ -55,13 +69,20 @@ class Quickener {
   struct Interval {
     Eigen::Matrix3d P;  // three coefficients -> b, b', b'' at its begin
   };
-  struct Point {
+  struct Part {  // of one interval and one piece; with three points: both ends and the middle
     std::size_t interval = 0, piece = 0;
-    double y = 0.0;       // m, from the begin of the interval
-    double weight = 0.0;  // m, of the path
-    double b_top = 0.0;
-    Joints j0, j1, j2;  // (1), of the jerk, divided by J
-    Joints a0, a1;      // of the acceleration, divided by A
+    double from = 0.0, to = 0.0;  // m
+  };
+  // (1) at a point, divided by J: j0 b + j1 b' + j2 b''; the acceleration follows from j1 and j2.
+  struct Form {
+    Joints j0, j1, j2;
+    Form shifted(double x) const {
+      return {j0, j1 + (1.5 * x) * j0, j2 + x * (j1 / 3.0 + (0.25 * x) * j0)};
+    }
+    Joints jerk(const Vector3& x) const { return j0 * x[0] + j1 * x[1] + j2 * x[2]; }
+    Joints acceleration(const Vector3& x, const Joints& ratio) const {
+      return ratio.cwiseProduct((2.0 / 3.0 * x[0]) * j1 + x[1] * j2);
+    }
   };
 
   // Between the first and the last instant at which the speed neither rises nor falls.
@@ -141,51 +162,87 @@ class Quickener {
     return {x[0] + y * (x[1] + 0.5 * y * x[2]), x[1] + y * x[2], x[2]};
   }
 
-  Point point(std::size_t interval, std::size_t piece, double s, double weight) const {
-    Point p;
-    p.interval = interval;
-    p.piece = piece;
-    p.y = s - t_[interval];
-    p.weight = weight;
-    p.b_top = v_top_[piece] * v_top_[piece];
+  Form form_at(std::size_t piece, double s) const {
     const CubicPiece& q = path_.pieces[piece];
     const double x = s - q.s;
     const Joints q1 = q.c1 + x * (q.c2 + 0.5 * x * q.c3), q2 = q.c2 + x * q.c3;
-    const Joints J = limits_.j * kMargin, A = limits_.a * kMargin;
-    p.j0 = q.c3.cwiseQuotient(J);
-    p.j1 = 1.5 * q2.cwiseQuotient(J);
-    p.j2 = 0.5 * q1.cwiseQuotient(J);
-    p.a0 = q2.cwiseQuotient(A);
-    p.a1 = 0.5 * q1.cwiseQuotient(A);
-    return p;
+    return {q.c3.cwiseProduct(per_jerk_), 1.5 * q2.cwiseProduct(per_jerk_),
+            0.5 * q1.cwiseProduct(per_jerk_)};
   }
 
-  // The control point of (1), a quadratic in s, between those at the ends.
-  Point middle_point(std::size_t interval, std::size_t piece, double from, double to) const {
-    Point p = point(interval, piece, 0.5 * (from + to), (to - from) * (2.0 / 3.0));
-    const double square = (to - from) * (to - from) / 8.0;
-    // L_m - h^2 L''/8 with L'' = 4.5 q''' b'';  M'' = 3 q''' b' /2 + 2 q'' b''
-    p.j2 -= (4.5 * square) * p.j0;
-    return p;
+  void find_moving_joints() {
+    std::array<bool, kJoints> moves{};
+    for (std::size_t i = first_piece_; i < path_.pieces.size(); ++i) {
+      const CubicPiece& q = path_.pieces[i];
+      for (int k = 0; k < kJoints; ++k) {
+        moves[static_cast<std::size_t>(k)] |= q.c1[k] != 0.0 || q.c2[k] != 0.0 || q.c3[k] != 0.0;
+      }
+    }
+    for (int k = 0; k < kJoints; ++k) {
+      if (!moves[static_cast<std::size_t>(k)]) continue;
+      joints_.ratio[joints_.count] = ratio_[k];
+      moving_[joints_.count++] = k;
+    }
   }
 
   void place_points() {
-    points_.clear();
-    first_points_.clear();
     std::size_t piece = first_piece_;
     for (std::size_t k = 0; k < N_; ++k) {
-      first_points_.push_back(points_.size());
+      first_points_.push_back(3 * parts_.size());
       for (double at = t_[k]; at < t_[k + 1];) {
         while (piece + 1 < path_.pieces.size() && path_.end_of(piece) <= at) ++piece;
-        const double to = std::min(path_.end_of(piece), t_[k + 1]);
-        points_.push_back(point(k, piece, at, (to - at) / 6.0));
-        points_.push_back(middle_point(k, piece, at, to));
-        points_.push_back(point(k, piece, to, (to - at) / 6.0));
-        at = to;
+        parts_.push_back({k, piece, at, std::min(path_.end_of(piece), t_[k + 1])});
+        at = parts_.back().to;
       }
     }
-    first_points_.push_back(points_.size());
+    first_points_.push_back(3 * parts_.size());
+    find_moving_joints();
+    points_.resize(blocks_of(3 * parts_.size()));
+    std::size_t n = 0;
+    for (const Part& part : parts_) {
+      const double h = part.to - part.from;
+      const Form begin = form_at(part.piece, part.from), middle = begin.shifted(0.5 * h);
+      put(n++, part, part.from, h / 6.0, begin, 0.0);
+      // the control point of (1), a quadratic in s, is L_m - h^2 L''/8 with L'' = 4.5 q''' b''
+      const double swell = 4.5 * h * h / 8.0;
+      put(n++, part, 0.5 * (part.from + part.to), h * (2.0 / 3.0),
+          {middle.j0, middle.j1, middle.j2 - swell * middle.j0}, swell);
+      put(n++, part, part.to, h / 6.0, begin.shifted(h), 0.0);
+    }
+    fill_last_block(n);
     band_.resize(N_ + 2);
+    terms_.resize(points_.size());
+  }
+
+  void put(std::size_t n, const Part& part, double s, double length, const Form& form,
+           double swell) {
+    BarrierPoints& to = points_[n / kLaneWidth];
+    const std::size_t lane = n % kLaneWidth;
+    Eigen::Matrix3d S = intervals_[part.interval].P;
+    const double y = s - t_[part.interval];
+    S.row(0) += y * (S.row(1) + 0.5 * y * S.row(2));
+    S.row(1) += y * S.row(2);
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        to.S[i][j][lane] = S(static_cast<int>(i), static_cast<int>(j));
+      }
+    }
+    to.length[lane] = std::max(length, kLeastLength);
+    to.b_top[lane] = v_top_[part.piece] * v_top_[part.piece];
+    to.swell[lane] = swell;
+    to.interval[lane] = static_cast<std::uint32_t>(part.interval);
+    for (std::size_t k = 0; k < joints_.count; ++k) {
+      to.j0[k][lane] = form.j0[moving_[k]];
+      to.j1[k][lane] = form.j1[moving_[k]];
+      to.j2[k][lane] = form.j2[moving_[k]];
+    }
+  }
+
+  // What is left of it repeats the last point; nobody reads the terms.
+  void fill_last_block(std::size_t n) {
+    const Part& part = parts_.back();
+    const Form end = form_at(part.piece, part.to);
+    for (; n < points_.size() * kLaneWidth; ++n) put(n, part, part.to, 0.0, end, 0.0);
   }
 
   void start() {
@@ -204,30 +261,18 @@ class Quickener {
 
   // Lowers b as a whole until all slacks are positive.
   bool scale_into_limits() {
+    const BarrierUse use = kernel_.use(points_.data(), points_.size(), joints_, c_.data());
+    if (!(use.b_least > 0.0)) return false;
     const double v_a = r_.v_begin, v_b = r_.v_end;
-    double scale = kFirstScale;
-    scale = std::min({scale, 0.98 * v_a * v_a / c_[1], 0.98 * v_b * v_b / c_[N_]});
-    for (const Point& p : points_) {
-      const Vector3 x = shifted(state(p.interval, c_), p.y);
-      if (x[0] <= 0.0) return false;
-      const Joints L = p.j0 * x[0] + p.j1 * x[1] + p.j2 * x[2];
-      const Joints M = p.a0 * x[0] + p.a1 * x[1];
-      const double jerk = L.cwiseAbs().maxCoeff() * std::sqrt(x[0]);
-      scale = std::min(scale, 0.9 * std::pow(jerk, -2.0 / 3.0));
-      scale = std::min(scale, 0.9 / std::max(M.cwiseAbs().maxCoeff(), 1e-12));
-      scale = std::min(scale, 0.9 * p.b_top / x[0]);
-    }
+    const double scale = std::min({kFirstScale, 0.98 * v_a * v_a / c_[1], 0.98 * v_b * v_b / c_[N_],
+                                   0.9 * std::pow(use.jerk, -2.0 / 3.0),
+                                   0.9 / std::max(use.acceleration, 1e-12), 0.9 / use.speed});
     for (double& c : c_) c *= scale;
+    time_scale_ = 1.0 / std::sqrt(scale);
     return scale > kLeastScale;
   }
 
   void optimise() {
-    // the weight of a slack is the time of its part of the path
-    for (Point& p : points_) {
-      const double b = shifted(state(p.interval, c_), p.y)[0];
-      p.weight = std::max(p.weight, 1e-12);
-      slack_weight_.push_back(p.weight / std::sqrt(b));
-    }
     step_.assign(N_ + 2, 0.0);
     double mu = kFirstMu;
     for (std::size_t pass = 0; pass < kPasses; ++pass) {
@@ -247,13 +292,19 @@ class Quickener {
   // One Newton step of the coefficients first..last-1, the others standing still; returns which
   // part of it was taken.
   double step_block(std::size_t first, std::size_t last, double mu) {
-    const std::size_t from = first_points_[first < 3 ? 0 : first - 2];
-    const std::size_t to = first_points_[std::min(last, N_)];
+    const std::size_t from = first < 3 ? 0 : first - 2, to = std::min(last, N_);  // intervals
+    const std::size_t block = first_points_[from] / kLaneWidth;
+    const std::size_t count = blocks_of(first_points_[to]) - block;
+    kernel_.derive(&points_[block], count, joints_, c_.data(), mu * time_scale_, &terms_[block]);
     assemble(mu, first, last, from, to);
-    solve(first, last);
+    solve_band(std::span(band_).subspan(first, last - first),
+               std::span(step_).subspan(first, last - first));
     if (first == 1) step_[0] = step_[1];
     if (last == N_ + 1) step_[N_ + 1] = step_[N_];
-    const double alpha = std::min(1.0, kFraction / largest_loss(from, to));
+    const double loss = std::max(
+        kernel_.largest_loss(&points_[block], count, joints_, step_.data(), &terms_[block]),
+        largest_loss_at_ends());
+    const double alpha = std::min(1.0, kFraction / loss);
     for (std::size_t i = first; i < last; ++i) {
       c_[i] += alpha * step_[i];
       step_[i] = 0.0;
@@ -263,177 +314,99 @@ class Quickener {
     return alpha;
   }
 
+  // Derivatives of (2) by the coefficients first..last-1 from the points of the intervals.
   void assemble(double mu, std::size_t first, std::size_t last, std::size_t from, std::size_t to) {
     for (std::size_t i = first; i < last; ++i) {
       band_[i] = {0.0, 0.0, 0.0};
       step_[i] = 0.0;
     }
-    for (std::size_t n = from; n < to; ++n) {
-      const Point& p = points_[n];
-      const std::size_t k = p.interval;
-      const Vector3 x = shifted(state(k, c_), p.y);
-      const double w = mu * slack_weight_[n];
-      const double b = x[0], r = 1.0 / std::sqrt(b), r_b = -0.5 * r / b;
-      // time
-      double g0 = p.weight * r_b, g1 = 0.0, g2 = 0.0;
-      double h00 = -1.5 * p.weight * r_b / b, h01 = 0.0, h02 = 0.0, h11 = 0.0, h12 = 0.0, h22 = 0.0;
-      // speed
-      const double top = 1.0 / (p.b_top - b);
-      g0 += w * top;
-      h00 += w * top * top;
-      // the ends may not be faster than they were
-      if (n == 0 || n + 1 == points_.size()) {
-        const double v = n == 0 ? r_.v_begin : r_.v_end, i = 1.0 / (v * v - b);
-        g0 += w * i;
-        h00 += w * i * i;
+    for (std::size_t k = from; k < to; ++k) {
+      std::array<double, 3> g{};
+      std::array<double, 6> h{};
+      for (std::size_t n = first_points_[k]; n < first_points_[k + 1]; ++n) {
+        const BarrierTerms& terms = terms_[n / kLaneWidth];
+        const std::size_t lane = n % kLaneWidth;
+        for (std::size_t i = 0; i < 3; ++i) g[i] += terms.g[i][lane];
+        for (std::size_t i = 0; i < 6; ++i) h[i] += terms.h[i][lane];
       }
-      for (int axis = 0; axis < kJoints; ++axis) {
-        const double l0 = p.j0[axis], l1 = p.j1[axis], l2 = p.j2[axis];
-        if (l0 == 0.0 && l1 == 0.0 && l2 == 0.0) continue;
-        const double L = l0 * x[0] + l1 * x[1] + l2 * x[2];
-        if (std::abs(L) < kIdle * r) continue;
-        const double i1 = 1.0 / (r - L), i2 = 1.0 / (r + L);
-        const double difference = w * (i2 - i1), square = w * (i1 * i1 + i2 * i2);
-        const double cross = difference * (i1 + i2) * r_b;
-        g0 -= w * r_b * (i1 + i2) + difference * l0;
-        g1 -= difference * l1;
-        g2 -= difference * l2;
-        h00 += square * (r_b * r_b + l0 * l0) + 2.0 * cross * l0;
-        h01 += square * l0 * l1 + cross * l1;
-        h02 += square * l0 * l2 + cross * l2;
-        h11 += square * l1 * l1;
-        h12 += square * l1 * l2;
-        h22 += square * l2 * l2;
-      }
-      for (int axis = 0; axis < kJoints; ++axis) {
-        const double m0 = p.a0[axis], m1 = p.a1[axis];
-        const double M = m0 * x[0] + m1 * x[1];
-        if (std::abs(M) < kIdle) continue;
-        const double k1 = 1.0 / (1.0 - M), k2 = 1.0 / (1.0 + M);
-        const double d = w * (k2 - k1), q = w * (k1 * k1 + k2 * k2);
-        g0 -= d * m0;
-        g1 -= d * m1;
-        h00 += q * m0 * m0;
-        h01 += q * m0 * m1;
-        h11 += q * m1 * m1;
-      }
-      // to the coefficients: x = S(y) P c
-      Eigen::Matrix3d S = intervals_[k].P;
-      S.row(0) += p.y * (S.row(1) + 0.5 * p.y * S.row(2));
-      S.row(1) += p.y * S.row(2);
+      if (k == 0) add_end(0, r_.v_begin, mu, g, h);
+      if (k + 1 == N_) add_end(3 * parts_.size() - 1, r_.v_end, mu, g, h);
+      std::size_t n = 0;
       for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t row = free_coefficient(k + i);
-        if (row < first || row >= last) continue;
-        const auto I = static_cast<int>(i);
-        const double a0 = S(0, I), a1 = S(1, I), a2 = S(2, I);
-        step_[row] -= g0 * a0 + g1 * a1 + g2 * a2;
-        const double u0 = h00 * a0 + h01 * a1 + h02 * a2, u1 = h01 * a0 + h11 * a1 + h12 * a2;
-        const double u2 = h02 * a0 + h12 * a1 + h22 * a2;
-        for (std::size_t j = i; j < 3; ++j) {
+        const bool is_free = row >= first && row < last;
+        if (is_free) step_[row] -= g[i];
+        for (std::size_t j = i; j < 3; ++j, ++n) {
           const std::size_t column = free_coefficient(k + j);
-          if (column >= last) continue;
-          const auto J = static_cast<int>(j);
-          const double both = column == row && j != i ? 2.0 : 1.0;
-          band_[row][column - row] += both * (u0 * S(0, J) + u1 * S(1, J) + u2 * S(2, J));
+          if (!is_free || column >= last) continue;
+          band_[row][column - row] += (column == row && j != i ? 2.0 : 1.0) * h[n];
         }
       }
     }
   }
-  // c_0 = c_1 and c_N+1 = c_N
+  // The ends may not be faster than they were.
+  void add_end(std::size_t n, double v, double mu, std::array<double, 3>& g,
+               std::array<double, 6>& h) const {
+    const BarrierPoints& p = points_[n / kLaneWidth];
+    const std::size_t lane = n % kLaneWidth;
+    const double slack = v * v - terms_[n / kLaneWidth].x[0][lane];
+    const double g0 = mu * time_scale_ * p.time[lane] / slack, h00 = g0 / slack;
+    std::size_t m = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      g[i] += g0 * p.S[0][i][lane];
+      for (std::size_t j = i; j < 3; ++j) h[m++] += h00 * p.S[0][i][lane] * p.S[0][j][lane];
+    }
+  }
+  // c_0 = c_1 and c_N+1 = c_N: the speed at the ends is that of the outermost coefficients
   std::size_t free_coefficient(std::size_t i) const { return std::clamp(i, std::size_t{1}, N_); }
-
-  // L D L^T of five diagonals, in place.
-  void solve(std::size_t first, std::size_t last) {
-    for (std::size_t k = first; k < last; ++k) {
-      auto& row = band_[k];
-      const double inverse = 1.0 / row[0];
-      for (std::size_t i = 1; i < 3 && k + i < last; ++i) {
-        const double L = row[i] * inverse;
-        for (std::size_t j = i; j < 3; ++j) band_[k + i][j - i] -= L * row[j];
-        step_[k + i] -= L * step_[k];
-      }
-      for (double& x : row) x *= inverse;
-      row[0] = inverse;
-    }
-    for (std::size_t k = last; k-- > first;) {
-      step_[k] *= band_[k][0];
-      for (std::size_t i = 1; i < 3 && k + i < last; ++i) step_[k] -= band_[k][i] * step_[k + i];
-    }
-  }
-
-  // Largest loss of a slack, of the slack, in a whole step.
-  double largest_loss(std::size_t from, std::size_t to) const {
-    double loss = 1e-9;
-    for (std::size_t n = from; n < to; ++n) {
-      const Point& p = points_[n];
-      const Vector3 x = shifted(state(p.interval, c_), p.y);
-      const Vector3 d = shifted(state(p.interval, step_), p.y);
-      const double b = x[0], r = 1.0 / std::sqrt(b), dr = -0.5 * r / b * d[0];
-      loss = std::max({loss, -d[0] / b, d[0] / (p.b_top - b)});
-      if (n == 0) loss = std::max(loss, d[0] / (r_.v_begin * r_.v_begin - b));
-      if (n + 1 == points_.size()) loss = std::max(loss, d[0] / (r_.v_end * r_.v_end - b));
-      for (int axis = 0; axis < kJoints; ++axis) {
-        const double L = p.j0[axis] * x[0] + p.j1[axis] * x[1] + p.j2[axis] * x[2];
-        const double dL = p.j0[axis] * d[0] + p.j1[axis] * d[1] + p.j2[axis] * d[2];
-        if (std::abs(dL) - dr > loss * (r - std::abs(L))) {
-          loss = std::max({loss, (dL - dr) / (r - L), (-dL - dr) / (r + L)});
-        }
-        const double M = p.a0[axis] * x[0] + p.a1[axis] * x[1];
-        const double dM = p.a0[axis] * d[0] + p.a1[axis] * d[1];
-        if (std::abs(dM) > loss * (1.0 - std::abs(M))) {
-          loss = std::max({loss, dM / (1.0 - M), -dM / (1.0 + M)});
-        }
-      }
-    }
-    return loss;
+  double largest_loss_at_ends() const {
+    return std::max(step_[1] / (r_.v_begin * r_.v_begin - c_[1]),
+                    step_[N_] / (r_.v_end * r_.v_end - c_[N_]));
   }
 
   // Factor on the speed with which every limit holds everywhere.
   double slow_down() const {
-    double k = 1.0;
-    for (std::size_t n = 0; n + 2 < points_.size(); n += 3) {
-      const Point &p = points_[n], &q = points_[n + 2];
-      const Vector3 x = state(p.interval, c_);
-      const double jerk = largest_use(p, q, x, 0.0, 1.0, 0);
-      k = std::min(k, std::cbrt(1.0 / std::max(jerk * kMargin, 1e-9)));
-      // acceleration is quadratic, too: the control point in the middle
-      const double y = 0.5 * (p.y + q.y);
-      const Vector3 x0 = shifted(x, p.y), xm = shifted(x, y), x1 = shifted(x, q.y);
-      const Joints M0 = p.a0 * x0[0] + p.a1 * x0[1], M1 = q.a0 * x1[0] + q.a1 * x1[1];
-      const Joints Mm = 0.5 * (p.a0 + q.a0) * xm[0] + middle(p, q) * xm[1];
-      const double a = std::max({M0.cwiseAbs().maxCoeff(), M1.cwiseAbs().maxCoeff(),
-                                 (2.0 * Mm - 0.5 * (M0 + M1)).cwiseAbs().maxCoeff()});
-      k = std::min(k, std::sqrt(1.0 / std::max(a * kMargin, 1e-9)));
-      const double b = std::max({x0[0], x1[0], x0[0] + 0.5 * (q.y - p.y) * x0[1]});
-      k = std::min(k, std::sqrt(p.b_top / b));
+    double jerk = 1e-9, acceleration = 1e-9, speed = 1e-9;  // uses; the last of b
+    for (const Part& part : parts_) {
+      const Form form = form_at(part.piece, part.from);
+      const Vector3 x = shifted(state(part.interval, c_), part.from - t_[part.interval]);
+      const double h = part.to - part.from;
+      jerk = std::max(jerk, largest_jerk(form, x, 0.0, h, 0));
+      const auto [a, b] = largest_acceleration(form, x, h);
+      acceleration = std::max(acceleration, a);
+      speed = std::max(speed, b / (v_top_[part.piece] * v_top_[part.piece]));
     }
-    return k;
-  }
-  // a1 in the middle: q' is quadratic with second derivative q'''
-  Joints middle(const Point& p, const Point& q) const {
-    const double h = q.y - p.y;
-    const Joints dda = 0.5 * path_.pieces[p.piece].c3.cwiseQuotient(limits_.a * kMargin);
-    return 0.5 * (p.a1 + q.a1) - dda * (h * h / 8.0);
+    return std::min({1.0, std::cbrt(1.0 / (jerk * kMargin)),
+                     std::sqrt(1.0 / (acceleration * kMargin)), std::sqrt(1.0 / speed)});
   }
 
-  // Bound of |jerk| / (margin J) between fractions f and g of the way from p to q.
-  double largest_use(const Point& p, const Point& q, const Vector3& x, double f, double g,
-                     int depth) const {
-    const double h = q.y - p.y;
-    const auto jerk = [&](double z, double& b) -> Joints {
-      const Vector3 at = shifted(x, p.y + z * h);
-      b = at[0];
-      const Joints j2 = p.j2 + z * h * (p.j1 / 3.0 + (0.25 * z * h) * p.j0);
-      return p.j0 * at[0] + (p.j1 + (1.5 * z * h) * p.j0) * at[1] + j2 * at[2];
-    };
-    double b0 = 0.0, bm = 0.0, b1 = 0.0;
-    const Joints L0 = jerk(f, b0), Lm = jerk(0.5 * (f + g), bm), L1 = jerk(g, b1);
-    const double top = std::sqrt(std::max({b0, b1, 2.0 * bm - 0.5 * (b0 + b1)}));
-    const double L = std::max({L0.cwiseAbs().maxCoeff(), L1.cwiseAbs().maxCoeff(),
-                               (2.0 * Lm - 0.5 * (L0 + L1)).cwiseAbs().maxCoeff()});
-    if (L * top * kMargin <= 1.0 || depth == kHalvings) return L * top;
+  // Of the control points of a quadratic.
+  static double largest(const Joints& from, const Joints& middle, const Joints& to) {
+    const Joints control = 2.0 * middle - 0.5 * (from + to);
+    return from.cwiseAbs().cwiseMax(control.cwiseAbs()).cwiseMax(to.cwiseAbs()).maxCoeff();
+  }
+  static double largest(double from, double middle, double to) {
+    return std::max({from, 2.0 * middle - 0.5 * (from + to), to});
+  }
+
+  // Bounds of |acceleration| / (margin A) and of b over h metres from where `form` and `x` are.
+  std::pair<double, double> largest_acceleration(const Form& form, const Vector3& x,
+                                                 double h) const {
+    const Vector3 xm = shifted(x, 0.5 * h), x1 = shifted(x, h);
+    return {largest(form.acceleration(x, ratio_), form.shifted(0.5 * h).acceleration(xm, ratio_),
+                    form.shifted(h).acceleration(x1, ratio_)),
+            largest(x[0], xm[0], x1[0])};
+  }
+
+  // Bound of |jerk| / (margin J) between f and g metres from there.
+  static double largest_jerk(const Form& form, const Vector3& x, double f, double g, int depth) {
     const double m = 0.5 * (f + g);
-    return std::max(largest_use(p, q, x, f, m, depth + 1), largest_use(p, q, x, m, g, depth + 1));
+    const Vector3 x0 = shifted(x, f), xm = shifted(x, m), x1 = shifted(x, g);
+    const double top = std::sqrt(largest(x0[0], xm[0], x1[0]));
+    const double L =
+        largest(form.shifted(f).jerk(x0), form.shifted(m).jerk(xm), form.shifted(g).jerk(x1));
+    if (L * top * kMargin <= 1.0 || depth == kHalvings) return L * top;
+    return std::max(largest_jerk(form, x, f, m, depth + 1), largest_jerk(form, x, m, g, depth + 1));
   }
 
   double duration(std::size_t k) const {
@@ -488,15 +461,20 @@ class Quickener {
   const TimeLaw& law_;
   const SmoothPath& path_;
   std::span<const double> v_top_;
-  const JointLimits& limits_;
+  Joints per_jerk_, ratio_;  // 1/(margin J); J/A
+  BarrierKernel kernel_ = barrier_kernel();
   Region r_;
   std::size_t N_ = 0, first_piece_ = 0;
   std::vector<double> t_;
   std::vector<Interval> intervals_;
-  std::vector<Point> points_;
-  std::vector<double> slack_weight_;
-  std::vector<double> c_, step_;
+  std::vector<Part> parts_;
+  std::vector<BarrierPoints> points_;
   std::vector<std::size_t> first_points_;  // of each interval, and the end
+  BarrierJoints joints_;
+  std::array<int, kJoints> moving_{};  // the joints in `joints_`
+  double time_scale_ = 1.0;            // of the points' times, by the speed the search begins with
+  std::vector<double> c_, step_;
+  std::vector<BarrierTerms> terms_;
   std::vector<std::array<double, 3>> band_;
 };
 
