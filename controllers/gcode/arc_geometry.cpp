@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "plant/vocabulary/units.h"
 
@@ -12,7 +11,6 @@ namespace servomill::controllers {
 namespace {
 
 constexpr double kSemicircleTol = 1e-12;  // relative; a chord this near the diameter is one
-constexpr double kSamePointTol = 1e-10;   // rad; ends this near are one point: a full circle
 constexpr double kSpiralFactor = 100.0;   // beyond this many tolerances the relative one is unheard
 
 }  // namespace
@@ -54,16 +52,6 @@ ArcCentre radius_format(const Eigen::Vector2d& start, const Eigen::Vector2d& end
   const double side = clockwise == (R > 0.0) ? 1.0 : -1.0;
   const Eigen::Vector2d right(chord.y(), -chord.x());
   return {start + chord / 2.0 + side * height / (2.0 * half) * right, {}};
-}
-
-double swept_angle(const Eigen::Vector2d& start, const Eigen::Vector2d& end,
-                   const Eigen::Vector2d& centre, int turns) {
-  const Eigen::Vector2d a = start - centre;
-  const Eigen::Vector2d b = end - centre;
-  const double cross = a.x() * b.y() - a.y() * b.x();
-  double angle = std::atan2(turns > 0 ? cross : -cross, a.dot(b));
-  if (angle <= kSamePointTol) angle += 2.0 * std::numbers::pi;
-  return angle + 2.0 * std::numbers::pi * (std::abs(turns) - 1);
 }
 
 }  // namespace servomill::controllers

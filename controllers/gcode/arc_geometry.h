@@ -33,9 +33,4 @@ ArcCentre centre_format(const Eigen::Vector2d& start, const Eigen::Vector2d& end
 ArcCentre radius_format(const Eigen::Vector2d& start, const Eigen::Vector2d& end, double R,
                         bool clockwise, const ArcTolerance& tolerance);
 
-/// Angle swept (rad, > 0) from start to end; the same point means a full circle.
-/// @param turns  as in `Arc`: sign is the sense, size the number of started revolutions
-double swept_angle(const Eigen::Vector2d& start, const Eigen::Vector2d& end,
-                   const Eigen::Vector2d& centre, int turns);
-
 }  // namespace servomill::controllers

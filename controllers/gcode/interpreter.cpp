@@ -13,6 +13,7 @@
 #include "controllers/gcode/parameters.h"
 #include "controllers/gcode/parser.h"
 #include "controllers/gcode/request.h"
+#include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
@@ -822,13 +823,12 @@ void Interpreter::Machine::arc() {
     fail(request().motion.column,
          fmt::format("{}: {}", code_name('G', request().motion_code()), found.fault));
   }
-  // length of the helix
-  const double around = (a - found.centre).norm() * swept_angle(a, b, found.centre, turns);
-  const double length = std::hypot(around, end[n] - state_.position[n]);
   AxisWords centre = AxisWords::Zero();
   centre[first] = found.centre.x();
   centre[second] = found.centre.y();
   centre[n] = end[n];
+  const double length =
+      ArcSweep(state_.position.head<3>(), end.head<3>(), centre.head<3>(), n, turns).length();
   move_to(MoveKind::arc, end, length, move_feed(end, length));
   out_.back().arc = {n, centre.head<3>(), turns};
   out_.back().centre_machine = state_.to_machine(centre).head<3>();

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <optional>
 
-#include "controllers/gcode/arc_geometry.h"
 #include "controllers/gcode/modal_state.h"
+#include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 
@@ -218,10 +218,9 @@ class Printer {
       return start[static_cast<std::size_t>(i)] == steps[static_cast<std::size_t>(i)];
     };
     if (!same(first) || !same(second)) return false;
-    const auto in_plane = [&](const auto& v) { return Eigen::Vector2d(v[first], v[second]); };
-    const double angle = swept_angle(in_plane(before_), in_plane(move.end),
-                                     in_plane(move.arc.centre), move.arc.turns > 0 ? 1 : -1);
-    return angle < std::numbers::pi && std::abs(move.arc.turns) == 1;
+    const ArcSweep arc(before_.head<3>(), move.end.head<3>(), move.arc.centre, move.arc.normal_axis,
+                       move.arc.turns);
+    return std::abs(arc.sweep) < std::numbers::pi;
   }
 
   // F in force for this move, in 1/min under G93.

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <optional>
 
-#include "controllers/path/arc_sweep.h"
 #include "controllers/path/quicken.h"
 #include "controllers/path/stretch_limits.h"
+#include "plant/vocabulary/arc_sweep.h"
 
 namespace servomill::controllers {
 namespace {
@@ -117,7 +117,7 @@ class Planner {
       leg.rotary_only = step.head<kLinearJoints>().isZero(0.0);
       leg.tangent_begin = leg.tangent_end = step.normalized();
     }
-    leg.length = arc ? std::abs(arc->sweep) * arc->r_end : step.norm();
+    leg.length = arc ? arc->length() : step.norm();
     leg.tolerance = tolerance_of(move);
     leg.feed = speed_along(leg, move);
     if (last_ && must_stop(*last_, leg)) finish_chain();
@@ -145,8 +145,8 @@ class Planner {
   // Whether an arc goes on where another one ended, on the same circle and in the same direction.
   static bool is_same_circle(const ArcSweep& one, const ArcSweep& next, const Joints& step) {
     const auto near = [](double a, double b) { return std::abs(a - b) < kSameCircle; };
-    const bool is_flat = near(one.begin[one.c], one.end[one.c]) &&
-                         near(next.begin[one.c], next.end[one.c]) &&
+    const bool is_flat = near(one.along_begin, one.along_end) &&
+                         near(next.along_begin, next.along_end) &&
                          step.tail<kJoints - kLinearJoints>().isZero(0.0);
     return is_flat && one.c == next.c && (one.sweep > 0.0) == (next.sweep > 0.0) &&
            near(one.centre_a, next.centre_a) && near(one.centre_b, next.centre_b) &&

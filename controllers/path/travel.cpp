@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "controllers/path/arc_sweep.h"
+#include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
+#include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/move.h"
 
@@ -28,9 +30,7 @@ class MoveCurve {
 
  private:
   AxisWords from_ = AxisWords::Zero(), to_ = AxisWords::Zero();
-  bool is_arc_ = false;
-  int u_ = 0, v_ = 1;  // axes of the plane of an arc
-  double cu_ = 0.0, cv_ = 0.0, r0_ = 0.0, r1_ = 0.0, phi0_ = 0.0, sweep_ = 0.0;
+  std::optional<ArcSweep> arc_;
   double length_ = 0.0;
 };
 

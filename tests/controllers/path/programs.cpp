@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "controllers/path/arc_sweep.h"
+#include "plant/vocabulary/arc_sweep.h"
 
 namespace servomill::controllers::test {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "controllers/path/arc_sweep.h"
 #include "controllers/path/trajectory.h"
+#include "plant/vocabulary/arc_sweep.h"
 #include "programs.h"
 
 namespace servomill::controllers::test {
