@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "controllers/path/band.h"
 
@@ -11,14 +12,15 @@ namespace servomill::controllers {
 namespace {
 
 constexpr double kKnotSpacing = 0.55;  // of the window
-constexpr double kKappa = 1.0 / 2.2;
-constexpr double kAim = 0.9;         // of the tolerance, where a vertex is missed
-constexpr double kMostRaise = 16.0;  // of mu at once
-constexpr double kBendAim = 0.7;     // of the third derivative that leaves the programmed speed
+constexpr double kKappa = 1.0 / 2.2;   // of (1), which halves waves of 2.2 rad in a window
+constexpr double kAim = 0.9;           // of the tolerance, where a vertex is missed
+constexpr double kMostRaise = 16.0;    // of mu at once
+constexpr double kBendAim = 0.7;       // of the third derivative that leaves the programmed speed
 constexpr double kLeastFactor = 0.8, kMostFactor = 2.0;  // of its weight at once
 constexpr int kBendRounds = 5;                           // in which bends are spread
 constexpr int kMostRounds = 12;                          // in all
 constexpr std::size_t kLeastIntervals = 7;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kExtra = 3;  // knots beyond each end
 
 // q, q', q'', q''' at knot t[0] from the coefficients of the four B-splines between t[0] and t[1].
@@ -42,6 +44,7 @@ Eigen::Matrix4d basis_at(const double* t) {
 double square_ratio(const Joints& D, const PathVertex& v) {
   const double linear = D.head<kLinearJoints>().squaredNorm();
   const double rotary = D.tail<kJoints - kLinearJoints>().squaredNorm();
+  if (std::isnan(linear + rotary)) return kInfinity;  // the system had no solution
   return std::max(linear / (v.tolerance_linear * v.tolerance_linear),
                   rotary / (v.tolerance_rotary * v.tolerance_rotary));
 }

@@ -355,64 +355,76 @@ class Smoother {
     }
   }
 
-  void accept(std::size_t count) {
-    const std::vector<CubicPiece>& pieces = spline_.pieces();
-    fair_.insert(fair_.end(), pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(count));
-  }
+  // Where fairing a run of vertices stands: splines of blocks that overlap.
+  struct Run {
+    std::size_t next = 0, last = 0;  // vertices not yet done
+    std::size_t length = kBlock;
+    FairSpline::State begin, end;
+    std::vector<CubicPiece> tail;  // of the last spline, beyond where the next begins
+    double tail_end = 0.0;
+  };
 
   // Windows outside the run that reach into it are left alone.
   void fair_run(std::size_t i, std::size_t j) {
     const double a = std::clamp(s_[i - 1] + w_[i - 1], std::max(s_[i] - w_[i], s_[i - 1]), s_[i]);
     const double b = std::clamp(s_[j + 1] - w_[j + 1], s_[j], std::min(s_[j] + w_[j], s_[j + 1]));
-    const FairSpline::State end = state_at(b, j);
-    FairSpline::State begin = state_at(a, i - 1);
-    std::vector<CubicPiece> tail;  // of the spline before, beyond where the next begins
-    double tail_end = 0.0;
-    std::size_t length = kBlock;
-    while (i <= j) {
-      const std::size_t to = std::min(i + length, j);
-      if (to - i < kLeastRun) break;
-      const FairSpline::State stop = to == j ? end : state_at(s_[to], to);
-      if (spline_.fit(v_, s_, w_, jerk_, begin, stop)) {
-        open(begin.s);
-        const auto& pieces = spline_.pieces();
-        std::size_t cut = pieces.size();
-        if (to != j) {
-          while (pieces[cut - 1].s > s_[to - std::min(kOverlap, (to - i) / 2)]) --cut;
-          --cut;
-        }
-        accept(cut);
-        if (to == j) {
-          close(b);
-          return;
-        }
-        begin = spline_.state_at(cut);
-        close(begin.s);
-        tail.assign(pieces.begin() + static_cast<std::ptrdiff_t>(cut), pieces.end());
-        tail_end = stop.s;
-        i = begin.chord + 1;
-        length = kBlock;
-        continue;
-      }
-      if (!tail.empty()) {
-        fair_.insert(fair_.end(), tail.begin(), tail.end());
-        close(tail_end);
-        tail.clear();
-        while (s_[i] <= tail_end) ++i;
-        begin = state_at(tail_end, i - 1);
-      } else if (to - i > 2 * kLeastRun) {
-        length = (to - i) / 2;
+    Run run;
+    run.next = i, run.last = j;
+    run.begin = state_at(a, i - 1), run.end = state_at(b, j);
+    while (run.next <= run.last) {
+      const std::size_t to = std::min(run.next + run.length, run.last);
+      if (to - run.next < kLeastRun) break;
+      const FairSpline::State stop = to == j ? run.end : state_at(s_[to], to);
+      if (spline_.fit(v_, s_, w_, jerk_, run.begin, stop)) {
+        accept(run, to, stop);
+      } else if (!run.tail.empty()) {
+        finish_tail(run);
       } else {
-        i = to + 1;
-        if (i > j) break;
-        begin = state_at(s_[to], to);
-        length = kBlock;
+        try_less(run, to);
       }
     }
-    if (!tail.empty()) {
-      fair_.insert(fair_.end(), tail.begin(), tail.end());
-      close(tail_end);
+    finish_tail(run);
+  }
+
+  // Keeps the spline up to some vertices before its end; there the next one begins.
+  void accept(Run& run, std::size_t to, const FairSpline::State& stop) {
+    const std::vector<CubicPiece>& pieces = spline_.pieces();
+    std::size_t cut = pieces.size();
+    const bool ends = to == run.last;
+    if (!ends) {
+      while (pieces[cut - 1].s > s_[to - std::min(kOverlap, (to - run.next) / 2)]) --cut;
+      --cut;
     }
+    const auto middle = pieces.begin() + static_cast<std::ptrdiff_t>(cut);
+    open(run.begin.s);
+    fair_.insert(fair_.end(), pieces.begin(), middle);
+    run.tail.assign(middle, pieces.end());
+    run.tail_end = stop.s;
+    run.begin = ends ? stop : spline_.state_at(cut);
+    close(run.begin.s);
+    run.next = ends ? to + 1 : run.begin.chord + 1;
+    run.length = kBlock;
+  }
+
+  // No spline joins the last one: that one stays to its end.
+  void finish_tail(Run& run) {
+    if (run.tail.empty()) return;
+    fair_.insert(fair_.end(), run.tail.begin(), run.tail.end());
+    close(run.tail_end);
+    run.tail.clear();
+    while (run.next <= run.last && s_[run.next] <= run.tail_end) ++run.next;
+    run.begin = state_at(run.tail_end, run.next - 1);
+  }
+
+  // Fewer vertices; if they are few, what is between windows stays as it is.
+  void try_less(Run& run, std::size_t to) const {
+    if (to - run.next > 2 * kLeastRun) {
+      run.length = (to - run.next) / 2;
+      return;
+    }
+    run.next = to + 1;
+    run.begin = state_at(s_[to], to);
+    run.length = kBlock;
   }
 
   void open(double s) {

@@ -10,36 +10,59 @@ namespace {
 constexpr double kSimilar = 1.1;        // speeds on curves that are not worth a change
 constexpr double kSimilarFeed = 1.001;  // the same for programmed speeds
 constexpr double kCrossShareJ = 0.7;    // of the jerk left, for 3 q'' v a
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Largest |q'| on a piece: q' is a parabola within the hull of three control points.
+struct Slopes {
+  Joints joint;
+  double linear = 0.0, rotary = 0.0;  // norms over X Y Z and over the rotary joints
+};
+
+Slopes largest_slopes(const CubicPiece& piece, double h) {
+  const Joints &t0 = piece.c1, t1 = piece.c1 + piece.c2 * (0.5 * h);
+  const Joints t2 = piece.c1 + piece.c2 * h + piece.c3 * (0.5 * h * h);
+  const auto largest = [&](auto part) { return std::max({part(t0), part(t1), part(t2)}); };
+  return {t0.cwiseAbs().cwiseMax(t1.cwiseAbs()).cwiseMax(t2.cwiseAbs()),
+          largest([](const Joints& t) { return t.head<kLinearJoints>().norm(); }),
+          largest([](const Joints& t) { return t.tail<kJoints - kLinearJoints>().norm(); })};
+}
+
+double programmed_speed(const Slopes& slopes, const FeedLimit& feed) {
+  double v = kInfinity;
+  if (slopes.linear > 0.0) v = std::min(v, feed.linear / slopes.linear);
+  if (slopes.rotary > 0.0) v = std::min(v, feed.rotary / slopes.rotary);
+  return v;
+}
+
+double straight_speed(const Slopes& slopes, const Joints& limit, double programmed) {
+  double v = programmed;
+  for (int k = 0; k < kJoints; ++k) {
+    if (slopes.joint[k] > 0.0) v = std::min(v, limit[k] / slopes.joint[k]);
+  }
+  return v;
+}
 
 }  // namespace
 
 StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimits& limits,
                              const FeedLimit& feed, double curve_share) {
-  // q' is a parabola within the hull of three control points, q'' a line, q''' constant
-  const Joints &t0 = piece.c1, t1 = piece.c1 + piece.c2 * (0.5 * h);
-  const Joints t2 = piece.c1 + piece.c2 * h + piece.c3 * (0.5 * h * h);
-  const Joints d1 = t0.cwiseAbs().cwiseMax(t1.cwiseAbs()).cwiseMax(t2.cwiseAbs());
+  const Slopes slopes = largest_slopes(piece, h);
+  const Joints& d1 = slopes.joint;
+  // q'' is a line, q''' constant
   const Joints d2 = piece.c2.cwiseAbs().cwiseMax((piece.c2 + piece.c3 * h).cwiseAbs());
   const Joints d3 = piece.c3.cwiseAbs();
-  const auto largest = [&](auto part) { return std::max({part(t0), part(t1), part(t2)}); };
-  const double linear = largest([](const Joints& t) { return t.head<kLinearJoints>().norm(); });
-  const double rotary =
-      largest([](const Joints& t) { return t.tail<kJoints - kLinearJoints>().norm(); });
 
   StretchLimits out;
   out.end = piece.s + h;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double v = kInfinity;
-  if (linear > 0.0) v = std::min(v, feed.linear / linear);
-  if (rotary > 0.0) v = std::min(v, feed.rotary / rotary);
-  const double programmed = v;
-  double straight = v, curve_a = kInfinity, curve_j = kInfinity;  // m/s, by curvature alone
+  const double programmed = programmed_speed(slopes, feed);
+  const double straight = straight_speed(slopes, limits.v, programmed);
+  double curve_a = kInfinity, curve_j = kInfinity;  // m/s, by curvature alone
   for (int k = 0; k < kJoints; ++k) {
-    if (d1[k] > 0.0) straight = std::min(straight, limits.v[k] / d1[k]);
     if (d2[k] > 0.0) curve_a = std::min(curve_a, std::sqrt(limits.a[k] / d2[k]));
     if (d3[k] > 0.0) curve_j = std::min(curve_j, std::cbrt(limits.j[k] / d3[k]));
   }
-  v = std::min({straight, std::sqrt(curve_share) * curve_a, std::cbrt(curve_share) * curve_j});
+  const double v =
+      std::min({straight, std::sqrt(curve_share) * curve_a, std::cbrt(curve_share) * curve_j});
   double a = kInfinity;
   for (int k = 0; k < kJoints; ++k) {
     if (d1[k] > 0.0) a = std::min(a, (limits.a[k] - d2[k] * v * v) / d1[k]);
@@ -61,20 +84,8 @@ StretchLimits stretch_limits(const CubicPiece& piece, double h, const JointLimit
 
 double straight_speed(const CubicPiece& piece, double h, const JointLimits& limits,
                       const FeedLimit& feed) {
-  const Joints &t0 = piece.c1, t1 = piece.c1 + piece.c2 * (0.5 * h);
-  const Joints t2 = piece.c1 + piece.c2 * h + piece.c3 * (0.5 * h * h);
-  const auto largest = [&](auto part) { return std::max({part(t0), part(t1), part(t2)}); };
-  const double linear = largest([](const Joints& t) { return t.head<kLinearJoints>().norm(); });
-  const double rotary =
-      largest([](const Joints& t) { return t.tail<kJoints - kLinearJoints>().norm(); });
-  const Joints d1 = t0.cwiseAbs().cwiseMax(t1.cwiseAbs()).cwiseMax(t2.cwiseAbs());
-  double v = std::numeric_limits<double>::infinity();
-  if (linear > 0.0) v = std::min(v, feed.linear / linear);
-  if (rotary > 0.0) v = std::min(v, feed.rotary / rotary);
-  for (int k = 0; k < kJoints; ++k) {
-    if (d1[k] > 0.0) v = std::min(v, limits.v[k] / d1[k]);
-  }
-  return v;
+  const Slopes slopes = largest_slopes(piece, h);
+  return straight_speed(slopes, limits.v, programmed_speed(slopes, feed));
 }
 
 std::vector<StretchLimits> merge_similar(std::span<const StretchLimits> pieces) {

@@ -123,5 +123,20 @@ TEST(FairSpline, RefusesARunThatIsTooShortForItsKnots) {
   EXPECT_FALSE(spline.fit(v, s, w, kJerk, state(0, 0), state(v.size() - 1, v.size() - 2)));
 }
 
+// std::max and friends pass over NaN.
+TEST(FairSpline, RefusesWhatHasNoSolution) {
+  const auto v = wandering(200, 1);
+  std::vector<double> s = {0.0}, w(v.size(), 0.3 * mm);
+  for (std::size_t i = 1; i < v.size(); ++i) s.push_back(s.back() + (v[i].u - v[i - 1].u).norm());
+  const auto state = [&](std::size_t i, std::size_t chord, double bend) {
+    const Joints d = (v[chord + 1].u - v[chord].u).normalized();
+    return FairSpline::State{s[i], v[i].u, d, Joints::Constant(bend), chord};
+  };
+  const auto end = state(v.size() - 1, v.size() - 2, 0.0);
+  FairSpline spline;
+  EXPECT_TRUE(spline.fit(v, s, w, kJerk, state(0, 0, 0.0), end));
+  EXPECT_FALSE(spline.fit(v, s, w, kJerk, state(0, 0, std::nan("")), end));
+}
+
 }  // namespace
 }  // namespace servomill::controllers
