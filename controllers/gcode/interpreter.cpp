@@ -55,6 +55,11 @@ class Lines {
     return true;
   }
   int number() const { return number_; }
+  /// How many are left.
+  std::size_t count() const {
+    const auto ends = std::count(rest_.begin(), rest_.end(), '\n');
+    return static_cast<std::size_t>(ends) + (rest_.empty() || rest_.back() == '\n' ? 0 : 1);
+  }
 
  private:
   std::string_view rest_;
@@ -120,6 +125,15 @@ class Interpreter::Machine {
       if (ended_ || !read_block()) return std::nullopt;
     }
     return std::move(out_[given_++]);
+  }
+
+  std::vector<Move> rest() {
+    out_.erase(out_.begin(), out_.begin() + static_cast<std::ptrdiff_t>(given_));
+    given_ = 0;
+    out_.reserve(out_.size() + lines_.count());
+    while (!ended_ && read_block()) {
+    }
+    return std::exchange(out_, {});
   }
 
  private:
@@ -921,12 +935,10 @@ Interpreter::Interpreter(Interpreter&&) noexcept = default;
 Interpreter& Interpreter::operator=(Interpreter&&) noexcept = default;
 
 std::optional<Move> Interpreter::next() { return machine_->next(); }
+std::vector<Move> Interpreter::rest() { return machine_->rest(); }
 
 std::vector<Move> interpret(std::string text, std::string file, ProgramSetup setup) {
-  Interpreter interpreter(std::move(text), std::move(file), std::move(setup));
-  std::vector<Move> moves;
-  while (std::optional<Move> move = interpreter.next()) moves.push_back(std::move(*move));
-  return moves;
+  return Interpreter(std::move(text), std::move(file), std::move(setup)).rest();
 }
 
 namespace {

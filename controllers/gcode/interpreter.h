@@ -57,6 +57,10 @@ class Interpreter {
   /// that goes on with the next block
   std::optional<Move> next();
 
+  /// All moves that are left.
+  /// @throws InputError at a block with an error; the moves before it are lost
+  std::vector<Move> rest();
+
  private:
   class Machine;
   std::unique_ptr<Machine> machine_;

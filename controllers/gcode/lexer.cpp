@@ -48,8 +48,6 @@ std::string shown(char c) {
 }  // namespace
 
 void read_line(std::string_view line, const std::string& file, int number, CodeLine& out) {
-  out.text.clear();
-  out.column.clear();
   out.comments.clear();
   const auto fail = [&](std::size_t at, std::string message) {
     throw InputError({file, number, static_cast<int>(at) + 1}, std::move(message));
@@ -58,7 +56,13 @@ void read_line(std::string_view line, const std::string& file, int number, CodeL
     fail(kLongestLine,
          fmt::format("line of {} characters; at most {} are allowed", line.size(), kLongestLine));
   }
-  std::size_t i = 0;
+  out.text.resize(line.size());
+  out.column.resize(line.size() + 1);
+  std::size_t i = 0, length = 0;
+  const auto put = [&](char c) {
+    out.text[length] = c;
+    out.column[length++] = static_cast<int>(i) + 1;
+  };
   for (; i < line.size(); ++i) {
     const char c = line[i];
     if (is_blank(c)) continue;
@@ -68,8 +72,7 @@ void read_line(std::string_view line, const std::string& file, int number, CodeL
       if (close == std::string_view::npos) fail(i, "comment is not closed; ')' is missing");
       if (line[close] == '(') fail(close, "comment within a comment");
       out.comments.push_back(classify(line.substr(i + 1, close - i - 1), static_cast<int>(i) + 1));
-      out.text += '(';
-      out.column.push_back(static_cast<int>(i) + 1);
+      put('(');
       i = close;
       continue;
     }
@@ -77,10 +80,11 @@ void read_line(std::string_view line, const std::string& file, int number, CodeL
     if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) {
       fail(i, fmt::format("{} is not allowed outside comments", shown(c)));
     }
-    out.text += upper(c);
-    out.column.push_back(static_cast<int>(i) + 1);
+    put(upper(c));
   }
-  out.column.push_back(static_cast<int>(i) + 1);
+  out.text.resize(length);
+  out.column.resize(length + 1);
+  out.column[length] = static_cast<int>(i) + 1;
 }
 
 }  // namespace servomill::controllers
