@@ -129,5 +129,52 @@ TEST(VirtualEncoder, KeepsTheStepsOfTheEncoderOutOfItsLead) {
   EXPECT_LT(noise(3.0), 0.2 * noise(0.3));
 }
 
+// Parts of several runs, each with readings of its own, give the same bits together and alone:
+// whatever the sign and the lead, one step or many, up to and beyond a register.
+TEST(VirtualEncoder, GivesTheSameBitsTogetherAndAlone) {
+  plant::Uniform random(23);
+  Belief belief = belief_in(plant::random_errors(random, 50e-6));
+  belief.Kv = {60.0, 40.0, 40.0};  // leads that differ
+  const Entry entry = feedback_entry();
+  for (const Sign sign : kBothSigns) {
+    for (const bool lead : {false, true}) {
+      for (const std::string_view iterations : {"1", "converged"}) {
+        Parameters parameters = default_parameters(entry);
+        parameters.set("iterations", iterations);
+        if (lead) parameters.set("lead_ms", std::string_view("auto"));
+        const auto strategy = entry.make(parameters, sign, belief);
+        constexpr std::size_t kRuns = 9;
+        std::vector<std::unique_ptr<FeedbackPart>> alone, among;
+        std::vector<FeedbackPart*> together;
+        std::vector<Joints> Q(kRuns, belief.reference);
+        for (std::size_t run = 0; run < kRuns; ++run) {
+          for (int j = 0; j < kLinearJoints; ++j) Q[run][j] = 0.15 * random();
+          alone.push_back(strategy->feedback(kModelPeriod));
+          among.push_back(strategy->feedback(kModelPeriod));
+          together.push_back(among.back().get());
+          ASSERT_TRUE(together.front()->goes_with(*together.back()));
+          EXPECT_EQ(alone[run]->settle(Q[run]), among[run]->settle(Q[run]));
+        }
+        std::vector<Eigen::Vector3d> d(kRuns);
+        for (int n = 0; n < 100; ++n) {
+          for (Joints& one : Q) one.head<3>() += 1e-6 * Eigen::Vector3d(random(), random(), 1.0);
+          together.front()->evaluate_together(together, Q, d);
+          for (std::size_t run = 0; run < kRuns; ++run) {
+            ASSERT_EQ(alone[run]->evaluate(Q[run]), d[run]) << "run " << run << ", period " << n;
+          }
+        }
+      }
+    }
+  }
+}
+
+// Another strategy believes something else, or wants it otherwise.
+TEST(VirtualEncoder, DoesNotGoWithOneOfAnotherStrategy) {
+  const Belief belief = ramp_of_y_over_x();
+  const Acting one = virtual_encoder(belief, {}), other = virtual_encoder(belief, {});
+  EXPECT_TRUE(one.feedback->goes_with(*one.feedback));
+  EXPECT_FALSE(one.feedback->goes_with(*other.feedback));
+}
+
 }  // namespace
 }  // namespace servomill::strategies
