@@ -1,5 +1,7 @@
 #include "sim/input_files.h"
 
+#include <boost/crc.hpp>
+
 #include "sim/read_file.h"
 
 namespace servomill::sim {
@@ -7,6 +9,13 @@ namespace {
 
 constexpr std::size_t kMostBytes = 200'000'000;  // of texts
 constexpr std::size_t kMostDocuments = 100;
+
+std::uint64_t crc64(const std::string& bytes) {
+  constexpr std::uint64_t kPolynomial = 0x42F0E1EBA9EA3693;
+  boost::crc_optimal<64, kPolynomial, ~std::uint64_t{0}, ~std::uint64_t{0}, true, true> crc;
+  crc.process_bytes(bytes.data(), bytes.size());
+  return crc.checksum();
+}
 
 }  // namespace
 
@@ -18,13 +27,26 @@ std::shared_ptr<const std::string> InputFiles::text(const std::string& path, con
                                                     std::string_view what) {
   MemoKey key;
   key.add(path);
-  return texts_.get(key, [&] { return read_file(path, at, what); });
+  return texts_.get(key, [&] {
+    std::string text = read_file(path, at, what);
+    const std::uint64_t now = crc64(text);
+    const std::scoped_lock lock(mutex_);
+    if (checksums_.emplace(path, now).first->second != now) {
+      throw InputError({path}, "has changed since it was read first");
+    }
+    return text;
+  });
+}
+
+std::uint64_t InputFiles::checksum(const std::string& path, const Place& at,
+                                   std::string_view what) {
+  text(path, at, what);
+  const std::scoped_lock lock(mutex_);
+  return checksums_.at(path);
 }
 
 std::shared_ptr<const Document> InputFiles::document(const std::string& path) {
-  MemoKey key;
-  key.add(path);
-  return documents_.get(key, [&] { return Document::from_file(path); });
+  return document(path, *text(path, {}, "scenario"));
 }
 
 std::shared_ptr<const Document> InputFiles::document(const std::string& path,

@@ -87,6 +87,7 @@ struct Scenario {
 
   std::string text, machine_text;  // as read
   std::string resolved;            // one TOML document with the machine and all changes in it
+  std::string swept_files;         // that only the sweep names (sim/sweep/sweep.h)
 
   const CaseSpec* find_case(std::string_view case_name) const;
   /// The machine that a case runs on. Axes and periods are those of `machine` for all cases.

@@ -44,4 +44,12 @@ Scenario ScenarioSource::at(const std::vector<std::string>& more) const {
   return scenario;
 }
 
+std::optional<std::uint64_t> ScenarioSource::checksum(const std::string& path) const {
+  try {
+    return parts_->files->checksum(path, {}, "file");
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace servomill::sim

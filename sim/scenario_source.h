@@ -1,7 +1,9 @@
 /// A scenario from which others are made that differ in some keys: the points of a sweep.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,10 @@ class ScenarioSource {
   /// @param more  changes that come after the others
   /// @throws InputError with all faults of a file at once
   Scenario at(const std::vector<std::string>& more = {}) const;
+
+  /// A number that other contents of a file do not have (sim/input_files.h); none, if it cannot be
+  /// read. The scenario and its changes see the file as it is now, whatever becomes of it.
+  std::optional<std::uint64_t> checksum(const std::string& path) const;
 
  private:
   struct Parts;

@@ -15,7 +15,7 @@ constexpr std::size_t kMostNamed = 20;  // shards or ranges in one message
 
 // What a merge keeps of a file; files are open one at a time, there may be thousands.
 struct Shard {
-  std::string path, version, resolved;
+  std::string path, version, resolved, swept_files;
   Selection selection;
   std::uint64_t not_run = 0;  // of its points
 };
@@ -24,7 +24,11 @@ Shard read_shard(const std::string& path) {
   const InputFile file(path);
   const SweepHeader header = read_sweep_header(file);
   const auto statuses = file.values("/sweep/status", 0, header.selection.size());
-  return {path, file.text("/", "servomill_version"), header.base.resolved, header.selection,
+  return {path,
+          file.text("/", "servomill_version"),
+          header.base.resolved,
+          header.base.swept_files,
+          header.selection,
           static_cast<std::uint64_t>(std::count(statuses.begin(), statuses.end(), 0.0))};
 }
 
@@ -39,6 +43,9 @@ void refuse_other(const Shard& one, const Shard& first) {
                                              one.version, kVersion));
   }
   if (one.resolved != first.resolved) refuse("holds a sweep of another scenario than");
+  if (const auto file = changed_file(first.swept_files, one.swept_files); !file.empty()) {
+    refuse(fmt::format("was run with another file '{}' than", file));
+  }
   if (one.selection.first != first.selection.first || one.selection.last != first.selection.last) {
     refuse(fmt::format("is of points {} to {}, others than those of", one.selection.first + 1,
                        one.selection.last));

@@ -7,18 +7,16 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
-#include <filesystem>
 #include <mutex>
-#include <optional>
+#include <set>
 #include <thread>
 
 #include "sim/config/document.h"
 #include "sim/preparation_cache.h"
+#include "sim/scenario_document.h"
 
 namespace servomill::sim {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr auto kProgressPeriod = std::chrono::milliseconds(100);
 constexpr std::uint64_t kProbes = 8;          // points tried before all are given up
@@ -28,6 +26,8 @@ constexpr std::size_t kWaitingPerThread = 2;  // batches that may wait to be wri
 
 // Values of these keys name files, which stand beside the scenario.
 bool names_a_file(const std::string& key) { return key == "machine" || key == "program.file"; }
+
+std::string unquoted(const std::string& text) { return text.substr(1, text.size() - 2); }
 
 // `count` points of `size`, the first and the last among them, in equal steps.
 std::vector<std::uint64_t> spread(std::uint64_t size, std::uint64_t count) {
@@ -68,20 +68,41 @@ Sweep::Sweep(std::string scenario_path, std::vector<std::string> changes)
       changes_(std::move(changes)),
       source_(path_, changes_),
       base_(source_.at()) {
-  if (!base_.sweep.empty()) return;
-  throw InputError({path_},
-                   "has no [sweep] table; add one such as [sweep] "
-                   "\"program.feed_override\" = [0.5, 1.0]");
+  if (base_.sweep.empty()) {
+    throw InputError({path_},
+                     "has no [sweep] table; add one such as [sweep] "
+                     "\"program.feed_override\" = [0.5, 1.0]");
+  }
+  base_.swept_files = swept_files();
+}
+
+// The file that a value of a key names, seen from the folder in which the user is.
+std::optional<std::string> Sweep::named_file(std::size_t key, const std::string& value) const {
+  const SweepKey& one = design().keys[key];
+  const bool quoted = value.size() >= 2 && (value.front() == '"' || value.front() == '\'');
+  if (!quoted || !names_a_file(one.key)) return std::nullopt;
+  return beside(one.place, unquoted(value));
 }
 
 std::string Sweep::assignment(std::size_t key, const std::string& value) const {
-  const SweepKey& one = design().keys[key];
-  const bool quoted = value.size() >= 2 && (value.front() == '"' || value.front() == '\'');
-  if (!quoted || !names_a_file(one.key) || one.place.file.starts_with("--set")) {
-    return one.key + "=" + value;
+  const auto file = named_file(key, value);
+  return design().keys[key].key + "=" + (file ? quoted_text(*file) : value);
+}
+
+std::string Sweep::swept_files() const {
+  std::set<std::string> lines;
+  for (std::size_t key = 0; key < design().keys.size(); ++key) {
+    const auto* values = std::get_if<ValueTexts>(&design().keys[key].values);
+    if (values == nullptr) continue;
+    for (const std::string& value : *values) {
+      const auto file = named_file(key, value);
+      if (!file) continue;
+      const auto checksum = source_.checksum(*file);
+      lines.insert(fmt::format("{} {}", checksum ? fmt::format("{:016x}", *checksum) : "unreadable",
+                               unquoted(value)));
+    }
   }
-  const fs::path file = fs::path(one.place.file).parent_path() / value.substr(1, value.size() - 2);
-  return one.key + "=" + quoted_text(file.lexically_normal().string());
+  return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
 // The user wrote a list in the scenario, not --set: faults of its values stand there.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ class Sweep {
   /// @throws InputError if the scenario cannot be read or has no [sweep] table
   Sweep(std::string scenario_path, std::vector<std::string> changes);
 
+  /// The scenario as it is without its sweep. Its `swept_files` are those that values of the sweep
+  /// name, one line each: "CHECKSUM NAME", or "unreadable NAME"; sorted. They belong to what the
+  /// sweep is: a table of it is not gone on with when they have changed.
   const Scenario& base() const { return base_; }
   const SweepDesign& design() const { return base_.sweep; }
 
@@ -44,6 +48,8 @@ class Sweep {
  private:
   InputError at_the_list(const InputError& error, const std::vector<std::string>& values) const;
   std::string assignment(std::size_t key, const std::string& value) const;
+  std::optional<std::string> named_file(std::size_t key, const std::string& value) const;
+  std::string swept_files() const;
 
   std::string path_;
   std::vector<std::string> changes_;

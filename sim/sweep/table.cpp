@@ -115,6 +115,11 @@ std::string why_other(const SweepHeader& header, const std::string& version, con
                ? "holds a sweep of this scenario as it was before it changed"
                : fmt::format("holds a sweep of the scenario '{}'", header.base.name);
   }
+  if (const std::string file = changed_file(header.base.swept_files, base.swept_files);
+      !file.empty()) {
+    return fmt::format("holds a sweep of this scenario as it was before its file '{}' changed",
+                       file);
+  }
   if (!(header.selection == selection)) {
     const auto said = [](const Selection& s) {
       return fmt::format("points {} to {}, shard {} of {}", s.first + 1, s.last, s.shard, s.shards);
@@ -218,6 +223,7 @@ SweepTable::SweepTable(const std::string& path, bool force, const Scenario& base
 void SweepTable::make(const Scenario& base) {
   Hdf5Group root = file_->root();
   write_inputs(root, base, "sweep");
+  root.group("inputs").attribute("swept_files", base.swept_files);
   root.attribute("schema_version", kSweepSchemaVersion);
   root.flush_file();
 
@@ -397,6 +403,16 @@ void SweepTable::commit() {
   write_csv(path_, csv_name(path_));
 }
 
+std::string changed_file(const std::string& before, const std::string& after) {
+  if (before == after) return {};
+  const std::vector<std::string> others = split_lines(before);
+  for (const std::string& line : split_lines(after)) {
+    if (std::find(others.begin(), others.end(), line) != others.end()) continue;
+    return line.substr(line.find(' ') + 1);
+  }
+  return {};
+}
+
 SweepHeader read_sweep_header(const InputFile& file) {
   const std::string& path = file.path();
   if (!file.has_attribute("/", "schema_version")) {
@@ -421,6 +437,9 @@ SweepHeader read_sweep_header(const InputFile& file) {
   header.base.text = file.text("/inputs", "scenario");
   header.base.machine_text = file.text("/inputs", "machine");
   header.base.resolved = resolved;
+  if (file.has_attribute("/inputs", "swept_files")) {
+    header.base.swept_files = file.text("/inputs", "swept_files");
+  }
   const auto number = [&](const std::string& name) {
     return static_cast<std::uint64_t>(file.number(kGroup, name));
   };

@@ -82,6 +82,10 @@ class SweepTable {
   std::optional<OutputFile> file_;
 };
 
+/// A file of `after` that is not the same in `before` (Scenario::swept_files); empty: there is
+/// none.
+std::string changed_file(const std::string& before, const std::string& after);
+
 /// What the header of a sweep file says.
 struct SweepHeader {
   Scenario base;  // as stored; the keys of its sweep may stand in another order

@@ -4,6 +4,7 @@ sweep.py SERVOMILL"""
 import csv
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -192,6 +193,24 @@ class Resume(Sweeps):
         self.refused("out.h5: error: holds points 1 to 40, shard 1 of 1 of the sweep; asked for are points 1 to 3, shard 1 "
                      "of 1; use --force to overwrite", *again, "--set", POINTS, "--points", "1-3")
         servomill(*again, "-q", "--force", "--set", POINTS, "--points", "1-2")
+
+    def test_refuses_a_sweep_over_files_that_have_changed(self):
+        for name in ("one.ngc", "two.ngc"):
+            shutil.copy(os.path.join(HERE, "gallery", "part.ngc"), self.path(name))
+        points = f'sweep={{program.file=["{self.path("one.ngc")}","{self.path("two.ngc")}"]}}'
+        for out in ("out.h5", "part.h5"):
+            self.sweep(out, status=0, points=points, *(["--shard", "1/2"] if out == "part.h5" else []))
+        self.sweep("out.h5", status=0, points=points)   # is complete
+        with open(self.path("two.ngc"), "a", encoding="utf-8") as file:
+            file.write("; changed\n")
+        message = "holds a sweep of this scenario as it was before its file 'two.ngc' changed; use --force to overwrite"
+        for out in ("out.h5", "out.h5.partial"):
+            if out.endswith(".partial"):
+                os.rename(self.path("out.h5"), self.path(out))
+            self.refused(f"{out}: error: {message}", "sweep", SCENARIO, "-o", self.path("out.h5"), "--set", points)
+        self.sweep("part.h5", "--shard", "2/2", status=0, points=points)
+        self.refused("part.2-of-2.h5: error: was run with another file 'two.ngc' than part.1-of-2.h5", "merge",
+                     self.path("part.1-of-2.h5"), self.path("part.2-of-2.h5"), "-o", self.path("merged.h5"))
 
     def test_refuses_what_another_version_wrote(self):
         self.sweep("out.h5")
