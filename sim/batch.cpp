@@ -1,6 +1,7 @@
 #include "sim/batch.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -14,8 +15,9 @@
 namespace servomill::sim {
 namespace {
 
-// Recorded signals that a batch may hold; points beyond wait for their turn.
-constexpr double kMostRows = 1e6;  // of some 500 bytes
+constexpr double kMostRows = 1e6;  // of recorded signals
+constexpr double kRowBytes = 500.0;
+constexpr double kMemoryShare = 0.25;  // of the machine's memory
 
 BatchResult failure(std::exception_ptr error) {
   try {
@@ -36,6 +38,8 @@ struct Point {
   std::vector<std::optional<CaseInputs>> inputs;
   std::vector<CaseResult> results;
   std::exception_ptr error;
+  std::size_t left = 0;      // of the cases, to be run
+  bool interrupted = false;  // half a point is none
 
   double rows() const {
     double sum = 0.0;
@@ -48,12 +52,13 @@ struct Point {
 };
 
 Point prepared(const Scenario& scenario, PreparationCache* cache) {
-  Point point{&scenario, {}, {}, {}, nullptr};
+  Point point{&scenario, {}, {}, {}, nullptr, 0, false};
   try {
     point.cases = prepare_cases(scenario, cache);
     point.inputs.reserve(point.cases.size());
     for (const PreparedCase& one : point.cases) point.inputs.push_back(one.inputs());
     point.results.resize(point.cases.size());
+    point.left = point.cases.size();
   } catch (...) {
     point.error = std::current_exception();
   }
@@ -68,7 +73,8 @@ struct Run {
   CaseInputs& inputs() const { return *point->inputs[number]; }
 };
 
-// Runs that share lanes, at most eight; case after case, so that neighbours are alike.
+// Runs that share lanes, at most eight; case after case, so that neighbours are alike. In an order
+// in which the first points are done with first.
 std::vector<std::vector<Run>> groups_of(std::span<Point> points) {
   std::vector<std::vector<Run>> groups;
   std::size_t most_cases = 0;
@@ -87,6 +93,13 @@ std::vector<std::vector<Run>> groups_of(std::span<Point> points) {
       }
     }
   }
+  const auto last_point = [](const std::vector<Run>& group) {
+    return std::max_element(group.begin(), group.end(),
+                            [](const Run& a, const Run& b) { return a.point < b.point; })
+        ->point;
+  };
+  std::stable_sort(groups.begin(), groups.end(),
+                   [&](const auto& a, const auto& b) { return last_point(a) < last_point(b); });
   return groups;
 }
 
@@ -162,31 +175,50 @@ std::string in_one_line(const InputError& error) {
   return fmt::format("{}", fmt::join(lines, "; "));
 }
 
-std::vector<BatchResult> run_batch(std::span<const Scenario> points, const StopFlag& stop,
-                                   std::atomic<float>& progress, Keep keep,
-                                   PreparationCache* cache) {
-  std::vector<BatchResult> results;
-  results.reserve(points.size());
+double rows_at_once(unsigned threads) {
+  const double memory =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return std::min(kMostRows, kMemoryShare * memory / (kRowBytes * static_cast<double>(threads)));
+}
+
+void run_batch(std::span<const Scenario> points, const StopFlag& stop, std::atomic<float>& progress,
+               const std::function<void(std::vector<EndedPoint>&&)>& ended,
+               const BatchControl& control) {
   for (std::size_t next = 0; next < points.size() && !stop;) {
+    const std::size_t first = next;
     std::vector<Point> together;
-    for (double rows = 0.0; next < points.size() && rows < kMostRows; ++next) {
-      together.push_back(prepared(points[next], cache));
+    for (double rows = 0.0; next < points.size() && rows < control.rows; ++next) {
+      together.push_back(prepared(points[next], control.cache));
       rows += together.back().rows();
     }
+    std::vector<bool> told(together.size(), false);
+    const auto tell_ended = [&] {
+      std::vector<EndedPoint> now;
+      for (std::size_t k = 0; k < together.size(); ++k) {
+        Point& point = together[k];
+        if (told[k] || point.left > 0 || point.interrupted) continue;
+        told[k] = true;
+        now.push_back({first + k, result_of(point, control.keep)});
+      }
+      if (!now.empty()) ended(std::move(now));
+    };
+    tell_ended();  // what cannot be run
     std::atomic<float> share = 0.0F;
     const auto groups = groups_of(together);
     for (std::size_t g = 0; g < groups.size() && !stop; ++g) {
-      simulate_group(groups[g], stop, share, cache);
-      progress = (static_cast<float>(results.size()) + static_cast<float>(together.size()) *
-                                                           static_cast<float>(g + 1) /
-                                                           static_cast<float>(groups.size())) /
+      simulate_group(groups[g], stop, share, control.cache);
+      for (const Run& run : groups[g]) {
+        --run.point->left;
+        const CaseResult& result = run.point->results[run.number];
+        run.point->interrupted |= result.outcome.interrupted;
+      }
+      tell_ended();
+      progress = (static_cast<float>(first) + static_cast<float>(together.size()) *
+                                                  static_cast<float>(g + 1) /
+                                                  static_cast<float>(groups.size())) /
                  static_cast<float>(points.size());
     }
-    if (stop) break;  // half a point is none
-    for (Point& point : together) results.push_back(result_of(point, keep));
   }
-  results.resize(points.size());
-  return results;
 }
 
 }  // namespace servomill::sim

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,15 +39,31 @@ struct BatchResult {
 /// What to keep of the cases of a batch.
 enum class Keep : std::uint8_t { comparison, series };
 
+/// A point of a batch, by its place there, that has ended.
+struct EndedPoint {
+  std::size_t place = 0;
+  BatchResult result;
+};
+
+/// Rows of recorded signals, of all its runs together, that each of some threads may hold: a
+/// quarter of the machine's memory is theirs, up to 10^6 rows (some 500 MB) a thread.
+double rows_at_once(unsigned threads);
+
+struct BatchControl {
+  Keep keep = Keep::comparison;
+  PreparationCache* cache = nullptr;  // what preparing points shares, with other batches too
+  double rows = 1e6;                  // that may be held; one point is always run
+};
+
 /// Prepares and runs all cases of all points on the calling thread, in lockstep where they share
 /// lanes (sim/simulate.h). The result of a point depends on that point alone, bit for bit. What is
-/// wrong with a point is part of its result; nothing is thrown.
-/// @param stop      points that see it are `not_run`
+/// wrong with a point is part of its result; nothing is thrown but what `ended` throws.
+/// @param stop      points that have not ended when it is set are never told of
 /// @param progress  set to the share done of the batch, 0 to 1
-/// @param cache     what preparing points shares, with other batches too; may be nullptr
-std::vector<BatchResult> run_batch(std::span<const Scenario> points, const StopFlag& stop,
-                                   std::atomic<float>& progress, Keep keep = Keep::comparison,
-                                   PreparationCache* cache = nullptr);
+/// @param ended     called on this thread with points as soon as they have ended, each once
+void run_batch(std::span<const Scenario> points, const StopFlag& stop, std::atomic<float>& progress,
+               const std::function<void(std::vector<EndedPoint>&&)>& ended,
+               const BatchControl& control = {});
 
 /// All faults in one line; without their places where these are keys of a sweep.
 std::string in_one_line(const InputError& error);

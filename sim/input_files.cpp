@@ -7,7 +7,6 @@
 namespace servomill::sim {
 namespace {
 
-constexpr std::size_t kMostBytes = 200'000'000;  // of texts
 constexpr std::size_t kMostDocuments = 100;
 
 std::uint64_t crc64(const std::string& bytes) {
@@ -19,8 +18,8 @@ std::uint64_t crc64(const std::string& bytes) {
 
 }  // namespace
 
-InputFiles::InputFiles()
-    : texts_(kMostBytes, [](const std::string& text) { return text.size(); }),
+InputFiles::InputFiles(std::size_t most_bytes)
+    : texts_(most_bytes, [](const std::string& text) { return text.size(); }),
       documents_(kMostDocuments) {}
 
 std::shared_ptr<const std::string> InputFiles::text(const std::string& path, const Place& at,

@@ -15,11 +15,12 @@
 namespace servomill::sim {
 
 /// Reads every file once and keeps it, however often it is asked for, so that what happens to a
-/// file during a sweep does not matter. Of files beyond 200 MB those asked for least recently are
-/// read again, and refused if they have changed. For any number of threads.
+/// file during a sweep does not matter. Beyond some bytes those asked for least recently are
+/// forgotten; they are read again, and refused if they have changed. For any number of threads.
 class InputFiles {
  public:
-  InputFiles();
+  /// @param most_bytes  of texts that are kept beside the last one
+  explicit InputFiles(std::size_t most_bytes = 200'000'000);
 
   /// @param at    where the file was named; without a file: the complaint stands in `path`
   /// @param what  "program", "machine": for the message

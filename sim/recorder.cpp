@@ -273,14 +273,11 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
 Recorder::Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
                    const plant::VolumetricModel* imposed, const ProgramPath& path,
                    const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format)
-    : rows_(std::make_unique<Rows>(machine, truth, imposed, path, tips, format)),
-      working_(std::make_unique<std::vector<Snapshot>>()),
-      background_(std::make_unique<Background>()) {
+    : rows_(std::make_unique<Rows>(machine, truth, imposed, path, tips, format)) {
   filling_.reserve(kBlockRows);
 }
 
 Recorder::~Recorder() = default;
-Recorder::Recorder(Recorder&&) noexcept = default;
 
 void Recorder::reserve(std::size_t rows) { rows_->series().reserve(rows); }
 
@@ -290,15 +287,15 @@ void Recorder::record(const Snapshot& now) {
 }
 
 void Recorder::hand_over() {
-  background_->wait();
-  std::swap(filling_, *working_);
+  background_.wait();
+  std::swap(filling_, working_);
   filling_.reserve(kBlockRows);
   filling_.clear();
-  background_->post([rows = rows_.get(), block = working_.get()] { rows->add(*block); });
+  background_.post([this] { rows_->add(working_); });
 }
 
 Series Recorder::take() {
-  background_->wait();
+  background_.wait();
   rows_->add(filling_);
   filling_.clear();
   return std::move(rows_->series());

@@ -38,7 +38,8 @@ class Recorder {
            const plant::VolumetricModel* imposed, const ProgramPath& path,
            const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format = {});
   ~Recorder();
-  Recorder(Recorder&&) noexcept;
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
 
   void reserve(std::size_t rows);
   void record(const Snapshot& now);
@@ -51,8 +52,8 @@ class Recorder {
 
   std::unique_ptr<Rows> rows_;
   std::vector<Snapshot> filling_;
-  std::unique_ptr<std::vector<Snapshot>> working_;  // what the thread turns into rows
-  std::unique_ptr<Background> background_;          // last: its thread uses the others
+  std::vector<Snapshot> working_;  // what the thread turns into rows
+  Background background_;          // last: its thread uses the others
 };
 
 }  // namespace servomill::sim

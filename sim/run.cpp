@@ -4,6 +4,7 @@
 #include <chrono>
 #include <thread>
 
+#include "sim/background.h"
 #include "sim/stability_check.h"
 
 namespace servomill::sim {
@@ -43,8 +44,7 @@ RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
       done[i] = true;
     }
   };
-  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  const unsigned threads = control.threads != 0 ? control.threads : cores;
+  const unsigned threads = thread_count(control.threads);
   std::vector<std::jthread> pool;
   for (unsigned t = 0; t < std::min<std::size_t>(threads, count); ++t) pool.emplace_back(work);
 

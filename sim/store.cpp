@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/units.h"
 #include "sim/hdf5/series_writer.h"
 #include "sim/version.h"
@@ -173,6 +174,7 @@ void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view ki
   root.attribute("servomill_version", kVersion);
   root.attribute("schema_version", kSchemaVersion);
   root.attribute("kind", kind);
+  root.attribute("simd_level", name_of(simd_level()));
   root.attribute("scenario", scenario.name);
   root.attribute("title", scenario.title);
   root.attribute("source", scenario.source);

@@ -14,7 +14,8 @@ namespace servomill::sim {
 /// Version of the layout of result files; a file of another one is refused.
 inline constexpr int kSchemaVersion = 1;
 
-/// What every result file begins with: version, kind, and the scenario with all that it read.
+/// What every result file begins with: version, kind, the instructions that compute
+/// (plant/vocabulary/simd.h), and the scenario with all that it read.
 void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view kind);
 
 /// Writes a run case by case, so that complete cases can be read even if it ends early. Layout:

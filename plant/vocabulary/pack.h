@@ -163,7 +163,6 @@ struct Pack {
   }
   Pack& operator+=(const Pack& b) { return *this = *this + b; }
   Pack& operator-=(const Pack& b) { return *this = *this - b; }
-  Pack& operator*=(const Pack& b) { return *this = *this * b; }
 
   friend Mask operator<(const Pack& a, const Pack& b) {
     return test([&](std::size_t n) { return a.r[n] < b.r[n]; });
@@ -195,15 +194,6 @@ struct Pack {
   }
   friend Pack abs(const Pack& a) {
     return each([&](std::size_t n) { return xsimd::abs(a.r[n]); });
-  }
-  friend Pack sqrt(const Pack& a) {
-    return each([&](std::size_t n) { return xsimd::sqrt(a.r[n]); });
-  }
-  friend Pack exp(const Pack& a) {
-    return each([&](std::size_t n) { return xsimd::exp(a.r[n]); });
-  }
-  friend Pack tanh(const Pack& a) {
-    return each([&](std::size_t n) { return xsimd::tanh(a.r[n]); });
   }
   /// The next whole number, ties to even.
   friend Pack nearbyint(const Pack& a) {

@@ -1,10 +1,20 @@
 #include "plant/vocabulary/simd.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <xsimd/xsimd.hpp>
 
+#include "plant/vocabulary/input_error.h"
+
 namespace servomill {
+namespace {
+
+constexpr std::array<std::string_view, 3> kNames = {"baseline", "avx2", "avx512"};
+
+}  // namespace
 
 std::vector<SimdLevel> simd_levels() {
   std::vector<SimdLevel> levels = {SimdLevel::baseline};
@@ -16,26 +26,29 @@ std::vector<SimdLevel> simd_levels() {
   return levels;
 }
 
-std::string_view name_of(SimdLevel level) {
-  switch (level) {
-    case SimdLevel::baseline:
-      return "baseline";
-    case SimdLevel::avx2:
-      return "avx2";
-    case SimdLevel::avx512:
-      return "avx512";
+std::string_view name_of(SimdLevel level) { return kNames.at(static_cast<std::size_t>(level)); }
+
+SimdLevel simd_level_named(std::string_view name) {
+  const std::vector<SimdLevel> levels = simd_levels();
+  if (name.empty()) return levels.back();
+  std::vector<std::string_view> names;
+  for (const SimdLevel level : levels) {
+    if (name_of(level) == name) return level;
+    names.push_back(name_of(level));
   }
-  return "";
+  const Place place{"SERVOMILL_SIMD"};
+  if (std::find(kNames.begin(), kNames.end(), name) != kNames.end()) {
+    throw InputError(place, fmt::format("{} is beyond this machine or binary; there are: {}", name,
+                                        fmt::join(names, ", ")));
+  }
+  throw InputError(place, fmt::format("'{}' is no level; must be one of {}{}", name,
+                                      fmt::join(kNames, ", "), did_you_mean(name, kNames)));
 }
 
 SimdLevel simd_level() {
   static const SimdLevel kLevel = [] {
-    const std::vector<SimdLevel> levels = simd_levels();
     const char* wanted = std::getenv("SERVOMILL_SIMD");
-    const auto named = std::find_if(levels.begin(), levels.end(), [&](SimdLevel level) {
-      return wanted != nullptr && name_of(level) == wanted;
-    });
-    return named != levels.end() ? *named : levels.back();
+    return simd_level_named(wanted == nullptr ? "" : wanted);
   }();
   return kLevel;
 }

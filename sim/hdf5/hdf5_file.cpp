@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -68,6 +69,21 @@ std::string system_reason() { return std::strerror(errno); }
 std::string file_name(hid_t object) {
   std::array<char, 4096> name{};
   return H5Fget_name(object, name.data(), name.size()) > 0 ? name.data() : "HDF5 file";
+}
+
+// Who writes a file has locked it. To be asked behind a call of the library that failed.
+void refuse_if_locked(const std::string& path) {
+  if (library_reason() != std::strerror(EWOULDBLOCK)) return;
+  throw SystemError(path, "cannot be opened", "another process writes it");
+}
+
+// The library would cut the file before it finds it locked.
+void refuse_to_cut_locked(const std::string& path) {
+  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  const bool locked = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(descriptor);
+  if (locked) throw SystemError(path, "cannot be made", "another process writes it");
 }
 
 // `result` of a call that writes into the file of `object`.
@@ -467,6 +483,7 @@ OutputFile::OutputFile(std::string path, bool force)
   // closing the file closes what was taken from it; the oldest format has no "open" mark that would
   // make the file of a killed run unreadable
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  if (force_) refuse_to_cut_locked(partial_path_);
   const unsigned flag = force_ ? H5F_ACC_TRUNC : H5F_ACC_EXCL;
   file_ = Hdf5Handle(H5Fcreate(partial_path_.c_str(), flag, creation.get(), access.get()));
   if (file_.get() < 0) throw SystemError(partial_path_, "cannot be made", library_reason());
@@ -479,16 +496,23 @@ OutputFile::OutputFile(std::string path, bool force, Hdf5Handle file)
       file_(std::move(file)) {}
 
 OutputFile OutputFile::resumed(std::string path, bool force) {
+  const Library library;
   prepare_library();
   const Hdf5Handle access = handle(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
   Hdf5Handle file(H5Fopen((path + ".partial").c_str(), H5F_ACC_RDWR, access.get()));
   if (file.get() < 0) {
-    throw InputError({path + ".partial"}, fmt::format("cannot be opened: {}; does another process "
-                                                      "write it?",
-                                                      library_reason()));
+    refuse_if_locked(path + ".partial");
+    throw InputError({path + ".partial"}, fmt::format("cannot be opened: {}", library_reason()));
   }
   return {std::move(path), force, std::move(file)};
+}
+
+OutputFile OutputFile::reopened(std::string path) {
+  if (std::rename(path.c_str(), (path + ".partial").c_str()) != 0) {
+    throw SystemError(path, "cannot be renamed", system_reason());
+  }
+  return resumed(std::move(path), false);
 }
 
 OutputFile::~OutputFile() = default;
@@ -531,7 +555,10 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
   close(descriptor);
   if (H5Fis_hdf5(path_.c_str()) <= 0) fail("is not an HDF5 file");
   file_ = Hdf5Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-  if (file_.get() < 0) fail(fmt::format("cannot be read: {}", library_reason()));
+  if (file_.get() < 0) {
+    refuse_if_locked(path_);
+    fail(fmt::format("cannot be read: {}", library_reason()));
+  }
 }
 
 void InputFile::fail(const std::string& message) const { throw InputError({path_}, message); }

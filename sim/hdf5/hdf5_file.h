@@ -144,11 +144,15 @@ class OutputFile {
  public:
   /// @param force  may replace `path` and its partial file
   /// @throws InputError if either exists and `force` is not set
-  /// @throws SystemError if the file cannot be made
+  /// @throws SystemError if the file cannot be made, as while another process writes it
   OutputFile(std::string path, bool force);
   /// Goes on with the partial file of `path`.
-  /// @throws InputError if it cannot be opened, as while another process writes it
+  /// @throws InputError if it cannot be opened
+  /// @throws SystemError if another process writes it
   static OutputFile resumed(std::string path, bool force);
+  /// Makes the complete file `path` the partial one again and goes on with it.
+  /// @throws as resumed()
+  static OutputFile reopened(std::string path);
   OutputFile(OutputFile&&) = default;
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -178,6 +182,7 @@ class OutputFile {
 /// All members throw InputError that names the file and what it lacks.
 class InputFile {
  public:
+  /// @throws SystemError if another process writes it
   explicit InputFile(std::string path);
 
   const std::string& path() const { return path_; }

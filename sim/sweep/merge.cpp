@@ -149,6 +149,7 @@ Merged merge_sweeps(const std::vector<std::string>& paths, const std::string& ou
     table->copy(file);
   }
   merged.counts = table->counts();
+  merged.simd_levels = table->simd_levels();
   table->commit();
   return merged;
 }

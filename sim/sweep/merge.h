@@ -11,7 +11,8 @@ namespace servomill::sim {
 /// What a merge found.
 struct Merged {
   StatusCounts counts{};
-  std::vector<std::string> missing;  // what the table lacks, one reason an entry
+  std::vector<std::string> missing;    // what the table lacks, one reason an entry
+  std::vector<SimdLevel> simd_levels;  // that points were computed with
 };
 
 /// Writes the table that one process would have written for all points of the shards' selection.

@@ -7,6 +7,7 @@
 
 #include "sim/hdf5/system_error.h"
 #include "sim/store.h"
+#include "sim/version.h"
 
 namespace servomill::sim {
 
@@ -14,12 +15,33 @@ std::string series_folder(const std::string& path) {
   return (path.ends_with(".h5") ? path.substr(0, path.size() - 3) : path) + ".series";
 }
 
+namespace {
+
+std::string series_name(const std::string& folder, std::uint64_t point) {
+  return fmt::format("{}/{}.h5", folder, point + 1);
+}
+
+}  // namespace
+
+bool has_point_series(const std::string& folder, const Sweep& sweep, std::uint64_t point) {
+  const std::string path = series_name(folder, point);
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return false;
+  try {
+    const InputFile file(path);
+    return file.text("/", "servomill_version") == kVersion &&
+           file.text("/inputs", "resolved") == sweep.at(point).resolved;
+  } catch (const InputError&) {
+    return false;  // something else
+  }
+}
+
 void write_point_series(const std::string& folder, const Sweep& sweep, const SweepPoint& point) {
   if (point.result.cases.empty()) return;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw SystemError(folder, "cannot be made", error.message());
-  RunStore store(fmt::format("{}/{}.h5", folder, point.index + 1), true, sweep.at(point.index));
+  RunStore store(series_name(folder, point.index), true, sweep.at(point.index));
   for (const CaseOutput& one : point.result.cases) store.add(one);
   store.commit(point.result.rows);
 }

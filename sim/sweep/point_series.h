@@ -1,6 +1,7 @@
 /// The signals of single points of a sweep.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "sim/sweep/sweep.h"
@@ -9,6 +10,9 @@ namespace servomill::sim {
 
 /// "OUT.series" for "OUT.h5": where the points' files lie.
 std::string series_folder(const std::string& path);
+
+/// Whether the signals of a point lie there, complete and of this sweep and version.
+bool has_point_series(const std::string& folder, const Sweep& sweep, std::uint64_t point);
 
 /// Writes the signals of a point as `servomill run` would with its values: FOLDER/NUMBER.h5,
 /// counted from 1. Replaces what an earlier try left there. Nothing, where the point has none.

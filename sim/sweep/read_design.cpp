@@ -211,6 +211,11 @@ class DesignReader {
       return std::find(kDistributions.begin(), kDistributions.end(), name) != kDistributions.end();
     });
     const std::size_t dimension = design_.sampled_dimensions;
+    if (dimension == kMostDimensions) {
+      form.raw(word);
+      return table.fault(
+          key, fmt::format("is one key too many to sample; there may be {}", kMostDimensions));
+    }
     if (word == "one_of") {
       const Value* value = form.raw(word);
       if (value->type != Value::Type::list || value->children.empty()) {
@@ -232,10 +237,6 @@ class DesignReader {
     if (normal && !(pair->b > 0.0)) return form.fault(word, "must have a deviation > 0");
     if (!normal && !(pair->a < pair->b)) {
       return form.fault(word, "must have a first number below the second");
-    }
-    if (dimension == kMostDimensions) {
-      return table.fault(
-          key, fmt::format("is one key too many to sample; there may be {}", kMostDimensions));
     }
     add(table, key, path, NumberDistribution{kind, pair->a, pair->b, pair->unit}, true, dimension);
     ++design_.sampled_dimensions;

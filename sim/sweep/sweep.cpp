@@ -11,6 +11,7 @@
 #include <set>
 #include <thread>
 
+#include "sim/background.h"
 #include "sim/config/document.h"
 #include "sim/preparation_cache.h"
 #include "sim/scenario_document.h"
@@ -164,6 +165,8 @@ void Sweep::refuse_hopeless() const {
           return one.place == other.place && one.message == other.message;
         });
       });
+    } catch (const std::exception&) {
+      return;  // failed, not refused: its row will say why
     }
   }
   if (!common.empty() || probes.size() == design().size()) throw *first;
@@ -250,39 +253,41 @@ bool same_question(const ComparisonRow& a, const ComparisonRow& b) {
 }
 
 // Runs the points of one batch: those that can be read together, the others are refused.
-std::vector<SweepPoint> run_points(const Sweep& sweep, const std::vector<std::uint64_t>& points,
-                                   const StopFlag& stop, std::atomic<float>& progress, Keep keep,
-                                   PreparationCache& cache) {
-  std::vector<SweepPoint> out;
+void run_points(const Sweep& sweep, const std::vector<std::uint64_t>& points, const StopFlag& stop,
+                std::atomic<float>& progress, const BatchControl& control, Results& results) {
+  std::vector<SweepPoint> refused, read;
   std::vector<Scenario> scenarios;
-  std::vector<std::size_t> read;  // place of each scenario in the batch
   for (const std::uint64_t point : points) {
-    out.push_back({point, sweep.design().point(point), {}});
-    BatchResult& result = out.back().result;
+    SweepPoint one{point, sweep.design().point(point), {}};
     try {
       scenarios.push_back(sweep.at(point));
-      read.push_back(out.size() - 1);
-    } catch (const InputError& error) {
-      result = {PointStatus::refused, in_one_line(error), {}};
-    } catch (const std::exception& error) {
-      result = {PointStatus::failed, error.what(), {}};
-    }
-  }
-  std::vector<BatchResult> results = run_batch(scenarios, stop, progress, keep, &cache);
-  const std::vector<ComparisonRow> wanted = sweep.quantities();
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    BatchResult& result = out[read[i]].result;
-    result = std::move(results[i]);
-    if (result.rows.empty()) continue;
-    if (std::equal(wanted.begin(), wanted.end(), result.rows.begin(), result.rows.end(),
-                   same_question)) {
+      read.push_back(std::move(one));
       continue;
+    } catch (const InputError& error) {
+      one.result = {PointStatus::refused, in_one_line(error), {}};
+    } catch (const std::exception& error) {
+      one.result = {PointStatus::failed, error.what(), {}};
     }
-    result = {PointStatus::refused,
-              "asks for other quantities or cases than the scenario without its sweep",
-              {}};
+    refused.push_back(std::move(one));
   }
-  return out;
+  if (!refused.empty()) results.put(std::move(refused));
+  const std::vector<ComparisonRow> wanted = sweep.quantities();
+  const auto tell = [&](std::vector<EndedPoint>&& ended) {
+    std::vector<SweepPoint> told;
+    for (EndedPoint& one : ended) {
+      const auto& rows = one.result.rows;
+      if (!rows.empty() &&
+          !std::equal(wanted.begin(), wanted.end(), rows.begin(), rows.end(), same_question)) {
+        one.result = {PointStatus::refused,
+                      "asks for other quantities or cases than the scenario without its sweep",
+                      {}};
+      }
+      told.push_back(std::move(read[one.place]));
+      told.back().result = std::move(one.result);
+    }
+    results.put(std::move(told));
+  };
+  run_batch(scenarios, stop, progress, tell, control);
 }
 
 }  // namespace
@@ -293,16 +298,18 @@ void run_sweep(const Sweep& sweep, const Selection& selection, const std::vector
   const StopFlag& stop = control.stop != nullptr ? *control.stop : kNever;
   Todo todo(selection, done);
   const std::uint64_t count = todo.count();
-  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  const std::uint64_t threads = std::clamp<std::uint64_t>(
-      control.threads != 0 ? control.threads : cores, 1, std::max<std::uint64_t>(count, 1));
+  const auto threads = static_cast<unsigned>(std::clamp<std::uint64_t>(
+      thread_count(control.threads), 1, std::max<std::uint64_t>(count, 1)));
   const std::size_t batch =
       std::clamp<std::size_t>(count / (kBatchesPerThread * threads), 1, control.batch);
 
   PreparationCache cache;
-  Results results(kWaitingPerThread * threads);
+  const BatchControl batch_control = {control.keep, &cache, rows_at_once(threads)};
+  // signals are large: those of few points wait
+  Results results(control.keep == Keep::series ? 1 : kWaitingPerThread * threads);
   std::vector<std::atomic<float>> shares(threads);  // of the batches in work
-  std::atomic<std::uint64_t> running = threads;
+  std::atomic<std::uint64_t> ended = 0;             // points of batches that were
+  std::atomic<unsigned> running = threads;
   std::atomic<bool> given_up = false;
   std::vector<std::exception_ptr> failures(threads);
   const auto work = [&](std::size_t thread) {
@@ -310,14 +317,20 @@ void run_sweep(const Sweep& sweep, const Selection& selection, const std::vector
       while (!stop && !given_up) {
         const std::vector<std::uint64_t> points = todo.next(batch);
         if (points.empty()) break;
-        auto out = run_points(sweep, points, stop, shares[thread], control.keep, cache);
+        run_points(sweep, points, stop, shares[thread], batch_control, results);
         shares[thread] = 0.0F;
-        results.put(std::move(out));
+        ended += points.size();
       }
     } catch (...) {
       failures[thread] = std::current_exception();
     }
     --running;
+  };
+  const auto tell_progress = [&] {
+    if (!control.progress || count == 0) return;
+    double points = static_cast<double>(ended);
+    for (const auto& share : shares) points += static_cast<double>(batch) * share;
+    control.progress(std::min(1.0, points / static_cast<double>(count)));
   };
   std::vector<std::jthread> pool;
   // should the results not be writable, no further batch begins
@@ -332,23 +345,13 @@ void run_sweep(const Sweep& sweep, const Selection& selection, const std::vector
   {
     const NoMore no_more{given_up, results};
     for (std::size_t t = 0; t < threads; ++t) pool.emplace_back(work, t);
-    std::uint64_t ended = 0;
     for (bool last = false; !last;) {
       last = running == 0;  // what they put before is there by now
       while (auto points = results.take(last ? std::chrono::milliseconds(0) : kProgressPeriod)) {
-        ended += points->size();
-        std::erase_if(*points, [](const SweepPoint& one) {
-          return one.result.status == PointStatus::not_run;
-        });
-        if (control.batch_done && !points->empty()) control.batch_done(std::move(*points));
-        if (control.progress)
-          control.progress(static_cast<double>(ended) / static_cast<double>(count));
+        if (control.batch_done) control.batch_done(std::move(*points));
+        tell_progress();
       }
-      if (!control.progress || count == 0) continue;
-      double in_work = 0.0;
-      for (const auto& share : shares) in_work += static_cast<double>(batch) * share;
-      control.progress(
-          std::min(1.0, (static_cast<double>(ended) + in_work) / static_cast<double>(count)));
+      tell_progress();
     }
   }
   pool.clear();

@@ -37,7 +37,8 @@ class Sweep {
   std::vector<ComparisonRow> quantities() const;
 
   /// Refuses what is wrong at every point, such as a key that there is not: points are read and
-  /// prepared, from the first to the last in equal steps, until one is found right.
+  /// prepared, from the first to the last in equal steps, until one is found right. A point at
+  /// which the system fails is not wrong.
   /// @throws InputError
   void refuse_hopeless() const;
 
@@ -64,7 +65,7 @@ struct SweepPoint {
   BatchResult result;
 };
 
-/// Most points that are run together, and so the least that a kill can lose.
+/// Most points that are run together.
 inline constexpr std::size_t kBatchPoints = 16;
 
 struct SweepControl {
@@ -73,8 +74,8 @@ struct SweepControl {
   const StopFlag* stop = nullptr;
   Keep keep = Keep::comparison;
   std::function<void(double)> progress;  // share done, 0 to 1; called from one thread
-  /// Points that ended, batch by batch in the order in which they do; called from one thread. What
-  /// it throws ends the sweep.
+  /// Points that ended, as soon and in the order in which they do; called from one thread. What it
+  /// throws ends the sweep.
   std::function<void(std::vector<SweepPoint>&&)> batch_done;
 };
 

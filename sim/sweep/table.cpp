@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cerrno>
 #include <cmath>
@@ -54,7 +55,7 @@ class Names {
   }
 
  private:
-  std::set<std::string> taken_ = {"point", "status", "reason"};
+  std::set<std::string> taken_ = {"point", "status", "reason", "simd_level"};
 };
 
 // What a TOML text says, if it says it without escapes; other values as they are.
@@ -104,6 +105,15 @@ bool exists(const std::string& path) {
   return fs::exists(path, ignored);
 }
 
+// The number that stands for a level in the column simd_level; 0 stands for none.
+double number_of(SimdLevel level) { return 1.0 + static_cast<double>(level); }
+
+void add_level(std::set<SimdLevel>& levels, double number) {
+  for (const SimdLevel level : kSimdLevels) {
+    if (number_of(level) == number) levels.insert(level);
+  }
+}
+
 // Why a file is not the table of this sweep; empty: it is.
 std::string why_other(const SweepHeader& header, const std::string& version, const Scenario& base,
                       const Selection& selection) {
@@ -130,10 +140,17 @@ std::string why_other(const SweepHeader& header, const std::string& version, con
   return {};
 }
 
+// Whether a file begins with nothing: what is first in it is written last.
+bool begins_empty(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 8> begin{};
+  file.read(begin.data(), begin.size());
+  return std::all_of(begin.begin(), begin.end(), [](char c) { return c == '\0'; });
+}
+
 // A table that was begun but got no row.
 bool is_unborn(const std::string& path) {
-  std::error_code ignored;
-  if (fs::is_empty(path, ignored)) return true;
+  if (begins_empty(path)) return true;
   if (!is_hdf5(path)) return false;
   const InputFile file(path);
   return file.has_attribute("/", "kind") && file.text("/", "kind") == "sweep" &&
@@ -194,7 +211,7 @@ SweepTable::SweepTable(const std::string& path, bool force, const Scenario& base
     : path_(path),
       selection_(selection),
       columns_(std::move(columns)),
-      done_(selection.size(), false) {
+      statuses_(selection.size(), PointStatus::not_run) {
   std::error_code ignored;
   if (fs::is_directory(path_, ignored)) writable_name(path_, force);
   bool replace = force;
@@ -207,16 +224,20 @@ SweepTable::SweepTable(const std::string& path, bool force, const Scenario& base
     if (!exists(csv_name(path_))) write_csv(path_, csv_name(path_));
     return;  // complete
   }
-  if (!replace && exists(partial_path())) {
-    replace = is_unborn(partial_path());
-    if (!replace) take_over(partial_path(), base);
-  }
+  const bool unborn = !replace && exists(partial_path()) && is_unborn(partial_path());
+  if (!replace && !unborn && exists(partial_path())) take_over(partial_path(), base);
   refuse_foreign_csv(csv_name(path_), force);
-  if (!exists(partial_path()) || replace) {
-    file_.emplace(writable_name(path_, replace), replace);
-    make(base);
-  } else {
+  if (exists(partial_path()) && !replace && !unborn) {
     file_.emplace(OutputFile::resumed(path_, force));
+    return;
+  }
+  file_.emplace(unborn ? path_ : writable_name(path_, replace), replace || unborn);
+  try {
+    make(base);
+  } catch (...) {
+    file_.reset();
+    fs::remove(partial_path(), ignored);  // nothing is in it yet
+    throw;
   }
 }
 
@@ -241,16 +262,23 @@ void SweepTable::make(const Scenario& base) {
     point.write(row, numbers);
   }
 
-  Hdf5Dataset status = group.fixed("status", rows, Storage::int32, 0.0, {"1", "how it ended"});
-  std::vector<double> values;
+  const auto flags = [&](const std::string& name, const std::string& about,
+                         const std::vector<std::string_view>& meanings) {
+    Hdf5Dataset dataset = group.fixed(name, rows, Storage::int32, 0.0, {"1", about});
+    std::vector<double> values(meanings.size());
+    std::iota(values.begin(), values.end(), 0.0);
+    dataset.attribute("flag_values", values);
+    dataset.attribute("flag_meanings", fmt::format("{}", fmt::join(meanings, " ")));
+    dataset.attach_scale(point, 0);
+  };
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < kPointStatuses; ++i) {
-    values.push_back(static_cast<double>(i));
     names.push_back(name_of(static_cast<PointStatus>(i)));
   }
-  status.attribute("flag_values", values);
-  status.attribute("flag_meanings", fmt::format("{}", fmt::join(names, " ")));
-  status.attach_scale(point, 0);
+  flags("status", "how it ended", names);
+  names = {name_of(PointStatus::not_run)};
+  for (const SimdLevel level : kSimdLevels) names.push_back(name_of(level));
+  flags("simd_level", "instructions that computed it", names);
 
   Hdf5Dataset reason = group.fixed_texts("reason", rows, kReasonBytes, "why it is not done");
   reason.attach_scale(point, 0);
@@ -295,18 +323,44 @@ void SweepTable::take_over(const std::string& name, const Scenario& base) {
 }
 
 void SweepTable::take_statuses(const InputFile& file) {
-  counts_ = {};
-  for (std::size_t row = 0; row < done_.size(); row += kBlockRows) {
-    const auto values =
-        file.values(kGroup + "/status", row, std::min(kBlockRows, done_.size() - row));
-    for (std::size_t i = 0; i < values.size(); ++i) {
+  counts_ = {statuses_.size()};
+  for (std::size_t row = 0; row < statuses_.size(); row += kBlockRows) {
+    const std::size_t count = std::min(kBlockRows, statuses_.size() - row);
+    const auto values = file.values(kGroup + "/status", row, count);
+    const auto levels = file.values(kGroup + "/simd_level", row, count);
+    for (std::size_t i = 0; i < count; ++i) {
       const bool known = values[i] >= 0.0 && values[i] < static_cast<double>(kPointStatuses);
-      const auto status = known ? static_cast<std::size_t>(values[i]) : 0;
-      ++counts_[status];
-      done_[row + i] = status != 0;
+      set_status(row + i, static_cast<PointStatus>(known ? values[i] : 0.0));
+      if (known && values[i] != 0.0) add_level(levels_, levels[i]);
     }
   }
 }
+
+void SweepTable::set_status(std::uint64_t row, PointStatus status) {
+  --counts_[static_cast<std::size_t>(statuses_[row])];
+  ++counts_[static_cast<std::size_t>(status)];
+  statuses_[row] = status;
+}
+
+void SweepTable::forget(PointStatus status) {
+  if (counts_[static_cast<std::size_t>(status)] == 0) return;
+  if (!file_) {
+    refuse_foreign_csv(csv_name(path_), true);
+    fs::remove(csv_name(path_));
+    file_.emplace(OutputFile::reopened(path_));
+  }
+  Hdf5Group group = file_->root().group("sweep");
+  Hdf5Dataset statuses = group.dataset("status"), reasons = group.dataset("reason");
+  for (std::size_t row = 0; row < statuses_.size(); ++row) {
+    if (statuses_[row] != status) continue;
+    statuses.write(row, std::array{0.0});
+    reasons.write_text(row, "");
+    set_status(row, PointStatus::not_run);
+  }
+  group.flush_file();
+}
+
+std::vector<SimdLevel> SweepTable::simd_levels() const { return {levels_.begin(), levels_.end()}; }
 
 // Rows that follow each other are written at once.
 void SweepTable::write_runs(std::span<const std::uint64_t> rows, Hdf5Dataset& to,
@@ -343,6 +397,10 @@ void SweepTable::write(std::span<const SweepPoint> points) {
     Hdf5Dataset dataset = group.dataset(column.name);
     write_runs(rows, dataset, values);
   }
+  std::fill(values.begin(), values.end(), number_of(simd_level()));
+  Hdf5Dataset levels = group.dataset("simd_level");
+  write_runs(rows, levels, values);
+  levels_.insert(simd_level());
   Hdf5Dataset reasons = group.dataset("reason");
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].result.reason.empty()) reasons.write_text(rows[i], points[i].result.reason);
@@ -350,11 +408,8 @@ void SweepTable::write(std::span<const SweepPoint> points) {
   group.flush_file();
 
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto status = static_cast<std::size_t>(points[i].result.status);
-    values[i] = static_cast<double>(status);
-    done_[rows[i]] = true;
-    ++counts_[status];
-    --counts_[0];
+    values[i] = static_cast<double>(points[i].result.status);
+    set_status(rows[i], points[i].result.status);
   }
   Hdf5Dataset statuses = group.dataset("status");
   write_runs(rows, statuses, values);
@@ -369,15 +424,15 @@ void SweepTable::copy(const InputFile& from) {
     const std::size_t count = std::min(kBlockRows, length - begin);
     const auto numbers = from.values(kGroup + "/point", begin, count);
     const auto statuses = from.values(kGroup + "/status", begin, count);
+    const auto levels = from.values(kGroup + "/simd_level", begin, count);
     std::vector<std::size_t> taken;
     std::vector<std::uint64_t> rows;
     for (std::size_t i = 0; i < count; ++i) {
       if (statuses[i] == 0.0) continue;
       taken.push_back(i);
       rows.push_back(selection_.place(static_cast<std::uint64_t>(numbers[i]) - 1));
-      done_[rows.back()] = true;
-      ++counts_.at(static_cast<std::size_t>(statuses[i]));
-      --counts_[0];
+      set_status(rows.back(), static_cast<PointStatus>(statuses[i]));
+      add_level(levels_, levels[i]);
     }
     const auto take = [&](const std::string& name) {
       const auto all = from.values(kGroup + "/" + name, begin, count);
@@ -388,6 +443,7 @@ void SweepTable::copy(const InputFile& from) {
     };
     for (const TableColumn& column : columns_) take(column.name);
     take("status");
+    take("simd_level");
     const auto reasons = from.texts(kGroup + "/reason", begin, count);
     Hdf5Dataset to = group.dataset("reason");
     for (std::size_t i = 0; i < taken.size(); ++i) {

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "plant/vocabulary/simd.h"
 #include "sim/hdf5/hdf5_file.h"
 #include "sim/scenario.h"
 #include "sim/sweep/selection.h"
@@ -17,7 +19,7 @@
 namespace servomill::sim {
 
 /// Version of the layout of sweep files; a file of another one is refused.
-inline constexpr int kSweepSchemaVersion = 2;
+inline constexpr int kSweepSchemaVersion = 3;
 
 /// Number of points of each status.
 using StatusCounts = std::array<std::uint64_t, kPointStatuses>;
@@ -32,7 +34,8 @@ struct TableColumn {
   std::vector<std::string> texts;                               // of a column of their places
 };
 
-/// What the table of a scenario's sweep has beside point, status and reason: a column for each key
+/// What the table of a scenario's sweep has beside point, status, reason and the instructions that
+/// computed it: a column for each key
 /// of the sweep, then one for each line of the comparison.
 std::vector<TableColumn> columns_of(const Scenario& base);
 
@@ -53,32 +56,40 @@ class SweepTable {
   SweepTable(const std::string& path, bool force, const Scenario& base,
              std::vector<TableColumn> columns, const Selection& selection);
 
-  /// Which points were run, by place in the selection.
-  const std::vector<bool>& done() const { return done_; }
+  /// How points ended, by place in the selection.
+  const std::vector<PointStatus>& statuses() const { return statuses_; }
   const StatusCounts& counts() const { return counts_; }
   /// The file has its final name and nothing is left to be done.
   bool is_complete() const { return !file_; }
 
-  /// Adds points. @pre !is_complete()
+  /// Forgets points of a status, so that they are not_run; a complete table with such points is
+  /// one under construction again.
+  void forget(PointStatus status);
+  /// Adds points that were not run. @pre !is_complete()
   void write(std::span<const SweepPoint> points);
   /// Copies rows of another table of the same scenario, those with a status. @pre !is_complete()
   void copy(const InputFile& from);
   /// Gives the file its final name and writes the CSV file beside it. @pre !is_complete()
   void commit();
   std::string partial_path() const { return path_ + ".partial"; }
+  /// Levels of instructions that points were computed with, in rising order. Where there are
+  /// several, results differ in their last bits.
+  std::vector<SimdLevel> simd_levels() const;
 
  private:
   void make(const Scenario& base);
   void take_over(const std::string& name, const Scenario& base);
   void take_statuses(const InputFile& file);
+  void set_status(std::uint64_t row, PointStatus status);
   void write_runs(std::span<const std::uint64_t> rows, Hdf5Dataset& to,
                   std::span<const double> values);
 
   std::string path_;
   Selection selection_;
   std::vector<TableColumn> columns_;
-  std::vector<bool> done_;
+  std::vector<PointStatus> statuses_;
   StatusCounts counts_{};
+  std::set<SimdLevel> levels_;
   std::optional<OutputFile> file_;
 };
 

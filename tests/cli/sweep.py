@@ -4,6 +4,7 @@ sweep.py SERVOMILL"""
 import csv
 import json
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -25,8 +26,8 @@ POINTS = ('sweep={program.feed_override=[1.0,2.0,3.0,4.0,5.0],case.table.strateg
 SLOW = 'program.parameters."#101"=300.0'  # mm/min: some hundredths of a second a point
 
 
-def servomill(*arguments, status=0):
-    done = subprocess.run([SERVOMILL, *arguments], capture_output=True, text=True, timeout=PATIENCE, check=False)
+def servomill(*arguments, status=0, **more):
+    done = subprocess.run([SERVOMILL, *arguments], capture_output=True, text=True, timeout=PATIENCE, check=False, **more)
     assert status in (None, done.returncode), f"{arguments}: {done.returncode}\n{done.stderr}"
     return done
 
@@ -225,10 +226,58 @@ class Resume(Sweeps):
     def test_two_processes_do_not_share_a_file(self):
         process = self.start("out.h5")
         process.stdout.readline()
-        done = servomill("sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, "--set", SLOW, status=2)
+        done = servomill("sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, "--set", SLOW, status=3)
+        forced = servomill("sweep", SCENARIO, "-o", self.path("out.h5"), "--force", "--set", POINTS, status=3)
+        self.assertIsNone(process.poll(), "it was too quick")
         process.kill()
         process.communicate()
-        self.assertIn("out.h5.partial: error: cannot be", done.stderr)
+        said = [one.stderr.replace(self.folder + "/", "") for one in (done, forced)]
+        self.assertEqual(said, ["out.h5.partial: cannot be opened: another process writes it\n",
+                                "out.h5.partial: cannot be made: another process writes it\n"])
+        again = servomill("sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, "--set", SLOW, status=1)
+        self.assertIn("of 40 points are there already", again.stdout)
+
+    def test_needs_no_force_behind_a_disk_that_was_full(self):
+        for size in (0, 4096, 20000, 40000):
+            def limit():  # as a full disk: the write fails
+                signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+                resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+            with self.subTest(size=size):
+                full = subprocess.run([SERVOMILL, "sweep", SCENARIO, "-q", "-o", self.path("out.h5"), "--set", POINTS],
+                                      capture_output=True, text=True, timeout=PATIENCE, check=False, preexec_fn=limit)
+                self.assertEqual(full.returncode, 3, full.stderr)
+                self.assertRegex(full.stderr, r"out\.h5\.partial: cannot be (written|made): File too large\n")
+                self.sweep("out.h5")
+                os.remove(self.path("out.h5"))
+                os.remove(self.path("out.csv"))
+
+    def test_adds_the_signals_of_points_that_were_run_without(self):
+        self.sweep("out.h5", "--points", "1-3")
+        before = columns(self.path("out.h5"))
+        again = ["sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, "--points", "1-3", "--series"]
+        said = servomill(*again, status=1).stdout.replace(self.folder + "/", "")
+        self.assertTrue(said.startswith("out.h5: 3 of 3 points are there already\n2 of them lack signals, run again\n"), said)
+        self.assertEqual(sorted(os.listdir(self.path("out.series"))), ["1.h5", "2.h5"])  # 3 was refused
+        self.assertEqual(columns(self.path("out.h5")), before)
+        self.assertIn("holds all 3 points already", servomill(*again, status=1).stdout)
+        # those of another sweep do not count
+        servomill(*again, "-q", "--set", 'program.parameters."#101"=2000.0', "--force", status=1)
+        self.sweep("out.h5", "--points", "1-3", "--force")
+        self.assertIn("2 of them lack signals, run again", servomill(*again, status=1).stdout)
+
+    def test_retries_what_failed_on_request(self):
+        self.sweep("out.h5")
+        self.sweep("whole.h5")
+        with h5py.File(self.path("out.h5"), "r+") as file:
+            file["sweep/status"][4] = 4
+            file["sweep/reason"][4, :17] = np.frombuffer(b"not enough memory", dtype="S1")
+            file["sweep/table_imposed_curve_residual_Y_max_flank"][4] = np.nan
+        same = ["sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS]
+        self.assertIn("holds all 40 points already", servomill(*same, status=1).stdout)
+        said = servomill(*same, "--retry-failed", status=1).stdout.replace(self.folder + "/", "")
+        self.assertTrue(said.startswith("out.h5.partial: 39 of 40 points are there already\n"), said)
+        self.expect_same_table("out.h5", "whole.h5")
+        self.assertIn("holds all 40 points already", servomill(*same, "--retry-failed", status=1).stdout)
 
 
 class Merge(Sweeps):
@@ -244,6 +293,26 @@ class Merge(Sweeps):
             done = servomill("merge", *reversed(shards), "-o", self.path("merged.h5"), "--force")
             self.assertEqual(done.stdout.replace(self.folder + "/", ""), "30 points done, 10 points refused in merged.h5\n")
             self.expect_same_table("merged.h5", "single.h5")
+
+    def test_says_that_shards_were_computed_with_different_instructions(self):
+        first = servomill("sweep", SCENARIO, "-q", "-o", self.path("out.h5"), "--set", POINTS, "--shard", "1/2", status=1,
+                          env={**os.environ, "SERVOMILL_SIMD": "baseline"})
+        second = servomill("sweep", SCENARIO, "-q", "-o", self.path("out.h5"), "--set", POINTS, "--shard", "2/2", status=1)
+        shards = [self.path(f"out.{shard}-of-2.h5") for shard in (1, 2)]
+        done = servomill("merge", *shards, "-o", self.path("merged.h5"))
+        with h5py.File(self.path("merged.h5")) as file:
+            names = file["sweep/simd_level"].attrs["flag_meanings"].split()
+            used = [names[int(n)] for n in np.unique(file["sweep/simd_level"][:])]
+        with h5py.File(shards[1]) as file:
+            self.assertEqual(used, sorted({"baseline", file.attrs["simd_level"]}, key=names.index))
+        if len(used) == 1:
+            self.skipTest("this machine has but one level")
+        self.assertEqual(done.stderr.replace(self.folder + "/", ""),
+                         f"merged.h5: points were computed with different instructions ({', '.join(used)}; column "
+                         "simd_level): they are alike but for their last bits; SERVOMILL_SIMD=baseline gives the same "
+                         "bits everywhere\n")
+        for one in (first, second):
+            self.assertNotIn("instructions", one.stderr)
 
     def test_names_what_is_missing(self):
         shards = self.shards(4)
@@ -270,10 +339,10 @@ class Merge(Sweeps):
                      "merge", three[0], self.path("part.2-of-3.h5"), *out)
         with h5py.File(three[1], "r+") as file:
             file.attrs["schema_version"] = 1
-        self.refused("out.2-of-3.h5: error: holds a sweep of schema version 1; this program reads version 2",
+        self.refused("out.2-of-3.h5: error: holds a sweep of schema version 1; this program reads version 3",
                      "merge", *three, *out)
         with h5py.File(three[1], "r+") as file:
-            file.attrs["schema_version"] = 2
+            file.attrs["schema_version"] = 3
             file.attrs["servomill_version"] = "0.0.1"
         self.assertRegex(servomill("merge", *three, *out, status=2).stderr,
                          r"out.2-of-3.h5: error: was written by servomill 0.0.1; this is \S+, "

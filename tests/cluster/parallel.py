@@ -1,10 +1,8 @@
 #!/usr/bin/python3
 """A sweep under GNU parallel of which one process is killed, and then everything. parallel.py SERVOMILL"""
 import os
-import signal
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import sharded
@@ -42,61 +40,50 @@ def power_fails(out):
             try:
                 if sharded.environment(process).get("SWEEP_OF") == out:
                     found.append(process)
-                    os.kill(process, signal.SIGKILL)
+                    sharded.kill(process)
             except OSError:  # has ended, or is not ours
                 pass
 
 
-class Parallel(unittest.TestCase):
+class Parallel(sharded.Sharded):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.single, cls.out = (os.path.join(folder.name, name) for name in ("single.h5", "out.h5"))
+        super().setUpClass()
         cls.addClassCleanup(power_fails, cls.out)
         sharded.single_process(SERVOMILL, cls.single)
 
         first = start(cls.out, cls.out + ".first")
-        killed = sharded.shard_name(cls.out, KILLED)
-        sharded.await_(f"shard {KILLED} on its way", lambda: sharded.begun(killed))
-        os.kill(sharded.process_of(cls.out, KILLED), signal.SIGKILL)
-        cls.kept = sharded.points(killed)
+        sharded.await_(f"shard {KILLED} on its way", lambda: cls.begun(KILLED))
+        sharded.kill(sharded.process_of(cls.out, KILLED))
+        cls.kept = cls.points_of(KILLED)
         sharded.await_(f"shard {KILLED} done", lambda: KILLED in done(cls.out))
         sharded.await_("another shard on its way", lambda: any(map(cls.begun, range(1, sharded.SHARDS + 1))))
         power_fails(cls.out)
         first.wait(sharded.PATIENCE)
         cls.first_said = text_of(cls.out + ".first")
         cls.done_first = done(cls.out)
-        cls.cut = {shard: sharded.points(sharded.shard_name(cls.out, shard))
-                   for shard in range(1, sharded.SHARDS + 1) if cls.begun(shard)}
+        cls.cut = {shard: cls.points_of(shard) for shard in range(1, sharded.SHARDS + 1) if cls.begun(shard)}
 
         cls.status = start(cls.out, cls.out + ".second").wait(sharded.PATIENCE)
         cls.second_said = text_of(cls.out + ".second")
-
-    @classmethod
-    def begun(cls, shard):
-        return sharded.begun(sharded.shard_name(cls.out, shard))
 
     def test_it_ends_well(self):
         self.assertEqual(self.status, 0, self.second_said)
 
     def test_killed_shard_is_tried_again_and_keeps_its_finished_points(self):
-        finished, there = self.kept
-        self.assertTrue(0 < finished < there, f"{finished} of {there} points when it was killed")
-        self.assertIn(f"{finished} of {there} points are there already", self.first_said)
+        self.expect_going_on(KILLED, *self.kept, self.first_said)
 
     def test_the_same_line_goes_on_behind_the_points_that_a_power_failure_left(self):
         self.assertTrue(self.cut)
-        for finished, there in self.cut.values():
-            self.assertIn(f"{finished} of {there} points are there already", self.second_said)
+        for shard, kept in self.cut.items():
+            self.expect_going_on(shard, *kept, self.second_said)
 
     def test_done_shards_are_not_started_again(self):
         for shard in self.done_first:
             self.assertNotIn(os.path.basename(sharded.shard_name(self.out, shard)), self.second_said)
 
     def test_merged_table_is_that_of_a_single_process(self):
-        self.assertEqual(sharded.points(self.out), (sharded.POINTS, sharded.POINTS))
-        self.assertEqual(sharded.differences(self.out, self.single), [])
+        self.expect_table_of_a_single_process()
 
 
 if __name__ == "__main__":

@@ -1,7 +1,10 @@
 """A sweep in 8 shards, what its processes are doing, and the table that it should give."""
 import os
+import signal
 import subprocess
+import tempfile
 import time
+import unittest
 
 import h5py
 
@@ -11,6 +14,37 @@ SCENARIO = os.path.join(HERE, "sweep.toml")
 SHARDS = 8
 POINTS = 384  # that sweep.toml has; 3 batches of 16 in a shard
 PATIENCE = 250  # s, for what takes 10 s on an idle machine
+
+
+class Sharded(unittest.TestCase):
+    """A folder with OUT, for the shards, and SINGLE, for the table of a single process."""
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.single, cls.out = (os.path.join(folder.name, name) for name in ("single.h5", "out.h5"))
+
+    @classmethod
+    def begun(cls, shard):
+        return begun(shard_name(cls.out, shard))
+
+    @classmethod
+    def points_of(cls, shard):
+        return points(shard_name(cls.out, shard))
+
+    def expect_going_on(self, shard, finished, there, said):
+        """Who was told SAID goes on with a shard of which so many points were finished when it was killed."""
+        self.assertTrue(0 < finished < there, f"{finished} of {there} points when shard {shard} was killed")
+        self.assertIn(f"{finished} of {there} points are there already", said)
+
+    def expect_table_of_a_single_process(self):
+        self.assertEqual(points(self.out), (POINTS, POINTS))
+        self.assertEqual(differences(self.out, self.single), [])
+
+
+def kill(process):
+    """As the kernel does when memory runs out."""
+    os.kill(process, signal.SIGKILL)
 
 
 def shard_name(out, shard):

@@ -3,21 +3,14 @@
 tools/slurm/local_cluster -n 4 slurm.py SERVOMILL"""
 import os
 import re
-import signal
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import sharded
 
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 KILLED, LOST = 2, 3  # the shard whose process is killed, the one whose node is lost
-
-
-def kill_process(process):
-    """As the kernel does when memory runs out."""
-    os.kill(process, signal.SIGKILL)
 
 
 def lose_node(process):
@@ -27,7 +20,7 @@ def lose_node(process):
     with open(pid_file, encoding="utf-8") as file:
         slurmd = int(file.read())
     for one in (slurmd, sharded.parent(script), script, process):
-        os.kill(one, signal.SIGKILL)
+        sharded.kill(one)
 
 
 def node_of(process):
@@ -42,23 +35,21 @@ def jobs():
     return {job.get("ArrayTaskId", "merge"): job for job in found}
 
 
-class Array(unittest.TestCase):
+class Array(sharded.Sharded):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.single, cls.out = (os.path.join(folder.name, name) for name in ("single.h5", "out.h5"))
+        super().setUpClass()
         subprocess.run([os.path.join(sharded.TOOLS, "slurm", "submit"), "--", str(sharded.SHARDS),
                         sharded.SCENARIO, cls.out], env={**os.environ, "SERVOMILL": SERVOMILL}, check=True)
-        victims = {KILLED: kill_process, LOST: lose_node}
+        victims = {KILLED: sharded.kill, LOST: lose_node}
         cls.kept, cls.node = {}, {}
         while victims:
             shard = sharded.await_("a victim on its way", lambda: next(
-                (shard for shard in victims if sharded.begun(sharded.shard_name(cls.out, shard))), None))
+                filter(cls.begun, victims), None))
             process = sharded.process_of(cls.out, shard)
             cls.node[shard] = node_of(process)
             victims.pop(shard)(process)
-            cls.kept[shard] = sharded.points(sharded.shard_name(cls.out, shard))
+            cls.kept[shard] = cls.points_of(shard)
         sharded.single_process(SERVOMILL, cls.single)  # Slurm takes 15 s to miss the node
         sharded.await_("an empty queue", lambda: subprocess.run(
             ["squeue", "--noheader"], stdout=subprocess.PIPE, check=True).stdout == b"", every=0.5)
@@ -82,13 +73,10 @@ class Array(unittest.TestCase):
 
     def test_finished_points_are_not_run_again(self):
         for shard in (KILLED, LOST):
-            finished, there = self.kept[shard]
-            self.assertTrue(0 < finished < there, f"{finished} of {there} points when shard {shard} was killed")
-            self.assertIn(f"{finished} of {there} points are there already", self.log(shard))
+            self.expect_going_on(shard, *self.kept[shard], self.log(shard))
 
     def test_merged_table_is_that_of_a_single_process(self):
-        self.assertEqual(sharded.points(self.out), (sharded.POINTS, sharded.POINTS))
-        self.assertEqual(sharded.differences(self.out, self.single), [])
+        self.expect_table_of_a_single_process()
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ def main(build):
     found = [f"{p.name}: {name}" for p in objects for name in strangers(p)]
     print(f"{len(objects)} kernel objects")
     print("\n".join(found))
-    return 1 if found else 0
+    return 1 if found or not objects else 0  # without objects it was looked for in the wrong place
 
 
 if __name__ == "__main__":

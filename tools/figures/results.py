@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 SCHEMA_VERSION = 1
-SWEEP_SCHEMA_VERSION = 2
+SWEEP_SCHEMA_VERSION = 3
 DONE = 1   # of the column `status` of a sweep
 UM_PER_MM = 1000.0
 

@@ -89,6 +89,9 @@ class ProgressBar {
 /// "98 points done, 2 points refused".
 std::string points_by_status(const sim::StatusCounts& counts);
 
+/// Says on standard error if points of a table were computed at several levels of instructions.
+void tell_mixed_levels(const std::string& path, const std::vector<SimdLevel>& levels);
+
 /// What --threads says. @throws InputError
 unsigned thread_count(const Options& options);
 

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/simd.h"
 #include "sim/hdf5/system_error.h"
 #include "sim/version.h"
 #include "tools/servomill/command.h"
@@ -73,6 +74,7 @@ int dispatch(const Arguments& arguments) {
     throw InputError({"servomill"}, fmt::format("no command '{}'{}; see servomill --help", name,
                                                 did_you_mean(name, names)));
   }
+  simd_level();  // refuses what SERVOMILL_SIMD must not be
   return command->run({arguments.begin() + 1, arguments.end()});
 }
 

@@ -26,6 +26,7 @@ int merge_command(const Arguments& arguments) {
   const sim::Merged merged =
       sim::merge_sweeps(options.words(), out, options.has("force"), options.has("partial"));
   for (const std::string& missing : merged.missing) fmt::print(stderr, "{}: {}\n", out, missing);
+  tell_mixed_levels(out, merged.simd_levels);
   if (!options.has("quiet")) {
     fmt::print("{} in {}\n", points_by_status(merged.counts), out);
   }

@@ -32,9 +32,12 @@ void add_options(Options& options) {
                 "runs one of N parts of the points and writes OUT.I-of-N.h5; see servomill merge");
   options.add()("series",
                 "keeps the signals of every point: OUT.series/POINT.h5, as servomill run "
-                "writes them");
+                "writes them; points that an earlier sweep ran without are run again");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads (default: one a core); results do not depend on it");
+  options.add()("retry-failed",
+                "runs points again at which the program or the system failed, such as for lack of "
+                "memory");
   options.add()("force,f", "replaces the result file if it exists");
   options.add()("json", "prints one JSON object a point and quantity");
   options.add()("csv", "prints the table as the CSV file has it, at the end");
@@ -44,6 +47,19 @@ void add_options(Options& options) {
 sim::Selection selection_of(const Options& options, const sim::Sweep& sweep) {
   return sim::read_selection(sweep.design().size(), options.get<std::string>("points"),
                              options.has("shard") ? options.get<std::string>("shard") : "");
+}
+
+// Points that need not be run. What has a row needs its signals, too, if they are asked for.
+std::vector<bool> points_done(const sim::SweepTable& table, const sim::Selection& selection,
+                              const sim::Sweep& sweep, const std::string& signals) {
+  std::vector<bool> done;
+  for (const sim::PointStatus status : table.statuses()) {
+    const bool ran = status == sim::PointStatus::done || status == sim::PointStatus::stopped;
+    done.push_back(status != sim::PointStatus::not_run &&
+                   (signals.empty() || !ran ||
+                    sim::has_point_series(signals, sweep, selection.point(done.size()))));
+  }
+  return done;
 }
 
 // What is told of a point as soon as it is known.
@@ -110,6 +126,17 @@ std::string points_by_status(const sim::StatusCounts& counts) {
   return text;
 }
 
+void tell_mixed_levels(const std::string& path, const std::vector<SimdLevel>& levels) {
+  if (levels.size() < 2) return;
+  std::vector<std::string_view> names;
+  for (const SimdLevel level : levels) names.push_back(name_of(level));
+  fmt::print(
+      stderr,
+      "{}: points were computed with different instructions ({}; column simd_level): they "
+      "are alike but for their last bits; SERVOMILL_SIMD={} gives the same bits everywhere\n",
+      path, fmt::join(names, ", "), names.front());
+}
+
 int sweep_command(const Arguments& arguments) {
   Options options("sweep", kSynopsis,
                   "Runs a scenario at the points of its [sweep] table, prints the comparison at "
@@ -123,22 +150,27 @@ int sweep_command(const Arguments& arguments) {
   const sim::Sweep sweep(options.word(), options.list("set"));
   const sim::Selection selection = selection_of(options, sweep);
   std::string out = output_name(options, sweep.base().name, "_sweep");
-  const std::string signals = sim::series_folder(out);
+  const std::string signals = options.has("series") ? sim::series_folder(out) : "";
   if (options.has("shard")) out = sim::shard_name(out, selection);
   const unsigned threads = thread_count(options);
   sweep.refuse_hopeless();
 
   sim::SweepTable table(out, options.has("force"), sweep.base(), sim::columns_of(sweep.base()),
                         selection);
+  if (options.has("retry-failed")) table.forget(sim::PointStatus::failed);
+  const std::vector<bool> done = points_done(table, selection, sweep, signals);
+  auto left = static_cast<std::uint64_t>(std::count(done.begin(), done.end(), false));
   const bool quiet = options.has("quiet") || options.has("json") || options.has("csv");
-  if (table.is_complete()) {
+  if (table.is_complete() && left == 0) {
     if (!quiet) fmt::print("{} holds all {} points already\n", out, selection.size());
     return status_of(table.counts());
   }
-  const std::uint64_t before = selection.size() - table.counts()[0];
-  if (before > 0 && !quiet) {
-    fmt::print("{}: {} of {} points are there already\n", table.partial_path(), before,
-               selection.size());
+  const std::uint64_t there = selection.size() - table.counts()[0];
+  const std::uint64_t without_signals = left - table.counts()[0];
+  const std::string path = table.is_complete() ? out : table.partial_path();
+  if (there > 0 && !quiet) {
+    fmt::print("{}: {} of {} points are there already\n", path, there, selection.size());
+    if (without_signals > 0) fmt::print("{} of them lack signals, run again\n", without_signals);
   }
 
   const auto& stop = stop_on_interrupt();
@@ -147,22 +179,31 @@ int sweep_command(const Arguments& arguments) {
   sim::SweepControl control;
   control.threads = threads;
   control.stop = &stop;
-  control.keep = options.has("series") ? sim::Keep::series : sim::Keep::comparison;
+  control.keep = signals.empty() ? sim::Keep::comparison : sim::Keep::series;
   control.progress = [&](double share) { bar.show(share); };
   control.batch_done = [&](std::vector<sim::SweepPoint>&& points) {
-    for (const sim::SweepPoint& point : points) sim::write_point_series(signals, sweep, point);
-    table.write(points);
+    left -= points.size();
+    for (const sim::SweepPoint& point : points) {
+      if (!signals.empty()) sim::write_point_series(signals, sweep, point);
+    }
+    // a row that is there stays: the same point gives the same bits
+    const auto rows =
+        std::stable_partition(points.begin(), points.end(), [&](const sim::SweepPoint& point) {
+          return table.statuses()[selection.place(point.index)] == sim::PointStatus::not_run;
+        });
+    if (rows != points.begin()) table.write({points.begin(), rows});
     bar.clear();
     for (const sim::SweepPoint& point : points) teller.tell(point);
   };
-  sim::run_sweep(sweep, selection, table.done(), control);
+  sim::run_sweep(sweep, selection, done, control);
   bar.clear();
-  if (table.counts()[0] > 0) {
-    fmt::print(stderr, "interrupted; kept in {}: {} complete points of {}\n", table.partial_path(),
-               selection.size() - table.counts()[0], selection.size());
+  tell_mixed_levels(out, table.simd_levels());
+  if (left > 0) {
+    fmt::print(stderr, "interrupted; kept in {}: {} complete points of {}\n", path,
+               selection.size() - left, selection.size());
     return kInterrupted;
   }
-  table.commit();
+  if (!table.is_complete()) table.commit();
   if (options.has("csv")) print_file(sim::csv_name(out));
   if (!quiet) fmt::print("{}; written to {}\n", points_by_status(table.counts()), out);
   return status_of(table.counts());

@@ -15,6 +15,10 @@ def typed(title, *commands, **more):
     return {"title": title, "commands": list(commands), **more}
 
 
+def machine(title, old, new, commands=None):
+    return line(title, old, new, "machine.toml", commands)
+
+
 def program(title, old, new, commands=None):
     return line(title, old, new, "part.ngc", commands)
 
@@ -29,6 +33,7 @@ COMMAND_LINE = [
     typed("an empty name", "servomill run ''", "servomill run scenario.toml -o ''", "servomill check ''"),
     typed("no file, or too many", "servomill run", "servomill run scenario.toml machine.toml", "servomill check",
           "servomill compare", "servomill canon", "servomill sweep", "servomill list"),
+    typed("instructions that there are not", "SERVOMILL_SIMD=avx servomill run scenario.toml", "SERVOMILL_SIMD=fast servomill list machines"),
     typed("something that cannot be listed", "servomill list strategy", "servomill list machines --folder nowhere"),
     typed("standard output is full", "servomill canon moves.ngc > /dev/full", "servomill list strategies > /dev/full",
           "servomill --help > /dev/full", write={"moves.ngc": "G1 X10 F100\nM2\n"}, about="a right program"),
@@ -84,7 +89,7 @@ SCENARIO = [
     line("an unknown case in a quantity", 'cases = ["table"]', 'cases = ["tabel"]'),
     line("an unknown quantity", 'name = "imposed_curve_residual"', 'name = "imposed_curve_residuals"'),
     line("an axis that the quantity does not have", 'axis = "Y"\nbase', 'axis = "C"\nbase'),
-    line("an axis that the machine does not have", '"[w X b Y Z t]"', '"[w X b Z t]"', "machine.toml"),
+    machine("an axis that the machine does not have", '"[w X b Y Z t]"', '"[w X b Z t]"'),
     line("a section that is no circle", 'name = "imposed_curve_residual"\naxis = "Y"\nbase = "nominal"',
          'name = "circular_deviation"'),
     line("one direction of a circle where both are needed", 'name = "imposed_curve_residual"\naxis = "Y"\nbase = "nominal"',
@@ -114,22 +119,22 @@ SCENARIO = [
 ]
 
 MACHINE = [
-    line("machine: an unknown key", "following_error_limit_mm", "following_error_mm", "machine.toml"),
-    line("machine: an axis is missing", "[axis.Y]", "[axis.V]", "machine.toml"),
-    line("machine: an unknown preset", '"CC424"', '"CC426"', "machine.toml"),
-    line("machine: a structure that is none", '"[w X b Y Z t]"', '"[w X Y Z t]"', "machine.toml"),
-    line("machine: a period that is no multiple", "base_period_us = 10", "base_period_us = 10\nposition_period_us = 205", "machine.toml"),
-    line("machine: a base period that does not divide the preset's", "base_period_us = 10", "base_period_us = 30", "machine.toml"),
-    line("machine: a period of the wrong type", "base_period_us = 10", "base_period_us = 10\nposition_period_us = \"slow\"", "machine.toml"),
-    line("machine: periods that meet too seldom", "base_period_us = 10",
-         "base_period_us = 1\nposition_period_us = 9973\nvelocity_period_us = 9967", "machine.toml"),
-    line("machine: a base period that no run could count", "base_period_us = 10", "base_period_us = 1e-9", "machine.toml"),
-    line("machine: limits far from any machine", 'j_max = "100 m/s^3"', "j_max = 1e300", "machine.toml"),
-    line("machine: travel the wrong way round", "travel_mm = [-400.0, 400.0]", "travel_mm = [400.0, -400.0]", "machine.toml"),
-    line("machine: travel of one number", "travel_mm = [-400.0, 400.0]", "travel_mm = [400.0]", "machine.toml"),
-    line("machine: the same, checked alone", "lead_mm = 20.0", "lead_mm = -20.0", "machine.toml",
+    machine("machine: an unknown key", "following_error_limit_mm", "following_error_mm"),
+    machine("machine: an axis is missing", "[axis.Y]", "[axis.V]"),
+    machine("machine: an unknown preset", '"CC424"', '"CC426"'),
+    machine("machine: a structure that is none", '"[w X b Y Z t]"', '"[w X Y Z t]"'),
+    machine("machine: a period that is no multiple", "base_period_us = 10", "base_period_us = 10\nposition_period_us = 205"),
+    machine("machine: a base period that does not divide the preset's", "base_period_us = 10", "base_period_us = 30"),
+    machine("machine: a period of the wrong type", "base_period_us = 10", "base_period_us = 10\nposition_period_us = \"slow\""),
+    machine("machine: periods that meet too seldom", "base_period_us = 10",
+         "base_period_us = 1\nposition_period_us = 9973\nvelocity_period_us = 9967"),
+    machine("machine: a base period that no run could count", "base_period_us = 10", "base_period_us = 1e-9"),
+    machine("machine: limits far from any machine", 'j_max = "100 m/s^3"', "j_max = 1e300"),
+    machine("machine: travel the wrong way round", "travel_mm = [-400.0, 400.0]", "travel_mm = [400.0, -400.0]"),
+    machine("machine: travel of one number", "travel_mm = [-400.0, 400.0]", "travel_mm = [400.0]"),
+    machine("machine: the same, checked alone", "lead_mm = 20.0", "lead_mm = -20.0",
          ["servomill check machine.toml"]),
-    line("a machine key: from the machine file", 'i_max_A = 50.0', 'i_max_A = -1.0', "machine.toml"),
+    machine("a machine key: from the machine file", 'i_max_A = 50.0', 'i_max_A = -1.0'),
     line("a machine key: from machine_override", 'Kv = "60 1/s"', 'Kv = "-60 1/s"'),
     typed("a machine key: from --set", "servomill run scenario.toml --set machine.nc.Kv=-60",
           "servomill run scenario.toml --set machine_override.nc.Kv=-60",
@@ -146,12 +151,12 @@ FRICTION = '[axis.X.friction]\nmodel = "lugre"\ncoulomb = "450 N"\nbreakaway = "
 
 def axis(title, key):
     """One more key of the axis X."""
-    return line(title, 'velocity_bandwidth = "200 rad/s"', 'velocity_bandwidth = "200 rad/s"\n' + key, "machine.toml")
+    return machine(title, 'velocity_bandwidth = "200 rad/s"', 'velocity_bandwidth = "200 rad/s"\n' + key)
 
 
 def table_of_axis(title, text):
     """One more table of the axis X."""
-    return line(title, "[axis.Y]", text + "\n[axis.Y]", "machine.toml")
+    return machine(title, "[axis.Y]", text + "\n[axis.Y]")
 
 
 AXIS = [
@@ -164,9 +169,9 @@ AXIS = [
     table_of_axis("friction: units of a rotary axis", FRICTION.replace('"450 N"', '"450 Nm"')),
     table_of_axis("friction: LuGre without Coulomb", FRICTION.replace('"450 N"', '"0 N"')),
     table_of_axis("friction: stiffer than the exact step can be", FRICTION.replace('"3e4 N s/m"', '"1e13 N s/m"')),
-    line("friction: a model for all axes, tables for none", 'name      = "Three-axis mill"',
-         'name      = "Three-axis mill"\nfriction_model = "lugre"', "machine.toml"),
-    line("an inertia below nothing", 'motor_inertia = "9.6e-3 kg m^2"', 'motor_inertia = "-9.6e-3 kg m^2"', "machine.toml"),
+    machine("friction: a model for all axes, tables for none", 'name      = "Three-axis mill"',
+         'name      = "Three-axis mill"\nfriction_model = "lugre"'),
+    machine("an inertia below nothing", 'motor_inertia = "9.6e-3 kg m^2"', 'motor_inertia = "-9.6e-3 kg m^2"'),
     axis("backlash of a rigid drive", 'backlash = "3 um"'),
     axis("a discrete current loop without a winding", 'current_loop = "pi"'),
     table_of_axis("a winding without its current loop's bandwidth",
@@ -191,8 +196,8 @@ AXIS = [
     axis("a load that no current can hold", 'constant_load = "30 kN"'),
     line("feedback of a scale that nobody reads", 'type = "table"', 'type = "feedback"\nmodel = "imposed"\n[[case.strategy]]\ntype = "table"')
     | {"commands": ["servomill check scenario.toml --set 'machine_override.nc.position_feedback=\"motor\"'"]},
-    line("an integrator that there is not", 'name      = "Three-axis mill"',
-         'name      = "Three-axis mill"\nintegrator = "cvodes"', "machine.toml"),
+    machine("an integrator that there is not", 'name      = "Three-axis mill"',
+         'name      = "Three-axis mill"\nintegrator = "cvodes"'),
 ]
 
 SET = [
@@ -208,11 +213,11 @@ SET = [
 ]
 
 MACHINE_REFUSES = [
-    line("travel limits", "G1 X10", "G1 X1000", "part.ngc"),
+    program("travel limits", "G1 X10", "G1 X1000"),
     {"title": "travel limits in one case only",
      "edit": [("scenario.toml", 'name = "table"', 'name = "table"\nwork_offset = { X_mm = 395.0 }')], "commands": CHECK},
     line("the start is outside the travel", "feed_override = 1.0", "start = { X_mm = -500.0 }"),
-    line("an axis word that the machine does not have", "G1 X10", "G1 X10 C90", "part.ngc"),
+    program("an axis word that the machine does not have", "G1 X10", "G1 X10 C90"),
     line("a work offset of an axis that the machine does not have", "feed_override = 1.0", "work_offset = { C_deg = 3.0 }"),
     line("gains that make the loop unstable", 'Kv = "60 1/s"', 'Kv = "5000 1/s"'),
     line("a table too steep for the NC", "amplitude_um = 150.0", "amplitude_um = 300.0"),
@@ -257,68 +262,62 @@ OUTPUT = [
     typed("the folder of the result is not there", "servomill run scenario.toml -o nowhere/out.h5"),
     typed("a program checked with and without its tools", "servomill check part.ngc", "servomill check part.ngc --tools tools.tbl",
           write={"tools.tbl": "T1 P1 Z110 D8\n"}),
-    line("a machine that is unstable, checked alone", 'Kv = "60 1/s"', 'Kv = "5000 1/s"', "machine.toml",
+    machine("a machine that is unstable, checked alone", 'Kv = "60 1/s"', 'Kv = "5000 1/s"',
          ["servomill check machine.toml"]),
     typed("a sweep's file compared", "servomill sweep scenario.toml -q -o out.h5 --set 'sweep={title=[\"a\"]}'", "servomill compare out.h5"),
     typed("a result file that is none", "servomill compare scenario.toml", "servomill compare part.ngc"),
 ]
 
+SWEEP_IT = "servomill sweep scenario.toml -o out.h5"
+
+
+def sweep(title, text, *commands):
+    """A table [sweep] in the scenario."""
+    return line(title, "[record]", f"[sweep]\n{text}\n[record]", commands=list(commands) or [SWEEP_IT])
+
+
 SWEEP = [
-    typed("a sweep without a [sweep] table", "servomill sweep scenario.toml -o out.h5"),
-    line("a sweep over a key that there is not", "[record]", '[sweep]\n"program.feed_overide" = [0.5, 1.0]\n[record]',
-         commands=["servomill check scenario.toml", "servomill sweep scenario.toml -o out.h5"]),
-    line("a sweep whose last point is wrong", "[record]", '[sweep]\n"program.feed_override" = [1.0, -1.0]\n[record]',
-         commands=["servomill check scenario.toml", "servomill sweep scenario.toml -o out.h5"]),
-    line("a sweep to where the loop is unstable", "[record]", '[sweep]\n"machine.nc.Kv" = ["60 1/s", "5000 1/s"]\n[record]',
-         commands=["servomill check scenario.toml", "servomill sweep scenario.toml -o out.h5"]),
-    line("a sweep over nothing", "[record]", '[sweep]\n"program.feed_override" = []\n[record]',
-         commands=["servomill sweep scenario.toml -o out.h5"]),
-    line("a sweep over no list", "[record]", '[sweep]\n"program.feed_override" = 1.0\n[record]',
-         commands=["servomill sweep scenario.toml -o out.h5"]),
-    line("a sweep over a case that there is not", "[record]",
-         '[sweep]\n"case.tabel.strategy.response_time_ms" = [0.0, 10.0]\n[record]',
-         commands=["servomill sweep scenario.toml -o out.h5"]),
-    line("a sweep over what is compared", "[record]", '[sweep]\n"quantity[0].axis" = ["X", "Y"]\n[record]',
-         commands=["servomill sweep scenario.toml -o out.h5"]),
-    line("a sweep over too many points", "[record]",
-         '[sweep]\nprogram.feed_override = { log = [0.1, 2.0], count = 5000 }\n'
-         'machine.nc.Kv = { linear = ["40 1/s", "80 1/s"], count = 5000 }\n[record]',
-         commands=["servomill sweep scenario.toml -o out.h5"]),
-    line("ranges and lists that are none", "[record]",
-         '[sweep]\n"program.feed_override" = { linear = [0.5, 0.5], count = 3 }\n'
-         '"machine.nc.Kv" = { log = ["40 1/s", "2 m/min/mm"], count = 3 }\n'
-         '[[sweep.together]]\n"machine.axis.X.v_max" = [1.0, 2.0]\n"machine.axis.Y.v_max" = [1.0, 2.0, 3.0]\n[record]',
-         commands=["servomill sweep scenario.toml -o out.h5"]),
-    line("distributions that are none, and no samples", "[record]",
-         '[sweep]\n"errors.imposed.EYX.harmonic.amplitude_um" = { normal = [150.0, -3.0] }\n'
-         '"program.feed_override" = { uniform = [2.0, 1.0], conut = 3 }\n[record]',
-         commands=["servomill sweep scenario.toml -o out.h5"]),
-    line("samples of nothing", "[record]",
-         '[sweep]\nsamples = { design = "sobel", count = 0 }\n"program.feed_override" = [1.0]\n[record]',
-         commands=["servomill sweep scenario.toml -o out.h5"]),
-    line("a distribution without samples", "[record]",
-         '[sweep]\n"program.feed_override" = { uniform = [1.0, 2.0] }\n[record]',
-         commands=["servomill sweep scenario.toml -o out.h5"]),
-    line("points and shards that there are not", "[record]", '[sweep]\n"program.feed_override" = [1.0, 2.0]\n[record]',
-         commands=["servomill sweep scenario.toml -o out.h5 --points 2-3",
-                   "servomill sweep scenario.toml -o out.h5 --points 0-1",
-                   "servomill sweep scenario.toml -o out.h5 --points 2",
-                   "servomill sweep scenario.toml -o out.h5 --shard 3/2",
-                   "servomill sweep scenario.toml -o out.h5 --shard 1/3",
-                   "servomill sweep scenario.toml -o out.h5 --shard one"]),
-    line("shards merged that do not make a whole", "[record]",
-         '[sweep]\n"program.feed_override" = [1.0, 2.0, 3.0]\n[record]',
-         commands=["servomill sweep scenario.toml -q -o out.h5 --shard 1/3",
-                   "servomill merge",
-                   "servomill merge out.1-of-3.h5",
-                   "servomill merge out.1-of-3.h5 -o out.h5",
-                   "servomill merge out.1-of-3.h5 out.1-of-3.h5 -o out.h5",
-                   "servomill merge out.1-of-3.h5 scenario.toml -o out.h5",
-                   "servomill sweep scenario.toml -q -o other.h5 --shard 2/3 --set program.feed_override=2.0",
-                   "servomill merge out.1-of-3.h5 other.2-of-3.h5 -o out.h5",
-                   "servomill merge out.1-of-3.h5 -o out.h5 --partial -q",
-                   "servomill sweep scenario.toml -o out.h5",
-                   "servomill sweep scenario.toml -o out.h5 --shard 1/3 --set program.feed_override=2.0"]),
+    typed("a sweep without a [sweep] table", SWEEP_IT),
+    sweep("a sweep over a key that there is not", '"program.feed_overide" = [0.5, 1.0]', *CHECK, SWEEP_IT),
+    sweep("a sweep whose last point is wrong", '"program.feed_override" = [1.0, -1.0]', *CHECK, SWEEP_IT),
+    sweep("a sweep to where the loop is unstable", '"machine.nc.Kv" = ["60 1/s", "5000 1/s"]', *CHECK, SWEEP_IT),
+    sweep("a sweep over nothing", '"program.feed_override" = []'),
+    sweep("a sweep over no list", '"program.feed_override" = 1.0'),
+    sweep("a sweep over a case that there is not", '"case.tabel.strategy.response_time_ms" = [0.0, 10.0]'),
+    sweep("a sweep over what is compared", '"quantity[0].axis" = ["X", "Y"]'),
+    sweep("a sweep over too many points",
+          'program.feed_override = { log = [0.1, 2.0], count = 5000 }\n'
+          'machine.nc.Kv = { linear = ["40 1/s", "80 1/s"], count = 5000 }'),
+    sweep("ranges and lists that are none",
+          '"program.feed_override" = { linear = [0.5, 0.5], count = 3 }\n'
+          '"machine.nc.Kv" = { log = ["40 1/s", "2 m/min/mm"], count = 3 }\n'
+          '[[sweep.together]]\n"machine.axis.X.v_max" = [1.0, 2.0]\n"machine.axis.Y.v_max" = [1.0, 2.0, 3.0]'),
+    sweep("distributions that are none, and no samples",
+          '"errors.imposed.EYX.harmonic.amplitude_um" = { normal = [150.0, -3.0] }\n'
+          '"program.feed_override" = { uniform = [2.0, 1.0], conut = 3 }'),
+    sweep("samples of nothing", 'samples = { design = "sobel", count = 0 }\n"program.feed_override" = [1.0]'),
+    sweep("a distribution without samples", '"program.feed_override" = { uniform = [1.0, 2.0] }'),
+    sweep("points and shards that there are not",
+          '"program.feed_override" = [1.0, 2.0]',
+          SWEEP_IT + " --points 2-3",
+          SWEEP_IT + " --points 0-1",
+          SWEEP_IT + " --points 2",
+          SWEEP_IT + " --shard 3/2",
+          SWEEP_IT + " --shard 1/3",
+          SWEEP_IT + " --shard one"),
+    sweep("shards merged that do not make a whole",
+          '"program.feed_override" = [1.0, 2.0, 3.0]',
+          "servomill sweep scenario.toml -q -o out.h5 --shard 1/3",
+          "servomill merge",
+          "servomill merge out.1-of-3.h5",
+          "servomill merge out.1-of-3.h5 -o out.h5",
+          "servomill merge out.1-of-3.h5 out.1-of-3.h5 -o out.h5",
+          "servomill merge out.1-of-3.h5 scenario.toml -o out.h5",
+          "servomill sweep scenario.toml -q -o other.h5 --shard 2/3 --set program.feed_override=2.0",
+          "servomill merge out.1-of-3.h5 other.2-of-3.h5 -o out.h5",
+          "servomill merge out.1-of-3.h5 -o out.h5 --partial -q",
+          "servomill sweep scenario.toml -o out.h5",
+          SWEEP_IT + " --shard 1/3 --set program.feed_override=2.0"),
     typed("the CSV file of a sweep exists", "servomill sweep scenario.toml -o out.h5 --set 'sweep={title=[\"a\"]}'",
           "servomill sweep scenario.toml -o out.h5 --force --set 'sweep={title=[\"a\"]}'", write={"out.csv": "precious"}),
 ]

@@ -4,6 +4,7 @@
 
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/ticks.h"
 
 namespace servomill {
@@ -25,6 +26,38 @@ TEST(InputError, PrintsOneLineAFaultInOrderOfPlace) {
 }
 TEST(InputError, LeavesOutWhatIsUnknownOfThePlace) {
   EXPECT_STREQ(InputError({"m.toml"}, "cannot be read").what(), "m.toml: error: cannot be read");
+}
+
+TEST(SimdLevel, IsTheBestThatThereIsUnlessNamed) {
+  EXPECT_EQ(simd_level_named(""), simd_levels().back());
+  EXPECT_EQ(simd_levels().front(), SimdLevel::baseline);
+  for (const SimdLevel level : simd_levels()) EXPECT_EQ(simd_level_named(name_of(level)), level);
+}
+
+std::string refused_level(std::string_view name) {
+  try {
+    return std::string("accepted as ").append(name_of(simd_level_named(name)));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(SimdLevel, RefusesNamesThatAreNone) {
+  EXPECT_EQ(refused_level("avx3"),
+            "SERVOMILL_SIMD: error: 'avx3' is no level; must be one of baseline, avx2, avx512; did "
+            "you mean 'avx2'?");
+  EXPECT_EQ(refused_level("AVX-512"),
+            "SERVOMILL_SIMD: error: 'AVX-512' is no level; must be one of baseline, avx2, avx512");
+}
+
+TEST(SimdLevel, RefusesWhatTheMachineLacks) {
+  const auto there = simd_levels();
+  if (there.size() == kSimdLevels.size()) GTEST_SKIP() << "this machine has all";
+  const std::string first_lacking(name_of(kSimdLevels[there.size()]));
+  EXPECT_EQ(refused_level(first_lacking)
+                .find("SERVOMILL_SIMD: error: " + first_lacking +
+                      " is beyond this machine or binary; there are: base"),
+            0U);
 }
 
 TEST(JointLayout, PutsProgramWordsIntoTheMachinesOrder) {

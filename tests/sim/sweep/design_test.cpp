@@ -242,6 +242,18 @@ TEST(ReadSweep, RefusesRangesThatAreNone) {
             "s.toml:2:24: error: sweep.a.cuont is not known; did you mean 'count'?");
 }
 
+TEST(ReadSweep, RefusesMoreKeysToSampleThanThereAreDimensions) {
+  std::string toml = "samples = { design = \"random\", count = 3 }\n";
+  for (std::size_t k = 0; k < kMostDimensions; ++k) {
+    toml += "a" + std::to_string(k) + " = { one_of = [1] }\n";
+  }
+  EXPECT_EQ(design_of(toml).sampled_dimensions, kMostDimensions);
+  for (const std::string form : {"{ one_of = [1] }", "{ uniform = [0, 1] }"}) {
+    EXPECT_EQ(refusal(toml + "b = " + form + "\n"),
+              "s.toml:3670:1: error: sweep.b is one key too many to sample; there may be 3667");
+  }
+}
+
 TEST(ReadSweep, RefusesDistributionsThatAreNone) {
   const std::string samples = "samples = { design = \"random\", count = 3 }\n";
   EXPECT_EQ(refusal(samples + "a = { normal = [1.0, 0.0] }\n"),

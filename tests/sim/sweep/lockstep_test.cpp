@@ -1,0 +1,170 @@
+/// Points that run in lockstep: what happens to one of them is nothing to the others.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "sim/batch.h"
+
+namespace servomill::sim {
+namespace {
+
+const std::string kScenario = SERVOMILL_SOURCE_DIR "/tests/cli/gallery/scenario.toml";
+
+Scenario scenario_with(const std::vector<std::string>& more) {
+  std::vector<std::string> changes = {
+      "case=[{name=\"only\"}]",
+      "quantity=[{name=\"following_error\",axis=\"X\",statistic=\"max\"}]",
+      "record.resolution_nm=0.0",  // every bit
+  };
+  changes.insert(changes.end(), more.begin(), more.end());
+  return read_scenario(kScenario, changes);
+}
+
+// What one of eight may be that the others are not.
+const std::map<std::string, std::vector<std::string>> kOdd = {
+    {"goes NaN",
+     {"machine.nc.Kv=20000", "machine.nc.check_stability=false",
+      "machine.nc.following_error_limit_mm=1e300"}},
+    {"faults", {"machine.nc.following_error_limit_mm=0.5"}},
+    {"ends early", {"program.feed_override=4.0"}},
+    {"uses cvode", {"machine.integrator=\"cvode\""}},
+    {"has a winding",
+     {"machine.axis.X.current_loop=\"pi\"",
+      "machine.axis.X.winding={inductance=\"4 mH\",resistance=\"0.6 ohm\",bandwidth=\"3000 "
+      "rad/s\"}"}},
+    {"has friction",
+     {"machine.axis.X.friction={model=\"set_valued\",coulomb=\"450 N\",breakaway=\"560 N\","
+      "stribeck_velocity=\"2 mm/s\"}"}},
+    {"has friction that no step resolves",
+     {"machine.axis.X.friction={model=\"set_valued\",coulomb=0,breakaway=450,"
+      "stribeck_velocity=1e-9}"}},
+    {"is ideal", {"case[0].servo=\"ideal\""}},
+};
+
+// Seven runs that differ a little, an eighth at some place that differs much.
+std::vector<Scenario> eight_with(const std::vector<std::string>& odd, std::size_t place) {
+  std::vector<Scenario> points;
+  for (std::size_t k = 0; k < 8; ++k) {
+    points.push_back(scenario_with(
+        k == place ? odd : std::vector<std::string>{fmt::format("machine.nc.Kv={}", 50 + k)}));
+  }
+  return points;
+}
+
+std::map<std::size_t, BatchResult> run(const std::vector<Scenario>& points,
+                                       const StopFlag& stop = false) {
+  std::atomic<float> progress = 0.0F;
+  std::map<std::size_t, BatchResult> results;
+  const auto keep = [&](std::vector<EndedPoint>&& ended) {
+    for (EndedPoint& one : ended) {
+      EXPECT_TRUE(results.emplace(one.place, std::move(one.result)).second) << one.place;
+    }
+  };
+  run_batch(points, stop, progress, keep, {.keep = Keep::series});
+  return results;
+}
+
+// Bit for bit, NaN included.
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+class Lockstep : public testing::TestWithParam<std::string> {};
+
+TEST_P(Lockstep, GivesEachTheBitsThatItHasAlone) {
+  for (const std::size_t place : {std::size_t{0}, std::size_t{3}, std::size_t{7}}) {
+    const std::vector<Scenario> points = eight_with(kOdd.at(GetParam()), place);
+    const auto together = run(points);
+    ASSERT_EQ(together.size(), 8U);
+    for (std::size_t k = 0; k < 8; ++k) {
+      const auto alone = run({points[k]});
+      const BatchResult &one = alone.at(0), &other = together.at(k);
+      EXPECT_EQ(other.status, one.status) << other.reason;
+      EXPECT_EQ(other.reason, one.reason);
+      ASSERT_EQ(other.cases.size(), one.cases.size());
+      for (std::size_t c = 0; c < one.cases.size(); ++c) {
+        const CaseResult &a = one.cases[c].result, &b = other.cases[c].result;
+        EXPECT_TRUE(same_bits(a.servo.data(), b.servo.data())) << "run " << k << ", odd " << place;
+        EXPECT_TRUE(same_bits(a.last_ticks.data(), b.last_ticks.data())) << "run " << k;
+      }
+      if (k != place) {
+        EXPECT_EQ(other.status, PointStatus::done) << other.reason;
+      }
+    }
+  }
+}
+
+std::vector<std::string> names_of_odd() {
+  std::vector<std::string> names;
+  for (const auto& [name, changes] : kOdd) names.push_back(name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(OneOfEight, Lockstep, testing::ValuesIn(names_of_odd()),
+                         [](const auto& one) {
+                           std::string name = one.param;
+                           std::replace(name.begin(), name.end(), ' ', '_');
+                           return name;
+                         });
+
+// What the table above says happens, happens.
+TEST(Lockstep, HasOddRunsThatAreOdd) {
+  std::map<std::string, BatchResult> odd;
+  for (const auto& [name, changes] : kOdd) odd[name] = std::move(run({scenario_with(changes)})[0]);
+  const auto series = [&](const std::string& name) -> const Series& {
+    return odd.at(name).cases.at(0).result.servo;
+  };
+  const auto is_nan = [](double x) { return std::isnan(x); };
+  const auto& sick = series("goes NaN").data();
+  EXPECT_TRUE(std::any_of(sick.begin(), sick.end(), is_nan));
+  EXPECT_EQ(odd.at("faults").status, PointStatus::stopped);
+  EXPECT_NE(odd.at("faults").reason.find("following error beyond 0.5 mm"), std::string::npos);
+  EXPECT_EQ(odd.at("has friction that no step resolves").status, PointStatus::stopped);
+  for (const char* name :
+       {"ends early", "uses cvode", "has a winding", "has friction", "is ideal"}) {
+    EXPECT_EQ(odd.at(name).status, PointStatus::done) << name << ": " << odd.at(name).reason;
+  }
+  EXPECT_LT(series("ends early").rows(), series("has a winding").rows());
+}
+
+TEST(RunBatch, TellsOfPointsAsSoonAsTheyHaveEnded) {
+  std::vector<Scenario> points;
+  for (int k = 0; k < 12; ++k) points.push_back(scenario_with({}));
+  points[5] = scenario_with({"machine.nc.Kv=5000"});  // refused before anything runs
+  StopFlag stop = false;
+  std::atomic<float> progress = 0.0F;
+  std::vector<std::vector<std::size_t>> told;
+  run_batch(points, stop, progress, [&](std::vector<EndedPoint>&& ended) {
+    told.emplace_back();
+    for (const EndedPoint& one : ended) told.back().push_back(one.place);
+    stop = told.size() == 2;  // what has ended by then is kept, the others are never told of
+  });
+  EXPECT_EQ(told, (std::vector<std::vector<std::size_t>>{{5}, {0, 1, 2, 3, 4, 6, 7, 8}}));
+}
+
+TEST(RunBatch, HoldsNoMoreRowsAtOnceThanItMay) {
+  const std::vector<Scenario> points(3, scenario_with({}));
+  const StopFlag never = false;
+  std::atomic<float> progress = 0.0F;
+  std::vector<std::size_t> told;
+  const auto tell = [&](std::vector<EndedPoint>&& ended) {
+    ASSERT_EQ(ended.size(), 1U);
+    told.push_back(ended.front().place);
+  };
+  run_batch(points, never, progress, tell, {.rows = 1.0});
+  EXPECT_EQ(told, (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_EQ(progress, 1.0F);
+}
+
+TEST(RowsAtOnce, ShareTheMemoryAmongTheThreads) {
+  EXPECT_LE(rows_at_once(1), 1e6);
+  EXPECT_GT(rows_at_once(1000), 0.0);
+  EXPECT_DOUBLE_EQ(rows_at_once(100000), rows_at_once(200000) * 2.0);
+}
+
+}  // namespace
+}  // namespace servomill::sim
