@@ -404,7 +404,7 @@ class Mistakes(WithFiles):
         self.fails(f"{missing}: error: no such file", missing)
         self.fails(f"{text}: error: is not an HDF5 file", text)
         self.fails(f"{foreign}: error: is not a result file of servomill", foreign)
-        self.fails(f"{newer}: error: has schema version 99; this program reads version 2", newer)
+        self.fails(f"{newer}: error: has schema version 99; this program reads version 3", newer)
 
     def test_a_damaged_file(self):
         cut, hollow = self.root / "cut.h5", self.root / "hollow.h5"

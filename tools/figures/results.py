@@ -168,7 +168,7 @@ class Run(ResultFile):
                 for name, data in group.items() if name != "position"}
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Parameter:
     """One key of a sweep: a number a point, or one of some texts."""
     key: str
@@ -176,9 +176,16 @@ class Parameter:
     values: np.ndarray        # numbers; of texts their places; NaN where a point was not run
     texts: tuple = ()
     sampled: bool = False     # from a distribution, else on the grid
+    others: int = 0           # parameters that go together with this one
 
     def label(self):
-        return self.key if self.unit == "1" else f"{self.key}, {self.unit}"
+        return self.key + (f" (and {self.others} more)" if self.others else "") + ("" if self.unit == "1" else f", {self.unit}")
+
+    def goes_with(self, other):
+        """Whether each value of one has its value of the other."""
+        good = np.isfinite(self.values) & np.isfinite(other.values)
+        pairs = np.unique(np.column_stack([self.values[good], other.values[good]]), axis=0)
+        return len(pairs) == len(self.distinct()) == len(other.distinct())
 
     def distinct(self):
         """The values that there are, sorted."""
@@ -214,8 +221,18 @@ class Sweep(ResultFile):
                          _is_sampled(self.scenario.get("sweep", {}), key))
 
     def varied(self, sampled):
-        """Parameters with more than one value: the sampled ones, or those of the grid."""
-        return [one for one in self.parameters if one.sampled == sampled and len(one.distinct()) > 1]
+        """Parameters with more than one value: the sampled ones, or those of the grid, of which only the
+        first of those that go together."""
+        found = []
+        for one in self.parameters:
+            if one.sampled != sampled or len(one.distinct()) < 2:
+                continue
+            leader = next((n for n, other in enumerate(found) if not sampled and one.goes_with(other)), None)
+            if leader is None:
+                found.append(one)
+            else:
+                found[leader] = dataclasses.replace(found[leader], others=found[leader].others + 1)
+        return found
 
 
 DISTRIBUTIONS = {"uniform", "log_uniform", "normal", "one_of"}

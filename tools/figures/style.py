@@ -101,6 +101,19 @@ def panels(heights, size, columns=1, widths=None, **more):
     return figure, strip, axes
 
 
+def paler(colour, share):
+    """A colour on its way to white, of which it stays well clear."""
+    rgb = np.array(matplotlib.colors.to_rgb(colour))
+    return matplotlib.colors.to_hex(1.0 - (1.0 - rgb) * (1.0 - 0.75 * share))
+
+
+def plain_log_ticks(axis):
+    """Ticks of a logarithmic axis as numbers, 2 and 5 between the powers of ten where there is room."""
+    axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1.0, 2.0, 5.0), numticks=8))
+    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+
+
 def face(look):
     """Inside of a marker: white for the dashed looks, so that what lies below shows."""
     return "white" if look.line == DASH else look.colour

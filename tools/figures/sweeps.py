@@ -5,6 +5,8 @@ from figures import style
 from figures.results import NotInFile
 
 MOST_PANELS = 6
+MOST_MAPS = 9
+MOST_LINES = 6        # of one case in a panel
 MOST_SAMPLED = 4      # parameters beside each other
 RATIO_FOR_LOG = 8.0   # largest over smallest value from which on an axis is logarithmic
 BINS = 40
@@ -37,12 +39,20 @@ def short(parameter):
 
 
 def tell(parameter, value):
-    return parameter.texts[int(value)] if parameter.texts else f"{value:g}"
+    return parameter.texts[int(value)] if parameter.texts else f"{value:.3g}"
 
 
-def first_panels(found):
+def tell_with_name(parameter, value):
+    """The same where no axis says what it is a value of."""
+    if parameter.texts:
+        return tell(parameter, value)
+    unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+    return f"{parameter.key.split('.')[-1]} {tell(parameter, value)}{unit}"
+
+
+def first_panels(found, most=MOST_PANELS):
     """As many questions as fit; the others are named where they are left out."""
-    shown = list(found.items())[:MOST_PANELS]
+    shown = list(found.items())[:most]
     return shown, len(found) - len(shown)
 
 
@@ -69,11 +79,13 @@ def draw_curves(sweep):
         raise NotInFile("the sweep samples its parameters")
     parameters = sweep.varied(sampled=False)
     numbers = [one for one in parameters if not one.texts]
-    if len(numbers) != 1:
-        raise NotInFile(f"the sweep varies {len(numbers)} numbers, not one" +
-                        "".join(f"; {one.key}" for one in numbers))
-    x = numbers[0]
-    groups = text_groups([one for one in parameters if one.texts], len(x.values))
+    if not numbers:
+        raise NotInFile("the sweep varies no number")
+    x = max(numbers, key=lambda one: len(one.distinct()))
+    groups = groups_of([one for one in parameters if one is not x], len(x.values))
+    if len(groups) > MOST_LINES:
+        raise NotInFile(f"the sweep varies too much beside {x.key}: {len(groups)} lines a case" +
+                        "".join(f"; {one.key}" for one in parameters if one is not x))
     shown, left_out = first_panels(questions(sweep))
     rows, columns = grid_of(len(shown))
     figure, strip, axes = style.panels([1.0] * rows, (5.1 * columns, 3.6 * rows + 0.6), columns=columns)
@@ -84,8 +96,9 @@ def draw_curves(sweep):
             for n, (name, chosen) in enumerate(groups):
                 look = style.look_of(sweep, column["case"])
                 if name:
-                    look = style.dataclasses.replace(look, label=f"{look.label}, {name}",
-                                                     line=["-", style.DASH, style.DASH_DOT, style.DOT][n % 4])
+                    look = style.dataclasses.replace(
+                        look, label=f"{look.label}, {name}", line=["-", style.DASH, style.DASH_DOT, style.DOT][n % 4],
+                        colour=style.paler(look.colour, n / len(groups)))
                 looks[look.label] = look
                 order = chosen[np.argsort(x.values[chosen])]
                 style.line(ax, x.values[order], column["value"][order], look, marker=look.marker, markersize=5,
@@ -96,10 +109,11 @@ def draw_curves(sweep):
         if logarithmic(x.values):
             ax.set_xscale("log", base=2)
             ax.set_xticks(x.distinct() if len(x.distinct()) <= 8 else x.distinct()[::2],
-                          [f"{v:g}" for v in (x.distinct() if len(x.distinct()) <= 8 else x.distinct()[::2])])
+                          [tell(x, v) for v in (x.distinct() if len(x.distinct()) <= 8 else x.distinct()[::2])])
             ax.minorticks_off()
         if logarithmic(np.concatenate([column["value"] for column in cases])):
             ax.set_yscale("log")
+            style.plain_log_ticks(ax.yaxis)
         else:
             ax.axhline(0.0, color=style.BLACK, linewidth=0.8)
     for ax in flat[len(shown):]:
@@ -109,11 +123,12 @@ def draw_curves(sweep):
     return figure
 
 
-def text_groups(parameters, points):
-    """[(name, places of the points)] for each combination of the texts."""
+def groups_of(parameters, points):
+    """[(name, places of the points)] for each combination of the values."""
     groups = [("", np.arange(points))]
     for one in parameters:
-        groups = [(", ".join(part for part in (name, tell(one, value)) if part), chosen[one.values[chosen] == value])
+        groups = [(", ".join(part for part in (name, tell_with_name(one, value)) if part),
+                   chosen[one.values[chosen] == value])
                   for name, chosen in groups for value in one.distinct()]
     return groups
 
@@ -122,17 +137,22 @@ def draw_maps(sweep):
     if sweep.varied(sampled=True):
         raise NotInFile("the sweep samples its parameters")
     parameters = sweep.varied(sampled=False)
-    if len(parameters) != 2:
+    if len(parameters) < 2:
         raise NotInFile(f"the sweep varies {len(parameters)} parameters, not two")
-    y, x = parameters
-    found = {(*question, column["case"]): [column] for question, columns in questions(sweep).items()
-             for column in columns}
-    shown, left_out = first_panels(found)
+    # over the two that have most values, one map for each value of the others
+    most = sorted(parameters, key=lambda one: (bool(one.texts), -len(one.distinct())))[:2]
+    y, x = (one for one in parameters if one in most)
+    others = [one for one in parameters if one not in most]
+    found = {(*question, column["case"], name): (column, chosen) for question, columns in questions(sweep).items()
+             for column in columns for name, chosen in groups_of(others, len(x.values))}
+    shown, left_out = first_panels(found, MOST_MAPS)
     rows, columns = grid_of(len(shown))
     figure, axes = style.plt.subplots(rows, columns, figsize=(4.9 * columns, 3.7 * rows + 0.4), squeeze=False)
-    for ax, (question, (column,)) in zip(axes.flat, shown):
-        picture = as_picture(x, y, column["value"])
-        mesh = ax.pcolormesh(np.arange(picture.shape[1] + 1), np.arange(picture.shape[0] + 1), picture, cmap="viridis")
+    for ax, ((*question, case, name), (column, chosen)) in zip(axes.flat, shown):
+        picture = as_picture(x, y, column["value"], chosen)
+        ends = (np.nanmin(column["value"]), np.nanmax(column["value"])) if name else (None, None)  # one scale for all names
+        mesh = ax.pcolormesh(np.arange(picture.shape[1] + 1), np.arange(picture.shape[0] + 1), picture, cmap="viridis",
+                             vmin=ends[0], vmax=ends[1])
         figure.colorbar(mesh, ax=ax, label=unit_of([column]))
         few = picture.size <= 64
         for (row, place), value in np.ndenumerate(picture) if few else []:
@@ -146,18 +166,19 @@ def draw_maps(sweep):
             axis.set_ticks(places + 0.5, [tell(parameter, values[i]) for i in places])
             axis.set_label_text(parameter.label())
         ax.grid(False)
-        ax.set_title(f"{question[-1]}: {title_of(question[:-1])}")
+        ax.set_title(f"{case}, {name}:\n{title_of(question)}" if name else f"{case}: {title_of(question)}")
     for ax in list(axes.flat)[len(shown):]:
         ax.axis("off")
     style.headline(figure, headline(sweep, left_out))
     return figure
 
 
-def as_picture(x, y, values):
-    """The values as a matrix (y, x) over the distinct values of both parameters."""
+def as_picture(x, y, values, chosen=slice(None)):
+    """The values, all or those of chosen points, as a matrix (y, x) over the distinct values of both parameters."""
     picture = np.full((len(y.distinct()), len(x.distinct())), np.nan)
-    good = np.isfinite(x.values) & np.isfinite(y.values)
-    picture[np.searchsorted(y.distinct(), y.values[good]), np.searchsorted(x.distinct(), x.values[good])] = values[good]
+    at_x, at_y, values = (one[chosen] for one in (x.values, y.values, values))
+    good = np.isfinite(at_x) & np.isfinite(at_y)
+    picture[np.searchsorted(y.distinct(), at_y[good]), np.searchsorted(x.distinct(), at_x[good])] = values[good]
     return picture
 
 
@@ -190,7 +211,10 @@ def draw_samples(sweep):
         for ax in row:
             if log:
                 ax.set_yscale("log")
-            ax.set_ylim(bins[0], bins[-1])
+                style.plain_log_ticks(ax.yaxis)
+            low, high = np.log10(bins[[0, -1]]) if log else bins[[0, -1]]
+            margin = 0.04 * (high - low)  # or the outermost points are cut
+            ax.set_ylim(*(10.0 ** np.array([low - margin, high + margin]) if log else (low - margin, high + margin)))
         for ax, parameter in zip(row[1:], drawn):
             ax.set_xlabel(short(parameter) if parameter.unit == "1" else f"{short(parameter)}, {parameter.unit}")
     style.legend(strip, looks.values(), lines=False, points=True)

@@ -249,8 +249,9 @@ TEST(ReadSweep, RefusesMoreKeysToSampleThanThereAreDimensions) {
   }
   EXPECT_EQ(design_of(toml).sampled_dimensions, kMostDimensions);
   for (const std::string form : {"{ one_of = [1] }", "{ uniform = [0, 1] }"}) {
-    EXPECT_EQ(refusal(toml + "b = " + form + "\n"),
-              "s.toml:3670:1: error: sweep.b is one key too many to sample; there may be 3667");
+    EXPECT_EQ(
+        refusal(toml + "b = " + form + "\n"),
+        "s.toml:3670:5: error: sweep.b = {...}; is one key too many to sample; there may be 3667");
   }
 }
 
