@@ -310,6 +310,21 @@ class Drawing(WithFiles):
         drawn = (self.out / "text-curves.svg").read_text()
         self.assertIn("table, feed_forward", drawn)
 
+    def test_parameters_that_go_together_are_one_and_further_ones_have_maps_of_their_own(self):
+        path = self.sweep_of("three.h5", 'program.feed_override=[1.0,2.0],case.table.strategy.entry='
+                                         '["position_command","feed_forward"],together=[{'
+                                         'machine.axis.X.v_max=["20 m/min","30 m/min","40 m/min"],'
+                                         'machine.axis.Y.v_max=["10 m/min","20 m/min","30 m/min"]}]')
+        with results.open_result(path) as sweep:
+            self.assertEqual([(one.key, one.others) for one in sweep.varied(sampled=False)],
+                             [("program.feed_override", 0), ("case.table.strategy.entry", 0), ("machine.axis.X.v_max", 1)])
+        done = plot(path, "-o", self.out, "--format", "svg", "--figures", "maps,curves")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        maps, curves = ((self.out / f"three-{name}.svg").read_text() for name in ("maps", "curves"))
+        for text in ("table, position_command:", "table, feed_forward:", "machine.axis.X.v_max (and 1 more), m/min"):
+            self.assertIn(text, maps)
+        self.assertIn("table, feed_override 2, feed_forward", curves)
+
     def test_samples_give_clouds_and_histograms_and_say_what_failed(self):
         path = self.sweep_of("random.h5", 'samples={design="random",count=20},'
                                           'errors.imposed.EYX.harmonic.amplitude_um={normal=[100.0,10.0]},'
