@@ -88,10 +88,10 @@ def line(axes, x, y, look, **more):
     return axes.plot(x, y, **settings)[0]
 
 
-def panels(heights, size, columns=1, widths=None, **more):
+def panels(heights, size, columns=1, widths=None, legend_lines=1, **more):
     """A figure with a strip for the legend above its grid of axes: (figure, strip, axes[][])."""
     figure = plt.figure(figsize=size)
-    strip_height = 0.26 / size[1] * sum(heights)
+    strip_height = 0.26 * legend_lines / size[1] * sum(heights)
     grid = figure.add_gridspec(len(heights) + 1, columns, width_ratios=widths,
                                height_ratios=[strip_height, *heights])
     strip = figure.add_subplot(grid[0, :])
@@ -119,7 +119,7 @@ def face(look):
     return "white" if look.line == DASH else look.colour
 
 
-def legend(strip, looks, lines=True, points=False):
+def legend(strip, looks, lines=True, points=False, columns=6):
     """One legend for the whole figure in the strip above the axes, where it covers no data."""
     handles = []
     for look in looks:
@@ -128,7 +128,7 @@ def legend(strip, looks, lines=True, points=False):
                                   linestyle=look.line if with_line else "none",
                                   marker=look.marker if points else "",
                                   markerfacecolor=face(look), label=look.label))
-    box = strip.legend(handles=handles, loc="center left", bbox_to_anchor=(-0.01, 0.5), ncol=6,
+    box = strip.legend(handles=handles, loc="center left", bbox_to_anchor=(-0.01, 0.5), ncol=columns,
                        handlelength=2.6 if lines else 1.6, columnspacing=1.3, borderpad=0,
                        handletextpad=0.6)
     box.set_in_layout(False)

@@ -88,7 +88,11 @@ def draw_curves(sweep):
                         "".join(f"; {one.key}" for one in parameters if one is not x))
     shown, left_out = first_panels(questions(sweep))
     rows, columns = grid_of(len(shown))
-    figure, strip, axes = style.panels([1.0] * rows, (5.1 * columns, 3.6 * rows + 0.6), columns=columns)
+    width = 5.1 * columns
+    entries, across = legend_size(sweep, shown, groups, width)
+    lines = -(-entries // across)
+    figure, strip, axes = style.panels([1.0] * rows, (width, 3.6 * rows + 0.35 + 0.25 * lines), columns=columns,
+                                       legend_lines=lines)
     flat = [one for row in axes for one in row]
     looks = {}
     for ax, (question, cases) in zip(flat, shown):
@@ -118,9 +122,17 @@ def draw_curves(sweep):
             ax.axhline(0.0, color=style.BLACK, linewidth=0.8)
     for ax in flat[len(shown):]:
         ax.axis("off")
-    style.legend(strip, looks.values(), points=True)
+    style.legend(strip, looks.values(), points=True, columns=across)
     style.headline(figure, headline(sweep, left_out))
     return figure
+
+
+def legend_size(sweep, shown, groups, width):
+    """How many entries the legend of lines has, and how many of them stand beside each other in so many inches."""
+    cases = {column["case"] for _, columns in shown for column in columns}
+    labels = [f"{style.look_of(sweep, case).label}, {name}" for case in cases for name, _ in groups]
+    characters = 6 + max(map(len, labels))  # with the piece of line before it
+    return len(labels), max(1, int(11 * width / characters))
 
 
 def groups_of(parameters, points):
