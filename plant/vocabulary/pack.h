@@ -195,6 +195,9 @@ struct Pack {
   friend Pack abs(const Pack& a) {
     return each([&](std::size_t n) { return xsimd::abs(a.r[n]); });
   }
+  friend Pack sqrt(const Pack& a) {
+    return each([&](std::size_t n) { return xsimd::sqrt(a.r[n]); });
+  }
   /// The next whole number, ties to even.
   friend Pack nearbyint(const Pack& a) {
     return each([&](std::size_t n) { return xsimd::nearbyint(a.r[n]); });
