@@ -93,15 +93,17 @@ std::optional<Joints> inverse_fixed_rotary(const MachineChain& chain, const Eige
                                            const Joints& Q_rotary, const Eigen::Vector3d& p_ST) {
   Joints Q = Q_rotary;
   Q.head<kLinearJoints>().setZero();
-  const Eigen::Matrix3d J = linear_jacobian(chain, Q);
   // The tip is an affine function of the linear joints; the second round removes rounding.
+  const Eigen::Matrix3d J = linear_jacobian(chain, Q);
+  const Eigen::Vector3d way = p_WT - forward(chain, Q, p_ST).p_WT;
+  Eigen::Vector3d q = Eigen::Vector3d::Zero();
   for (int round = 0; round < 2; ++round) {
-    const LeastSquares step = least_squares(J, p_WT - forward(chain, Q, p_ST).p_WT);
+    const LeastSquares step = least_squares(J, way - J * q);
     if (step.rank < number_of_linear_axes(chain)) return std::nullopt;
-    Q.head<kLinearJoints>() += step.x;
+    q += step.x;
   }
-  const double miss = (p_WT - forward(chain, Q, p_ST).p_WT).norm();
-  if (!(miss <= kReachTolerance)) return std::nullopt;
+  if (!((way - J * q).norm() <= kReachTolerance)) return std::nullopt;
+  Q.head<kLinearJoints>() = q;
   return Q;
 }
 
