@@ -15,7 +15,6 @@
 namespace servomill::sim {
 namespace {
 
-constexpr double kMostRows = 1e6;  // of recorded signals
 constexpr double kRowBytes = 500.0;
 constexpr double kMemoryShare = 0.25;  // of the machine's memory
 

@@ -46,8 +46,10 @@ struct EndedPoint {
 };
 
 /// Rows of recorded signals, of all its runs together, that each of some threads may hold: a
-/// quarter of the machine's memory is theirs, up to 10^6 rows (some 500 MB) a thread.
+/// quarter of the machine's memory is theirs, up to kMostRows (some 2 GB) a thread: eight long
+/// points fill the lanes.
 double rows_at_once(unsigned threads);
+inline constexpr double kMostRows = 4e6;
 
 struct BatchControl {
   Keep keep = Keep::comparison;

@@ -159,7 +159,7 @@ TEST(RunBatch, HoldsNoMoreRowsAtOnceThanItMay) {
 }
 
 TEST(RowsAtOnce, ShareTheMemoryAmongTheThreads) {
-  EXPECT_LE(rows_at_once(1), 1e6);
+  EXPECT_LE(rows_at_once(1), kMostRows);
   EXPECT_GT(rows_at_once(1000), 0.0);
   EXPECT_DOUBLE_EQ(rows_at_once(100000), rows_at_once(200000) * 2.0);
 }
