@@ -509,8 +509,18 @@ OutputFile OutputFile::resumed(std::string path, bool force) {
 }
 
 OutputFile OutputFile::reopened(std::string path) {
-  if (std::rename(path.c_str(), (path + ".partial").c_str()) != 0) {
+  const std::string partial = path + ".partial";
+  // a link does not replace what another run has left or still writes
+  if (::link(path.c_str(), partial.c_str()) != 0) {
+    if (errno == EEXIST) {
+      throw InputError({partial}, "is there as well, of another run; use --force to overwrite");
+    }
     throw SystemError(path, "cannot be renamed", system_reason());
+  }
+  if (::unlink(path.c_str()) != 0) {
+    const std::string reason = system_reason();
+    ::unlink(partial.c_str());
+    throw SystemError(path, "cannot be renamed", reason);
   }
   return resumed(std::move(path), false);
 }

@@ -322,6 +322,17 @@ void SweepTable::take_over(const std::string& name, const Scenario& base) {
   take_statuses(file);
 }
 
+namespace {
+
+bool is_status(double value) { return value >= 0.0 && value < static_cast<double>(kPointStatuses); }
+// Instructions matter where there are numbers.
+bool has_numbers(double status) {
+  return status == static_cast<double>(PointStatus::done) ||
+         status == static_cast<double>(PointStatus::stopped);
+}
+
+}  // namespace
+
 void SweepTable::take_statuses(const InputFile& file) {
   counts_ = {statuses_.size()};
   for (std::size_t row = 0; row < statuses_.size(); row += kBlockRows) {
@@ -329,9 +340,8 @@ void SweepTable::take_statuses(const InputFile& file) {
     const auto values = file.values(kGroup + "/status", row, count);
     const auto levels = file.values(kGroup + "/simd_level", row, count);
     for (std::size_t i = 0; i < count; ++i) {
-      const bool known = values[i] >= 0.0 && values[i] < static_cast<double>(kPointStatuses);
-      set_status(row + i, static_cast<PointStatus>(known ? values[i] : 0.0));
-      if (known && values[i] != 0.0) add_level(levels_, levels[i]);
+      set_status(row + i, static_cast<PointStatus>(is_status(values[i]) ? values[i] : 0.0));
+      if (has_numbers(values[i])) add_level(levels_, levels[i]);
     }
   }
 }
@@ -429,10 +439,15 @@ void SweepTable::copy(const InputFile& from) {
     std::vector<std::uint64_t> rows;
     for (std::size_t i = 0; i < count; ++i) {
       if (statuses[i] == 0.0) continue;
+      if (!is_status(statuses[i])) {
+        throw InputError(
+            {from.path()},
+            fmt::format("point {} has the status {}, which there is not", numbers[i], statuses[i]));
+      }
       taken.push_back(i);
       rows.push_back(selection_.place(static_cast<std::uint64_t>(numbers[i]) - 1));
       set_status(rows.back(), static_cast<PointStatus>(statuses[i]));
-      add_level(levels_, levels[i]);
+      if (has_numbers(statuses[i])) add_level(levels_, levels[i]);
     }
     const auto take = [&](const std::string& name) {
       const auto all = from.values(kGroup + "/" + name, begin, count);

@@ -127,7 +127,8 @@ std::string points_by_status(const sim::StatusCounts& counts) {
 }
 
 void tell_mixed_levels(const std::string& path, const std::vector<SimdLevel>& levels) {
-  if (levels.size() < 2) return;
+  // those with fused multiply-add give the same bits
+  if (levels.size() < 2 || levels.front() != SimdLevel::baseline) return;
   std::vector<std::string_view> names;
   for (const SimdLevel level : levels) names.push_back(name_of(level));
   fmt::print(
@@ -181,10 +182,13 @@ int sweep_command(const Arguments& arguments) {
   control.stop = &stop;
   control.keep = signals.empty() ? sim::Keep::comparison : sim::Keep::series;
   control.progress = [&](double share) { bar.show(share); };
+  std::uint64_t still_without_signals = 0;
   control.batch_done = [&](std::vector<sim::SweepPoint>&& points) {
     left -= points.size();
     for (const sim::SweepPoint& point : points) {
-      if (!signals.empty()) sim::write_point_series(signals, sweep, point);
+      if (signals.empty()) continue;
+      sim::write_point_series(signals, sweep, point);
+      if (point.result.cases.empty()) ++still_without_signals;
     }
     // a row that is there stays: the same point gives the same bits
     const auto rows =
@@ -206,6 +210,10 @@ int sweep_command(const Arguments& arguments) {
   if (!table.is_complete()) table.commit();
   if (options.has("csv")) print_file(sim::csv_name(out));
   if (!quiet) fmt::print("{}; written to {}\n", points_by_status(table.counts()), out);
+  if (still_without_signals > 0) {
+    fmt::print(stderr, "{}: {} points gave no signals\n", signals, still_without_signals);
+    return kMachineStopped;
+  }
   return status_of(table.counts());
 }
 
