@@ -1,12 +1,14 @@
 #include "sim/batch.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <exception>
+#include <fstream>
 #include <optional>
 #include <utility>
 
@@ -174,9 +176,26 @@ std::string in_one_line(const InputError& error) {
   return fmt::format("{}", fmt::join(lines, "; "));
 }
 
-double rows_at_once(unsigned threads) {
-  const double memory =
+namespace {
+
+// Bytes that this process may use: the machine's, or what it is limited to (by the shell, or by the
+// control group of a container or a job).
+double memory_of_process() {
+  double memory =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+    memory = std::min(memory, static_cast<double>(limit.rlim_cur));
+  }
+  double group = 0.0;
+  if (std::ifstream("/sys/fs/cgroup/memory.max") >> group) memory = std::min(memory, group);
+  return memory;
+}
+
+}  // namespace
+
+double rows_at_once(unsigned threads) {
+  const double memory = memory_of_process();
   return std::min(kMostRows, kMemoryShare * memory / (kRowBytes * static_cast<double>(threads)));
 }
 

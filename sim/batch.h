@@ -54,7 +54,7 @@ inline constexpr double kMostRows = 4e6;
 struct BatchControl {
   Keep keep = Keep::comparison;
   PreparationCache* cache = nullptr;  // what preparing points shares, with other batches too
-  double rows = 1e6;                  // that may be held; one point is always run
+  double rows = kMostRows;            // that may be held; one point is always run
 };
 
 /// Prepares and runs all cases of all points on the calling thread, in lockstep where they share

@@ -130,7 +130,9 @@ class Interpreter::Machine {
   std::vector<Move> rest() {
     out_.erase(out_.begin(), out_.begin() + static_cast<std::ptrdiff_t>(given_));
     given_ = 0;
-    out_.reserve(out_.size() + lines_.count());
+    // of long programs most lines are moves; of many blank ones nothing should be held
+    constexpr std::size_t kMostReserved = 1U << 18;
+    out_.reserve(out_.size() + std::min(lines_.count(), kMostReserved));
     while (!ended_ && read_block()) {
     }
     return std::exchange(out_, {});
