@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <utility>
 
 #include "plant/vocabulary/units.h"
@@ -56,10 +57,6 @@ std::vector<plant::FeedDriveParams> params_of(const std::vector<const MachineSet
   }
   return params;
 }
-
-}  // namespace
-
-namespace {
 
 // A whole block is one register.
 void copy(const double* from, double* to, std::size_t count) {
@@ -142,7 +139,7 @@ void ServoAxes::describe(std::size_t l) {
                               supervision.encoder_difference < controllers::kNoLimit ||
                               machine.marks[j].has_value());
 
-  if (always_looked_at_.back() || !params_[l].is_linear()) watched_.push_back(l);
+  watched_ |= always_looked_at_.back() || !params_[l].is_linear();
   if (!machine.motor[j].is_plain() || !machine.screw[j].is_zero()) own_motor_reading_.push_back(l);
   if (!machine.scale[j].is_plain()) own_scale_reading_.push_back(l);
   if (machine.marks[j]) marked_.push_back(l);
@@ -211,6 +208,7 @@ void ServoAxes::displace(const Eigen::Vector3d& displacement, std::size_t run) {
 
 template <class What>
 void ServoAxes::each_stretch(std::size_t first, What what) const {
+  assert(first < runs());
   const std::size_t runs_here = std::min(kLaneWidth, runs() - first);
   for (const int j : joints_) {
     for (std::size_t n = 0; n < runs_here;) {
@@ -256,6 +254,11 @@ void ServoAxes::end(std::size_t run) {
   for (const int j : joints_) {
     const std::size_t l = lane(run, j);
     input_.blocks[block(l)].active[place(l)] = false;
+    // what it stands at is nobody's concern any more
+    for (const auto limit : {&ServoBlock::most_following_error, &ServoBlock::most_speed,
+                             &ServoBlock::most_motor_speed}) {
+      at(limit, l) = controllers::kNoLimit;
+    }
   }
 }
 

@@ -128,7 +128,7 @@ class ServoAxes {
   };
   std::optional<Fault> supervise(std::size_t run = 0);
   /// After the position loops: supervise() has nothing to say of any run.
-  bool all_well() const { return watched_.empty() && !suspects_; }
+  bool all_well() const { return !watched_ && !suspects_; }
 
   /// Visits what of one axis of the first run changes with time, as double&: drive, loops, reading.
   /// States that cannot move (no integral part, no current lag, ...) are left out.
@@ -212,7 +212,7 @@ class ServoAxes {
   std::vector<Functions> functions_;  // by lane
   // lanes that need more than the kernel does
   std::vector<bool> always_looked_at_;  // by supervision
-  std::vector<std::size_t> watched_;    // lanes of which the kernel cannot tell that all is well
+  bool watched_ = false;                // of some lane the kernel cannot tell that all is well
   bool suspects_ = false;               // some lane is suspect
   std::vector<std::size_t> own_motor_reading_, own_scale_reading_, marked_, with_backlash_,
       with_friction_;

@@ -361,7 +361,7 @@ Start<Arch> start_of(const DriveBlock& s, const DriveInputBlock& input, const Dr
   return {motion_of<Arch>(s), P(input.command), P(input.F) + P(c.F_load)};
 }
 
-// Through the zone of friction, lane for lane in sub-steps as ExactStep::advance chooses them;
+// Through the zone of friction, lane for lane in sub-steps much as ExactStep::advance chooses them;
 // those that want one of the same length make it together. Returns the lanes that need shorter
 // ones.
 template <class Arch, FrictionKind kind, bool same>

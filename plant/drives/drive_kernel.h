@@ -61,7 +61,7 @@ struct DriveConstants {
   LaneArray inverse_vs{}, inverse_v0{};    // s/m
   LaneArray sigma0{}, sigma1{};            // N/m, N s/m
   LaneArray inverse_mass{};                // 1/kg, of the slide
-  LaneArray tolerance{};                   // m, Resolution
+  LaneArray tolerance{};                   // m, of a sub-step: a share of Resolution's
   /// Bounds of regularised friction's derivatives by speed, the first to the third (N s/m, ...):
   /// everywhere, and where tanh has ended.
   std::array<LaneArray, 3> steep{}, gentle{};

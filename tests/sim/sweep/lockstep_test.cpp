@@ -41,6 +41,13 @@ const std::map<std::string, std::vector<std::string>> kOdd = {
     {"has friction",
      {"machine.axis.X.friction={model=\"set_valued\",coulomb=\"450 N\",breakaway=\"560 N\","
       "stribeck_velocity=\"2 mm/s\"}"}},
+    {"has regularised friction",
+     {"machine.axis.X.friction={model=\"regularised\",coulomb=\"450 N\",breakaway=\"560 N\","
+      "stribeck_velocity=\"2 mm/s\",regularisation_velocity=\"0.1 mm/s\"}"}},
+    {"has bristles",
+     {"machine.axis.X.friction={model=\"lugre\",coulomb=\"450 N\",breakaway=\"560 N\","
+      "stribeck_velocity=\"2 mm/s\",bristle_stiffness=\"45 N/um\",bristle_damping=\"30 kN "
+      "s/m\"}"}},
     {"is ideal", {"case[0].servo=\"ideal\""}},
 };
 
@@ -122,8 +129,8 @@ TEST(Lockstep, HasOddRunsThatAreOdd) {
   EXPECT_TRUE(std::any_of(last.begin(), last.end(), [](double x) { return !std::isfinite(x); }));
   EXPECT_EQ(odd.at("faults").status, PointStatus::stopped);
   EXPECT_NE(odd.at("faults").reason.find("following error beyond 0.001 mm"), std::string::npos);
-  for (const char* name :
-       {"ends early", "uses cvode", "has a winding", "has friction", "is ideal"}) {
+  for (const char* name : {"ends early", "uses cvode", "has a winding", "has friction",
+                           "has regularised friction", "has bristles", "is ideal"}) {
     EXPECT_EQ(odd.at(name).status, PointStatus::done) << name << ": " << odd.at(name).reason;
   }
   EXPECT_LT(series("ends early").rows(), series("has a winding").rows());
