@@ -7,175 +7,319 @@
 namespace servomill::plant {
 namespace {
 
-// What an axis adds by itself, g, to the deviation. u: lever.
-template <bool kAngles>
-SERVOMILL_INLINE Vector<Register> gain(const Fault& f, const Vector<Register>& u) {
-  const Vector<Register> w{f.w(0), f.w(1), f.w(2)};
-  if constexpr (kAngles) return turned_by(f, u, w);
-  return w;
-}
+// What the formulas leave out of a machine that does not have it.
+struct Parts {
+  Way way;
+  bool angles, levers, constants;
+};
+constexpr Parts kEverything = {Way::general, true, true, true};
 
-// The deviation behind an axis.
-template <bool kAngles, class N, class F>
-SERVOMILL_INLINE Vector<N> behind(const F& f, const Vector<N>& g, const Vector<N>& D) {
-  const Vector<N> sum{g.v[0] + D.v[0], g.v[1] + D.v[1], g.v[2] + D.v[2]};
-  if constexpr (kAngles) return turned_by(f, D, sum);
-  return sum;
-}
-
-// Numbers along X, Y, Z in the order of the axes.
+// Of half a turn b, with t2 = |b|^2: (R - 1) u = a b x (u + b x u).
 template <class N>
-SERVOMILL_INLINE Vector<N> in_order(const StraightProgram& program, const N* xyz) {
-  return {xyz[program.joint[0]], xyz[program.joint[1]], xyz[program.joint[2]]};
+SERVOMILL_INLINE N small_half_turn_factor(const N& t2) {
+  return fnma(t2, all<N>(8.0 / 6.0), all<N>(2.0));
+}
+constexpr double kSmallHalfTurn2 = 0.25 * kSmallTurn * kSmallTurn;
+SERVOMILL_INLINE bool are_small_half_turns(double t2) { return !(t2 >= kSmallHalfTurn2); }
+SERVOMILL_INLINE bool are_small_half_turns(const Register& t2) {
+  return !xsimd::any(Batch(t2) >= Batch(kSmallHalfTurn2));
+}
+SERVOMILL_INLINE double larger(double a, double b) { return a > b ? a : b; }
+SERVOMILL_INLINE Register larger(const Register& a, const Register& b) {
+  return xsimd::max(Batch(a), Batch(b));
+}
+
+// --- the formulas, of one pose (N: double) or of poses in lanes (N: Register) -------------------
+
+// Powers of q beyond the zeroth. values(power): coefficients along three directions.
+template <Parts has, class N, class F>
+SERVOMILL_INLINE Vector<N> slope(const StraightProgram& program, const N& q, F values) {
+  const std::size_t degree = has.way == Way::cubic ? 3 : program.functions.degree;
+  const auto first = values(degree);
+  Vector<N> p{all<N>(first[0]), all<N>(first[1]), all<N>(first[2])};
+  const auto add = [&](std::size_t power) SERVOMILL_INLINE_LAMBDA {
+    const auto c = values(power);
+    repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { p.v[i] = fma(p.v[i], q, all<N>(c[i])); });
+  };
+  if constexpr (has.way == Way::cubic) {
+    add(2);
+    add(1);
+  } else {
+    for (std::size_t power = degree - 1; power > 0; --power) add(power);
+  }
+  return p;
+}
+
+// The deviation D behind an axis. terms(component): of harmonics and tables. t2_max: of all axes so
+// far, squares of half their turns.
+template <Parts has, std::size_t axis, class N, class Terms>
+SERVOMILL_INLINE void pass(const StraightProgram& program, const N& q, const Vector<N>& P,
+                           Terms terms, Vector<N>& D, N& t2_max) {
+  const StraightPower* const powers = program.powers;
+  Vector<N> u = P;
+  if constexpr (has.levers) {
+    const StraightLever& lever = program.levers[axis];
+    repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
+      u.v[i] = u.v[i] + fms(q, all<N>(lever.slope[i]), all<N>(lever.centre[i]));
+    });
+  }
+  if constexpr (axis > 0) {
+    repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { u.v[i] = u.v[i] + D.v[i]; });
+  }
+  // q times slope, the constant, and D
+  const auto value = [&](const N& slope_i, double constant, std::size_t component,
+                         const N* before) SERVOMILL_INLINE_LAMBDA {
+    if constexpr (has.way == Way::cubic) {
+      if constexpr (!has.constants) {
+        return before != nullptr ? fma(slope_i, q, *before) : slope_i * q;
+      }
+      return fma(slope_i, q, before != nullptr ? *before + constant : all<N>(constant));
+    } else {
+      const N sum = terms(axis, component) + constant;
+      return fma(slope_i, q, before != nullptr ? *before + sum : sum);
+    }
+  };
+  const Vector<N> w = slope<has>(program, q, [&](std::size_t power) SERVOMILL_INLINE_LAMBDA {
+    return powers[power].shift[axis];
+  });
+  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
+    D.v[i] = value(w.v[i], powers[0].shift[axis][i], i, axis > 0 ? &D.v[i] : nullptr);
+  });
+  if constexpr (has.angles) {
+    Vector<N> b = slope<has>(program, q, [&](std::size_t power) SERVOMILL_INLINE_LAMBDA {
+      return powers[power].half_turn[axis];
+    });
+    repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
+      b.v[i] = value(b.v[i], powers[0].half_turn[axis][i], 3 + i, nullptr);
+    });
+    const N t2 = fma(b.v[2], b.v[2], fma(b.v[1], b.v[1], b.v[0] * b.v[0]));
+    t2_max = larger(t2_max, t2);
+    N a = small_half_turn_factor(t2);
+    if constexpr (has.way == Way::general) {
+      const auto exact = turn_factors(4.0 * t2);
+      a = exact.a / exact.h;  // of the b that follows
+      repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { b.v[i] = b.v[i] * (2.0 * exact.h); });
+    }
+    const Vector<N> m = plus_cross(u, b, u), c = cross(b, m);
+    repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { D.v[i] = fma(a, c.v[i], D.v[i]); });
+  }
+}
+
+struct NoTerms {};
+
+// False where this way does not lead to the end. P: the tip before it passes the first axis.
+template <Parts has, class N, class Terms>
+SERVOMILL_INLINE bool try_offset(const StraightProgram& program, const Vector<N>& q, Vector<N> P,
+                                 Terms terms, Vector<N>& D) {
+  N t2_max{};
+  pass<has, 0>(program, q.v[0], P, terms, D, t2_max);
+  P.v[0] = P.v[0] + q.v[0];
+  pass<has, 1>(program, q.v[1], P, terms, D, t2_max);
+  P.v[1] = P.v[1] + q.v[1];
+  pass<has, 2>(program, q.v[2], P, terms, D, t2_max);
+  return has.way == Way::general || !has.angles || are_small_half_turns(t2_max);
 }
 
 // --- one pose -----------------------------------------------------------------------------------
 
-// From the spindle to each axis and on its lever; lanes: axes from `first` on.
-template <std::size_t first>
-SERVOMILL_INLINE Vector<Register> levers(const StraightProgram& program, const double* tip,
-                                         const Vector<double>& q, const Register& own_q) {
-  Vector<Register> u;
-  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
-    const double p = tip[program.joint[i]];
-    u.v[i] = lanes_from([&](std::size_t lane)
-                            SERVOMILL_INLINE_LAMBDA { return first + lane > i ? p + q.v[i] : p; });
-    if (program.has_levers) {
-      u.v[i] = u.v[i] + fms(own_q, load(program.lever_slope[i], first),
-                            load(program.lever_centre[i], first));
-    }
-  });
-  return u;
+// Numbers along X, Y, Z in the order of the axes.
+SERVOMILL_INLINE Vector<double> in_order(const StraightProgram& program, const double* xyz) {
+  return {xyz[program.joint[0]], xyz[program.joint[1]], xyz[program.joint[2]]};
 }
 
-// Gains and turns of all axes, one of which is read where it lies.
-struct Gains {
-  LaneArray g_[3], a_[3], h_[3];
-};
-struct TurnInMemory {
-  const Gains& all;
-  std::size_t axis;
-
-  SERVOMILL_INLINE Vector<double> g() const {
-    return {all.g_[0][axis], all.g_[1][axis], all.g_[2][axis]};
-  }
-  SERVOMILL_INLINE const double& a(std::size_t i) const { return all.a_[i][axis]; }
-  SERVOMILL_INLINE const double& h(std::size_t i) const { return all.h_[i][axis]; }
-};
-
-// False where this way does not lead to the end.
-template <Way way, bool kAngles>
+template <Parts has>
 SERVOMILL_INLINE bool try_one(const StraightProgram& program, const VolumetricPower* tables,
                               const double* tip, const double* Q, double* out) {
-  const Vector<double> q = in_order(program, Q);
-  Gains gains;
-  const auto keep = [&](auto block, const Register& own_q, const Fault& f) SERVOMILL_INLINE_LAMBDA {
-    constexpr std::size_t first = block() * kRegister;
-    const auto g = gain<kAngles>(f, levers<first>(program, tip, q, own_q));
-    repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
-      store(g.v[i], gains.g_[i], first);
-      if constexpr (kAngles) {
-        store(f.a_[i], gains.a_[i], first);
-        store(f.h_[i], gains.h_[i], first);
-      }
-    });
-  };
-  if (!find_faults<way, kStraightAxes>(program.functions, kAngles, tables, q.v, keep)) return false;
-  const TurnInMemory first{gains, 0}, second{gains, 1}, third{gains, 2};
-  Vector<double> D = first.g();
-  D = behind<kAngles>(second, second.g(), D);
-  D = behind<kAngles>(third, third.g(), D);
-  for (std::size_t n = 0; n < 3; ++n) out[program.joint[n]] = D.v[n];
-  return true;
+  const Vector<double> q = in_order(program, Q), P = in_order(program, tip);
+  Vector<double> D;
+  bool is_done;
+  if constexpr (has.way == Way::cubic) {
+    is_done = try_offset<has>(program, q, P, NoTerms(), D);
+  } else {
+    VolumetricPower sums;
+    find_terms(program.functions, tables, q.v, sums);
+    const auto terms = [&](std::size_t axis, std::size_t component)
+                           SERVOMILL_INLINE_LAMBDA { return sums.e[component][axis]; };
+    is_done = try_offset<has>(program, q, P, terms, D);
+  }
+  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { out[program.joint[i]] = D.v[i]; });
+  return is_done;
 }
 
 [[gnu::noinline]] void one_in_general(const StraightProgram& program, const VolumetricPower* tables,
                                       const double* tip, const double* Q, double* out) {
-  try_one<Way::general, true>(program, tables, tip, Q, out);
+  try_one<kEverything>(program, tables, tip, Q, out);
 }
 
-template <Way way, bool kAngles>
+#ifdef __FMA__
+// The same with directions in lanes. The fourth lane is not used.
+using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
+
+SERVOMILL_INLINE Four fma4(const Four& a, const Four& b, const Four& c) {
+  return _mm256_fmadd_pd(a, b, c);
+}
+SERVOMILL_INLINE Four fnma4(const Four& a, const Four& b, const Four& c) {
+  return _mm256_fnmadd_pd(a, b, c);
+}
+SERVOMILL_INLINE Four load4(const double* from) { return _mm256_loadu_pd(from); }
+SERVOMILL_INLINE Four all4(double value) { return _mm256_set1_pd(value); }
+
+SERVOMILL_INLINE Four from_next(const Four& v) {  // y z x
+  return __builtin_shufflevector(v, v, 1, 2, 0, 3);
+}
+SERVOMILL_INLINE Four from_last(const Four& v) {  // z x y
+  return __builtin_shufflevector(v, v, 2, 0, 1, 3);
+}
+template <std::size_t lane>
+SERVOMILL_INLINE Four everywhere(const Four& v) {
+  return __builtin_shufflevector(v, v, lane, lane, lane, lane);
+}
+
+// Axes in lanes.
+SERVOMILL_INLINE Four squares(const Four& b0, const Four& b1, const Four& b2) {
+  const Four xz = __builtin_shufflevector(b0, b1, 0, 4, 2, 6);
+  const Four y01 = __builtin_shufflevector(b0, b1, 1, 5, 3, 7);
+  const Four x = __builtin_shufflevector(xz, b2, 0, 1, 4, 5);
+  const Four y =
+      __builtin_shufflevector(y01, __builtin_shufflevector(b2, b2, 1, 0, 3, 2), 0, 1, 4, 5);
+  const Four z = __builtin_shufflevector(xz, b2, 2, 3, 6, 7);
+  return fma4(z, z, fma4(y, y, x * x));
+}
+
+struct Cross {
+  Four from_next_, from_last_;
+  SERVOMILL_INLINE explicit Cross(const Four& b)
+      : from_next_(from_next(b)), from_last_(from_last(b)) {}
+  SERVOMILL_INLINE Four plus(const Four& v, const Four& u) const {
+    return fma4(from_next_, from_last(u), fnma4(from_last_, from_next(u), v));
+  }
+  SERVOMILL_INLINE Four of(const Four& u) const {
+    return fnma4(from_last_, from_next(u), from_next_ * from_last(u));
+  }
+};
+
+template <Parts has>
+SERVOMILL_INLINE Four cubic_value(const double* c3, const double* c2, const double* c1,
+                                  const double* c0, const Four& q, const Four* before) {
+  const Four slope = fma4(fma4(load4(c3), q, load4(c2)), q, load4(c1));
+  if constexpr (!has.constants) return before != nullptr ? fma4(slope, q, *before) : slope * q;
+  return fma4(slope, q, before != nullptr ? *before + load4(c0) : load4(c0));
+}
+
+template <Parts has>
+SERVOMILL_INLINE bool try_cubic(const StraightProgram& program, const double* tip, const double* Q,
+                                double* out) {
+  const StraightPower* const p = program.powers;
+  const std::size_t j0 = program.joint[0], j1 = program.joint[1], j2 = program.joint[2];
+  const Four q0 = all4(Q[j0]), q1 = all4(Q[j1]), q2 = all4(Q[j2]);
+  const auto half_turn = [&](auto axis, const Four& q) SERVOMILL_INLINE_LAMBDA {
+    return cubic_value<has>(p[3].half_turn[axis], p[2].half_turn[axis], p[1].half_turn[axis],
+                            p[0].half_turn[axis], q, nullptr);
+  };
+  const auto shift = [&](auto axis, const Four& q, const Four* D) SERVOMILL_INLINE_LAMBDA {
+    return cubic_value<has>(p[3].shift[axis], p[2].shift[axis], p[1].shift[axis], p[0].shift[axis],
+                            q, D);
+  };
+  const auto lever = [&](auto axis, const Four& q, const Four& P) SERVOMILL_INLINE_LAMBDA -> Four {
+    if constexpr (!has.levers) return P;
+    return P + _mm256_fmsub_pd(q, load4(program.levers[axis].slope),
+                               load4(program.levers[axis].centre));
+  };
+  constexpr std::integral_constant<std::size_t, 0> first;
+  constexpr std::integral_constant<std::size_t, 1> second;
+  constexpr std::integral_constant<std::size_t, 2> third;
+  const Four b0 = half_turn(first, q0), b1 = half_turn(second, q1), b2 = half_turn(third, q2);
+  const Four t2 = squares(b0, b1, b2);
+  const Four a = fnma4(t2, all4(8.0 / 6.0), all4(2.0));
+  const Cross c0(b0), c1(b1), c2(b2);
+
+  const Four P0 = {tip[j0], tip[j1], tip[j2], 0.0};
+  const Four u0 = lever(first, q0, P0);
+  const Four D0 = fma4(everywhere<0>(a), c0.of(c0.plus(u0, u0)), shift(first, q0, nullptr));
+
+  const Four P1 = P0 + __builtin_shufflevector(Four{}, q0, 4, 1, 2, 3);
+  const Four u1 = lever(second, q1, P1) + D0;
+  const Four D1 = fma4(everywhere<1>(a), c1.of(c1.plus(u1, u1)), shift(second, q1, &D0));
+
+  const Four P2 = P1 + __builtin_shufflevector(Four{}, q1, 0, 5, 2, 3);
+  const Four u2 = lever(third, q2, P2) + D1;
+  const Four D = fma4(everywhere<2>(a), c2.of(c2.plus(u2, u2)), shift(third, q2, &D1));
+  out[j0] = D[0];
+  out[j1] = D[1];
+  out[j2] = D[2];
+  return _mm256_testz_pd(_mm256_cmp_pd(t2, all4(0.25 * kSmallTurn * kSmallTurn), _CMP_GE_OQ),
+                         all4(-1.0)) != 0;
+}
+#endif
+
+template <Parts has>
 void one(const StraightProgram& program, const VolumetricPower* tables, const double* tip,
          const double* Q, double* out) {
-  if (!try_one<way, kAngles>(program, tables, tip, Q, out)) {
-    one_in_general(program, tables, tip, Q, out);
+  bool is_done;
+#ifdef __FMA__
+  if constexpr (has.way == Way::cubic && has.angles) {
+    is_done = try_cubic<has>(program, tip, Q, out);
+  } else
+#endif
+  {
+    is_done = try_one<has>(program, tables, tip, Q, out);
   }
+  if (!is_done) one_in_general(program, tables, tip, Q, out);
 }
 
 // --- many poses in lanes ------------------------------------------------------------------------
 
-// Some of eight poses: the lanes from `first` on of the data, and X, Y, Z of their joints.
-struct Poses {
-  const StraightData* data;
-  const double* tip;
-  std::size_t first;
-  Register Q[3];
-};
-
-SERVOMILL_INLINE Vector<Register> tip_of(const StraightProgram& program, const Poses& poses) {
-  Vector<Register> tip;
-  for (std::size_t n = 0; n < 3; ++n) {
-    const std::size_t i = program.joint[n];
-    tip.v[n] =
-        poses.data != nullptr ? load(poses.data->tip[i], poses.first) : all<Register>(poses.tip[i]);
-  }
-  return tip;
-}
-
-template <Way way, bool kAngles>
-SERVOMILL_INLINE bool try_many(const StraightProgram& program, const Poses& poses,
-                               Register (&out)[3]) {
-  const VolumetricFunctions& functions = program.functions;
-  const Vector<Register> q = in_order(program, poses.Q);
-  Register sums[kStraightAxes][kErrorComponents];
-  if constexpr (way != Way::cubic) {
-    const VolumetricPower* const tables = poses.data != nullptr ? poses.data->tables : nullptr;
-    if (functions.has_terms) find_terms(functions, tables, poses.first, q.v, sums);
-  }
-  Vector<Register> P = tip_of(program, poses), D;
-  Register t2_max{};
-  repeat<kStraightAxes>([&](auto axis) SERVOMILL_INLINE_LAMBDA {
-    const auto coefficient = [&](std::size_t power, std::size_t component) SERVOMILL_INLINE_LAMBDA {
-      return all<Register>(functions.polynomial[power].e[component][axis]);
-    };
-    const auto terms = [&](std::size_t component)
-                           SERVOMILL_INLINE_LAMBDA { return sums[axis][component]; };
-    Fault f;
-    find_fault<way>(functions, kAngles, q.v[axis], coefficient, terms, f, t2_max);
-    Vector<Register> u = P;
-    if (program.has_levers) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        u.v[i] = u.v[i] + fms(q.v[axis], all<Register>(program.lever_slope[i][axis]),
-                              all<Register>(program.lever_centre[i][axis]));
-      }
-    }
-    const Vector<Register> g = gain<kAngles>(f, u);
-    D = axis == 0 ? g : behind<kAngles>(f, g, D);
-    P.v[axis] = P.v[axis] + q.v[axis];
+// Some of eight poses: the lanes from `first` on of the data. q, D: in the order of the axes.
+template <Parts has>
+SERVOMILL_INLINE bool try_many(const StraightProgram& program, const StraightData* data,
+                               const double* tip, std::size_t first, const Vector<Register>& q,
+                               Vector<Register>& D) {
+  Vector<Register> P;
+  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
+    const std::size_t j = program.joint[i];
+    P.v[i] = data != nullptr ? load(data->tip[j], first) : all<Register>(tip[j]);
   });
-  for (std::size_t n = 0; n < 3; ++n) out[program.joint[n]] = D.v[n];
-  return way == Way::general || !kAngles || are_small_turns(t2_max);
+  if constexpr (has.way == Way::cubic) {
+    return try_offset<has>(program, q, P, NoTerms(), D);
+  } else {
+    Register sums[kStraightAxes][kErrorComponents];
+    find_terms(program.functions, data != nullptr ? data->tables : nullptr, first, q.v, sums);
+    const auto terms =
+        [&](std::size_t axis, std::size_t component)
+            SERVOMILL_INLINE_LAMBDA -> const Register& { return sums[axis][component]; };
+    return try_offset<has>(program, q, P, terms, D);
+  }
 }
 
-[[gnu::noinline]] void many_in_general(const StraightProgram& program, const Poses& poses,
-                                       Register (&out)[3]) {
-  try_many<Way::general, true>(program, poses, out);
+// Writes what it finds in any case: without that the compiler would put off half of the work until
+// it knows the answer.
+template <Parts has>
+SERVOMILL_INLINE bool try_lanes(const StraightProgram& program, const StraightData* data,
+                                const double* tip, std::size_t first, const LaneArray* Q,
+                                LaneArray* out) {
+  const std::size_t j0 = program.joint[0], j1 = program.joint[1], j2 = program.joint[2];
+  const Vector<Register> q{load(Q[j0], first), load(Q[j1], first), load(Q[j2], first)};
+  Vector<Register> D;
+  const bool is_done = try_many<has>(program, data, tip, first, q, D);
+  store(D.v[0], out[j0], first);
+  store(D.v[1], out[j1], first);
+  store(D.v[2], out[j2], first);
+  return is_done;
 }
 
-template <Way way, bool kAngles>
-SERVOMILL_INLINE void find_offsets(const StraightProgram& program, const Poses& poses,
-                                   Register (&out)[3]) {
-  if (!try_many<way, kAngles>(program, poses, out)) many_in_general(program, poses, out);
+[[gnu::noinline]] void lanes_in_general(const StraightProgram& program, const StraightData* data,
+                                        const double* tip, std::size_t first, const LaneArray* Q,
+                                        LaneArray* out) {
+  try_lanes<kEverything>(program, data, tip, first, Q, out);
 }
 
-template <Way way, bool kAngles>
+template <Parts has>
 void lanes(const StraightProgram& program, const StraightData* data, const double* tip,
            const LaneArray* Q, LaneArray* out) {
   for (std::size_t first = 0; first < kLaneWidth; first += kRegister) {
-    const Poses poses{data, tip, first, {load(Q[0], first), load(Q[1], first), load(Q[2], first)}};
-    Register offset[3];
-    find_offsets<way, kAngles>(program, poses, offset);
-    repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { store(offset[i], out[i], first); });
+    if (!try_lanes<has>(program, data, tip, first, Q, out)) {
+      lanes_in_general(program, data, tip, first, Q, out);
+    }
   }
 }
 
@@ -193,18 +337,16 @@ SERVOMILL_INLINE Pose pose_at(const double* Q) {
 }
 #if defined(__AVX512F__)
 SERVOMILL_INLINE void take_poses(const double* Q, Register (&xyz)[3]) {
-  const auto two = [Q](std::size_t n) {  // poses n and n + 2
-    return __builtin_shufflevector(pose_at(Q + kMachineJoints * n),
-                                   pose_at(Q + kMachineJoints * (n + 2)), 0, 1, 2, 3, 4, 5, 6, 7);
-  };
-  const Register p02 = two(0), p13 = two(1), p46 = two(4), p57 = two(5);
-  const Register xz_low = __builtin_shufflevector(p02, p13, 0, 8, 2, 10, 4, 12, 6, 14);
-  const Register xz_high = __builtin_shufflevector(p46, p57, 0, 8, 2, 10, 4, 12, 6, 14);
-  const Register y_low = __builtin_shufflevector(p02, p13, 1, 9, 3, 11, 5, 13, 7, 15);
-  const Register y_high = __builtin_shufflevector(p46, p57, 1, 9, 3, 11, 5, 13, 7, 15);
-  xyz[0] = __builtin_shufflevector(xz_low, xz_high, 0, 1, 4, 5, 8, 9, 12, 13);
-  xyz[1] = __builtin_shufflevector(y_low, y_high, 0, 1, 4, 5, 8, 9, 12, 13);
-  xyz[2] = __builtin_shufflevector(xz_low, xz_high, 2, 3, 6, 7, 10, 11, 14, 15);
+  // X Y Z - - X Y Z: two poses, without what lies behind the last
+  const auto two = [Q](std::size_t n) { return load(Q + kMachineJoints * n); };
+  const Register p01 = two(0), p23 = two(2), p45 = two(4), p67 = two(6);
+  const Register xy_low = __builtin_shufflevector(p01, p23, 0, 5, 8, 13, 1, 6, 9, 14);
+  const Register xy_high = __builtin_shufflevector(p45, p67, 0, 5, 8, 13, 1, 6, 9, 14);
+  const Register z_low = __builtin_shufflevector(p01, p23, 2, 7, 10, 15, 2, 7, 10, 15);
+  const Register z_high = __builtin_shufflevector(p45, p67, 2, 7, 10, 15, 2, 7, 10, 15);
+  xyz[0] = __builtin_shufflevector(xy_low, xy_high, 0, 1, 2, 3, 8, 9, 10, 11);
+  xyz[1] = __builtin_shufflevector(xy_low, xy_high, 4, 5, 6, 7, 12, 13, 14, 15);
+  xyz[2] = __builtin_shufflevector(z_low, z_high, 0, 1, 2, 3, 12, 13, 14, 15);
 }
 #else
 SERVOMILL_INLINE void take_poses(const double* Q, Register (&xyz)[3]) {
@@ -246,34 +388,66 @@ SERVOMILL_INLINE void put_poses(const Register (&xyz)[3], double* out,
   });
 }
 
-template <Way way, bool kAngles>
+template <Parts has>
+SERVOMILL_INLINE bool try_poses(const StraightProgram& program, const StraightData* data,
+                                const double* tip, std::size_t first, const double* Q,
+                                double* out) {
+  const std::size_t j0 = program.joint[0], j1 = program.joint[1], j2 = program.joint[2];
+  Register xyz[3];
+  take_poses(Q, xyz);
+  // through memory, where the order of the axes is only one of places
+  alignas(64) double in_lanes[3][kRegister];
+  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { store(xyz[i], in_lanes[i]); });
+  const Vector<Register> q{load(in_lanes[j0]), load(in_lanes[j1]), load(in_lanes[j2])};
+  Vector<Register> D;
+  const bool is_done = try_many<has>(program, data, tip, first, q, D);
+  store(D.v[0], in_lanes[j0]);
+  store(D.v[1], in_lanes[j1]);
+  store(D.v[2], in_lanes[j2]);
+  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { xyz[i] = load(in_lanes[i]); });
+  put_poses(xyz, out, std::make_index_sequence<kRegister>());
+  return is_done;
+}
+
+[[gnu::noinline]] void poses_in_general(const StraightProgram& program, const StraightData* data,
+                                        const double* tip, std::size_t first, const double* Q,
+                                        double* out) {
+  try_poses<kEverything>(program, data, tip, first, Q, out);
+}
+
+template <Parts has>
 void many(const StraightProgram& program, const StraightData* data, const double* tip,
           const double* Q, std::size_t blocks, double* out) {
   for (std::size_t n = 0; n < blocks * kLaneWidth; n += kRegister) {
-    Poses poses;
-    poses.data = data;
-    poses.tip = tip;
-    poses.first = n % kLaneWidth;
-    take_poses(Q, poses.Q);
-    Register offset[3];
-    find_offsets<way, kAngles>(program, poses, offset);
-    put_poses(offset, out, std::make_index_sequence<kRegister>());
+    const std::size_t first = n % kLaneWidth;
+    if (!try_poses<has>(program, data, tip, first, Q, out)) {
+      poses_in_general(program, data, tip, first, Q, out);
+    }
     Q += kMachineJoints * kRegister;
     out += 3 * kRegister;
   }
 }
 
-template <Way way, bool kAngles>
+template <Parts has>
 StraightKernel kernel() {
-  return {&one<way, kAngles>, &many<way, kAngles>, &lanes<way, kAngles>};
+  return {&one<has>, &many<has>, &lanes<has>};
 }
 
 }  // namespace
 
 template <>
-StraightKernel make_straight_kernel<SERVOMILL_LEVEL>(const VolumetricFunctions& of) {
-  if (of.is_cubic) return of.has_angles ? kernel<Way::cubic, true>() : kernel<Way::cubic, false>();
-  return of.has_angles ? kernel<Way::small, true>() : kernel<Way::small, false>();
+StraightKernel make_straight_kernel<SERVOMILL_LEVEL>(const StraightProgram& of) {
+  if (!of.functions.is_cubic) {
+    return of.functions.has_angles ? kernel<Parts{Way::small, true, true, true}>()
+                                   : kernel<Parts{Way::small, false, false, true}>();
+  }
+  if (!of.functions.has_angles) return kernel<Parts{Way::cubic, false, false, true}>();
+  if (of.has_levers) {
+    return of.has_constants ? kernel<Parts{Way::cubic, true, true, true}>()
+                            : kernel<Parts{Way::cubic, true, true, false}>();
+  }
+  return of.has_constants ? kernel<Parts{Way::cubic, true, false, true}>()
+                          : kernel<Parts{Way::cubic, true, false, false}>();
 }
 
 }  // namespace servomill::plant

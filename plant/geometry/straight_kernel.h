@@ -1,12 +1,16 @@
 /// The offset of a straight machine, the rule among machines: X, Y and Z follow each other in any
 /// order and on any side of the bed, and no other axis has errors. The tool travels through the
 /// three, from the spindle to the workpiece; each shifts the ideal tip P by q along its direction
-/// and adds to the deviation D of the true tip. With the shift w and the turn R of its errors
+/// and adds to the deviation D of the true tip. With the shift w and the turn R of its errors, and
+/// the lever u from where the axis turns the tool to the true tip,
 ///
-///     g = w + (R - 1)(P + slope q - c)     D <- g + D + (R - 1) D     P <- P + q
+///     u = P + slope q - c + D     D <- w + D + (R - 1) u     P <- P + q
+///     (R - 1) u = a b x (u + b x u),  a = 2 - (4/3) |b|^2
 ///
-/// where g does not wait for the axes before. What is left behind the third axis is the offset:
-/// ideal turns behind it are undone at once, ideal turns before it only place the tip.
+/// where b is half the vector of angles, as the functions hold it: that is exact to 1e-16 for turns
+/// below kSmallTurn. Larger ones go the same way with b tan(t/2)/(t/2) instead of b. What is left
+/// behind the third axis is the offset: ideal turns behind it are undone at once, ideal turns
+/// before it only place the tip.
 ///
 /// Directions are renamed in the order in which the tool passes their axes: axis 0 moves along
 /// direction 0. Where that mirrors X Y Z, all angles are counted with the opposite sign.
@@ -18,12 +22,25 @@ namespace servomill::plant {
 
 inline constexpr std::size_t kStraightAxes = 3;
 
+/// The coefficients of a power of q: [axis][direction]. The fourth is 0.
+struct StraightPower {
+  double shift[kStraightAxes][4];      // m
+  double half_turn[kStraightAxes][4];  // rad, of half the angles
+};
+
+/// Where the lever of an axis begins: [direction], the fourth 0.
+struct StraightLever {
+  double slope[4], centre[4];  // m/m, m
+};
+
 /// Points into memory of its owner.
 struct StraightProgram {
   std::uint8_t joint[kStraightAxes];  // place in Joints and direction of axes 0, 1, 2
   bool has_levers;                    // slope or c is not 0 for some axis
-  LaneArray lever_slope[kStraightAxes], lever_centre[kStraightAxes];  // m/m, m; lanes: axes
-  VolumetricFunctions functions;
+  bool has_constants;                 // some error is not 0 at q = 0
+  const StraightPower* powers;        // c0, c1, ...
+  StraightLever levers[kStraightAxes];
+  VolumetricFunctions functions;  // with half the angles
 };
 
 /// What the kernel does not compute of eight poses (lanes: poses): values of tables, and the tip
@@ -35,8 +52,8 @@ struct StraightData {
 
 /// Q: joints of one pose (5), of `blocks` times eight poses one behind the other, or of eight in
 /// lanes ([5]). out: offset along X, Y, Z (m), in the same form.
-/// tables, tip: of one pose; no tables: null. data: of eight poses, for one block only; null where
-/// there are no tables and the tip is that of all.
+/// It must not overlap Q. tables, tip: of one pose; no tables: null. data: of eight poses, for one
+/// block only; null where there are no tables and the tip is that of all.
 struct StraightKernel {
   void (*one)(const StraightProgram&, const VolumetricPower* tables, const double* tip,
               const double* Q, double* out);
@@ -46,17 +63,17 @@ struct StraightKernel {
                 const LaneArray* Q, LaneArray* out);
 };
 
-/// For programs with these functions.
+/// For programs that have what this one has.
 template <SimdLevel level>
-StraightKernel make_straight_kernel(const VolumetricFunctions& of);
+StraightKernel make_straight_kernel(const StraightProgram& of);
 
 template <>
-StraightKernel make_straight_kernel<SimdLevel::baseline>(const VolumetricFunctions& of);
+StraightKernel make_straight_kernel<SimdLevel::baseline>(const StraightProgram& of);
 #ifdef SERVOMILL_X86
 template <>
-StraightKernel make_straight_kernel<SimdLevel::avx2>(const VolumetricFunctions& of);
+StraightKernel make_straight_kernel<SimdLevel::avx2>(const StraightProgram& of);
 template <>
-StraightKernel make_straight_kernel<SimdLevel::avx512>(const VolumetricFunctions& of);
+StraightKernel make_straight_kernel<SimdLevel::avx512>(const StraightProgram& of);
 #endif
 
 }  // namespace servomill::plant

@@ -32,13 +32,8 @@ VolumetricKernel kernel_of(SimdLevel level) {
   return kernel;
 }
 
-StraightKernel straight_kernel_of(const VolumetricFunctions& functions, SimdLevel level) {
-  const auto make = [&](SimdLevel of) {
-    return at_simd_level(of, [&]<SimdLevel l>() { return make_straight_kernel<l>(functions); });
-  };
-  StraightKernel kernel = make(level);
-  if (level == SimdLevel::avx512) kernel.one = make(SimdLevel::avx2).one;  // as above
-  return kernel;
+StraightKernel straight_kernel_of(const StraightProgram& program, SimdLevel level) {
+  return at_simd_level(level, [&]<SimdLevel l>() { return make_straight_kernel<l>(program); });
 }
 
 Vector3d turn_of_location(const ChainAxis& axis, const ErrorModel& errors) {
@@ -205,7 +200,7 @@ VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const Erro
   program_.number_of_steps = steps_.size();
   program_.functions = functions_.finish();
   find_straight_way(chain, errors);
-  if (is_straight_) straight_kernel_ = straight_kernel_of(straight_.functions, level);
+  if (is_straight_) straight_kernel_ = straight_kernel_of(straight_, level);
 }
 
 void VolumetricEvaluation::add_steps_of(const ChainAxis& axis, const ErrorModel& errors) {
@@ -270,6 +265,7 @@ void VolumetricEvaluation::find_straight_way(const MachineChain& chain, const Er
   for (std::size_t n = 0; n < kStraightAxes; ++n) add_straight_axis(n, chain, errors);
   straight_.functions = straight_functions_.finish();
   straight_.functions.axes = kStraightAxes;
+  lay_out_straight_powers();
   is_plain_ = tip_turns_ == 0 && !straight_functions_.has_tables();
 }
 
@@ -281,13 +277,30 @@ void VolumetricEvaluation::add_straight_axis(std::size_t n, const MachineChain& 
   const auto functions = functions_of(chain.at(kAllAxes[step.direction]), errors);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = order[i];
-    straight_.lever_slope[i][n] = step.lever_slope[k];
-    straight_.lever_centre[i][n] = step.centre[k];
+    straight_.levers[n].slope[i] = step.lever_slope[k];
+    straight_.levers[n].centre[i] = step.centre[k];
     straight_functions_.add(n, i, step.joint, functions[k]);
     straight_functions_.add(n, 3 + i, step.joint,
-                            scaled(functions[3 + k], is_mirrored ? -1.0 : 1.0));
+                            scaled(functions[3 + k], is_mirrored ? -0.5 : 0.5));
   }
   straight_.has_levers = straight_.has_levers || step.has_lever;
+}
+
+void VolumetricEvaluation::lay_out_straight_powers() {
+  for (std::size_t power = 0; power <= straight_.functions.degree; ++power) {
+    StraightPower& p = straight_powers_.emplace_back(StraightPower{});
+    const VolumetricPower& from = straight_.functions.polynomial[power];
+    for (std::size_t axis = 0; axis < kStraightAxes; ++axis) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        p.shift[axis][i] = from.e[i][axis];
+        p.half_turn[axis][i] = from.e[3 + i][axis];
+        if (power > 0) continue;
+        straight_.has_constants =
+            straight_.has_constants || p.shift[axis][i] != 0.0 || p.half_turn[axis][i] != 0.0;
+      }
+    }
+  }
+  straight_.powers = straight_powers_.data();
 }
 
 // --- evaluation ---------------------------------------------------------------------------------

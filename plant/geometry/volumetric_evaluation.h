@@ -105,6 +105,7 @@ class VolumetricEvaluation {
   void find_ends();
   void find_straight_way(const MachineChain& chain, const ErrorModel& errors);
   void add_straight_axis(std::size_t n, const MachineChain& chain, const ErrorModel& errors);
+  void lay_out_straight_powers();
 
   void one(VolumetricKernel::One call, std::size_t turned, const Joints& Q,
            const Eigen::Vector3d& p_ST, double* out) const {
@@ -137,7 +138,8 @@ class VolumetricEvaluation {
   StraightKernel straight_kernel_{};
   StraightProgram straight_{};
   PreparedFunctions straight_functions_;  // axes counted as the tool passes them
-  std::size_t tip_turns_ = 0;             // rotary axes before the linear ones
+  std::vector<StraightPower> straight_powers_;
+  std::size_t tip_turns_ = 0;  // rotary axes before the linear ones
 };
 
 }  // namespace servomill::plant

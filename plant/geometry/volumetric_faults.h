@@ -13,25 +13,31 @@ namespace {  // NOLINT: one copy for each instruction set
 // --- the turn of a vector of angles -------------------------------------------------------------
 
 // Rot(e) v = v + a e x (v + h e x v), with h = tan(t/2)/t, a = sin t/t for t = |e|.
+template <class N>
 struct TurnFactors {
-  Register a, h;
+  N a, h;
 };
 
-SERVOMILL_INLINE TurnFactors small_turn_factors(const Register& t2) {
-  return {fnma(t2, all<Register>(1.0 / 6.0), all<Register>(1.0)),
-          fma(t2, all<Register>(1.0 / 24.0), all<Register>(0.5))};
+template <class N>
+SERVOMILL_INLINE TurnFactors<N> small_turn_factors(const N& t2) {
+  return {fnma(t2, all<N>(1.0 / 6.0), all<N>(1.0)), all<N>(0.5)};
 }
 
 // a is computed from h: what belongs together turns by some angle, even where h is large.
-[[gnu::noinline]] inline TurnFactors turn_factors(const Register& t2) {
-  TurnFactors f = small_turn_factors(t2);
+[[gnu::noinline]] inline TurnFactors<double> turn_factors(double t2) {
+  if (t2 < kSmallTurn * kSmallTurn) return small_turn_factors(t2);
+  const double t = std::sqrt(t2), quarter = sine(0.25 * t);
+  const double cosine = fnma(2.0 * quarter, quarter, 1.0);
+  const double tangent = sine(0.5 * t) / (cosine == 0.0 ? 0x1p-54 : cosine);
+  const double h = tangent / t;
+  return {2.0 * h / fma(tangent, tangent, 1.0), h};
+}
+[[gnu::noinline]] inline TurnFactors<Register> turn_factors(const Register& t2) {
+  TurnFactors<Register> f;
   for (std::size_t n = 0; n < kRegister; ++n) {
-    if (t2[n] < kSmallTurn * kSmallTurn) continue;
-    const double t = std::sqrt(t2[n]), quarter = sine(0.25 * t);
-    const double cosine = fnma(2.0 * quarter, quarter, 1.0);
-    const double tangent = sine(0.5 * t) / (cosine == 0.0 ? 0x1p-54 : cosine);
-    f.h[n] = tangent / t;
-    f.a[n] = 2.0 * f.h[n] / fma(tangent, tangent, 1.0);
+    const auto [a, h] = turn_factors(t2[n]);
+    f.a[n] = a;
+    f.h[n] = h;
   }
   return f;
 }

@@ -25,8 +25,8 @@ namespace servomill::plant {
 inline constexpr std::size_t kMachineJoints = 5;
 inline constexpr std::size_t kErrorComponents = 6;  // along X, Y, Z, about A, B, C
 
-/// Turns below this use the series of their sine and cosine, whose next term is below 1e-17.
-inline constexpr double kSmallTurn = 1e-3;  // rad
+/// Turns below this use the series of their sine and cosine, whose next term is below 1e-16.
+inline constexpr double kSmallTurn = 2e-4;  // rad
 
 enum class VolumetricMove : std::uint8_t {
   shift,         // an ideal linear axis

@@ -140,7 +140,7 @@ std::vector<ErrorCase> error_cases(Uniform& random) {
   std::vector<ErrorCase> all;
   all.push_back({"cubic", cubics(random, 1e-5)});
   // some lanes turn by less than kSmallTurn, some by more
-  all.push_back({"large turns", cubics(random, 7e-4)});
+  all.push_back({"large turns", cubics(random, 1.5e-4)});
   ErrorModel mixed = random_errors(random, 1e-5);
   for (std::size_t axis = 0; axis < kAxisWords; ++axis) {
     ErrorFunction& f = mixed.components[axis][axis];
@@ -154,7 +154,7 @@ std::vector<ErrorCase> error_cases(Uniform& random) {
   all.push_back({"straightness", straightness});
   // those of linear axes only: cubics, some turns too large for small ones, and all terms
   all.push_back({"linear axes, cubic", of_linear_axes(cubics(random, 1e-5))});
-  all.push_back({"linear axes, large turns", of_linear_axes(cubics(random, 7e-4))});
+  all.push_back({"linear axes, large turns", of_linear_axes(cubics(random, 1.5e-4))});
   all.push_back({"linear axes, mixed", of_linear_axes(mixed)});
   all.push_back({"linear axes, mixed and large turns", of_linear_axes(scaled(mixed, 60.0))});
   ErrorModel harmonics;  // more waves than a register holds
