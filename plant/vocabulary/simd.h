@@ -12,8 +12,9 @@ enum class SimdLevel { baseline, avx2, avx512 };
 inline constexpr std::array kSimdLevels = {SimdLevel::baseline, SimdLevel::avx2, SimdLevel::avx512};
 
 /// The best level that this machine and this binary have, or the lower one that the environment
-/// variable SERVOMILL_SIMD names (baseline, avx2, avx512). Decided once, at the first call. Levels
-/// differ in the last bits of results: baseline has no fused multiplication and addition.
+/// variable SERVOMILL_SIMD names (baseline, avx2, avx512). Decided once, at the first call. The
+/// last bits of results are those of the others, or of baseline: it has no fused multiplication and
+/// addition.
 /// @throws InputError if the variable names none of them
 SimdLevel simd_level();
 

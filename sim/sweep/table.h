@@ -35,8 +35,7 @@ struct TableColumn {
 };
 
 /// What the table of a scenario's sweep has beside point, status, reason and the instructions that
-/// computed it: a column for each key
-/// of the sweep, then one for each line of the comparison.
+/// computed it: a column for each key of the sweep, then one for each line of the comparison.
 std::vector<TableColumn> columns_of(const Scenario& base);
 
 /// The same of a file that is there. @throws InputError
@@ -73,7 +72,7 @@ class SweepTable {
   void commit();
   std::string partial_path() const { return path_ + ".partial"; }
   /// Levels of instructions that points were computed with, in rising order. Where there are
-  /// several, results differ in their last bits.
+  /// baseline among others, results differ in their last bits.
   std::vector<SimdLevel> simd_levels() const;
 
  private:

@@ -4,6 +4,7 @@ sweep.py SERVOMILL"""
 import csv
 import json
 import os
+import pathlib
 import resource
 import shutil
 import signal
@@ -278,6 +279,18 @@ class Resume(Sweeps):
         self.assertTrue(said.startswith("out.h5.partial: 39 of 40 points are there already\n"), said)
         self.expect_same_table("out.h5", "whole.h5")
         self.assertIn("holds all 40 points already", servomill(*same, "--retry-failed", status=1).stdout)
+
+    def test_retries_nothing_beside_another_sweep_that_was_stopped(self):
+        self.sweep("out.h5")
+        with h5py.File(self.path("out.h5"), "r+") as file:
+            file["sweep/status"][4] = 4
+        pathlib.Path(self.path("out.h5.partial")).write_text("of another run")
+        same = ["sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS]
+        refused = servomill(*same, "--retry-failed", status=2)
+        self.assertIn("out.h5.partial: error: is there as well, of another run; use --force to overwrite", refused.stderr)
+        self.assertEqual(pathlib.Path(self.path("out.h5.partial")).read_text(), "of another run")
+        with h5py.File(self.path("out.h5")) as file:
+            self.assertEqual(file["sweep/status"][4], 4)
 
 
 class Merge(Sweeps):

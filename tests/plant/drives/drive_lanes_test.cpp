@@ -105,6 +105,20 @@ TEST(DriveLanes, MoveTheSameInEveryPlace) {
   for (std::size_t l = 0; l < order.size(); ++l) expect_equal(here[order[l]], there[l], l);
 }
 
+TEST(DriveLanes, MoveTheSameWithAvx2AndAvx512) {
+  const std::vector<SimdLevel> levels = simd_levels();
+  if (levels.back() != SimdLevel::avx512) GTEST_SKIP() << "this machine has no AVX-512";
+  for (const bool same : {false, true}) {
+    std::vector<Story> stories = random_stories(200, 32);
+    for (Story& story : stories) {
+      if (same) story.drive = stories.front().drive;
+    }
+    const auto wide = told_together(stories, SimdLevel::avx512);
+    const auto narrow = told_together(stories, SimdLevel::avx2);
+    for (std::size_t l = 0; l < stories.size(); ++l) expect_equal(wide[l], narrow[l], l);
+  }
+}
+
 TEST(DriveLanes, EightTimesTheSameDriveMoveAsOne) {
   for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U}) {
     std::vector<Story> stories = random_stories(seed, 8);
