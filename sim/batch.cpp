@@ -8,7 +8,9 @@
 #include <array>
 #include <cassert>
 #include <exception>
+#include <filesystem>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -178,8 +180,24 @@ std::string in_one_line(const InputError& error) {
 
 namespace {
 
-// Bytes that this process may use: the machine's, or what it is limited to (by the shell, or by the
-// control group of a container or a job).
+// Bytes that the control groups (version 2) of this process allow, from its own up to the root.
+double memory_of_groups() {
+  double least = std::numeric_limits<double>::infinity();
+  std::ifstream groups("/proc/self/cgroup");
+  for (std::string line; std::getline(groups, line);) {
+    if (!line.starts_with("0::")) continue;
+    for (std::filesystem::path group = line.substr(3);; group = group.parent_path()) {
+      double most = 0.0;  // a file without a number sets no limit
+      if (std::ifstream("/sys/fs/cgroup" / group.relative_path() / "memory.max") >> most) {
+        least = std::min(least, most);
+      }
+      if (group == group.root_path()) break;
+    }
+  }
+  return least;
+}
+
+// Bytes that this process may use: the machine's, or what the shell, a container or a job allows.
 double memory_of_process() {
   double memory =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
@@ -187,9 +205,7 @@ double memory_of_process() {
   if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
     memory = std::min(memory, static_cast<double>(limit.rlim_cur));
   }
-  double group = 0.0;
-  if (std::ifstream("/sys/fs/cgroup/memory.max") >> group) memory = std::min(memory, group);
-  return memory;
+  return std::min(memory, memory_of_groups());
 }
 
 }  // namespace

@@ -103,8 +103,7 @@ void DriveBank::prepare_lane(std::size_t block, std::size_t j, const PreparedDri
   c.sigma0[j] = f.sigma0;
   c.sigma1[j] = f.sigma1;
   c.inverse_mass[j] = 1.0 / p.slide_mass();
-  // Of a step as a whole, up to twice as long as the exact step's longest sub-step, more may add
-  // up.
+  // A step as a whole may be twice as long as the exact step's longest sub-step: more may add up.
   constexpr double kShare = 0.25;
   c.tolerance[j] = kShare * drive.exact->resolution().tolerance;
   c.coarsest[j] = drive.exact->coarsest_log2() + Ladder::kDepth;
