@@ -1,19 +1,15 @@
 #include "sim/batch.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <exception>
-#include <filesystem>
-#include <fstream>
-#include <limits>
 #include <optional>
 #include <utility>
 
+#include "sim/memory.h"
 #include "sim/preparation_cache.h"
 
 namespace servomill::sim {
@@ -178,41 +174,9 @@ std::string in_one_line(const InputError& error) {
   return fmt::format("{}", fmt::join(lines, "; "));
 }
 
-namespace {
-
-// Bytes that the control groups (version 2) of this process allow, from its own up to the root.
-double memory_of_groups() {
-  double least = std::numeric_limits<double>::infinity();
-  std::ifstream groups("/proc/self/cgroup");
-  for (std::string line; std::getline(groups, line);) {
-    if (!line.starts_with("0::")) continue;
-    for (std::filesystem::path group = line.substr(3);; group = group.parent_path()) {
-      double most = 0.0;  // a file without a number sets no limit
-      if (std::ifstream("/sys/fs/cgroup" / group.relative_path() / "memory.max") >> most) {
-        least = std::min(least, most);
-      }
-      if (group == group.root_path()) break;
-    }
-  }
-  return least;
-}
-
-// Bytes that this process may use: the machine's, or what the shell, a container or a job allows.
-double memory_of_process() {
-  double memory =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
-    memory = std::min(memory, static_cast<double>(limit.rlim_cur));
-  }
-  return std::min(memory, memory_of_groups());
-}
-
-}  // namespace
-
 double rows_at_once(unsigned threads) {
-  const double memory = memory_of_process();
-  return std::min(kMostRows, kMemoryShare * memory / (kRowBytes * static_cast<double>(threads)));
+  return std::min(kMostRows,
+                  kMemoryShare * memory_of_process() / (kRowBytes * static_cast<double>(threads)));
 }
 
 void run_batch(std::span<const Scenario> points, const StopFlag& stop, std::atomic<float>& progress,

@@ -326,6 +326,10 @@ class Merge(Sweeps):
                          "bits everywhere\n")
         for one in (first, second):
             self.assertNotIn("instructions", one.stderr)
+        # signals that are added to rows of another level
+        done = servomill("sweep", SCENARIO, "-q", "-o", self.path("out.h5"), "--set", POINTS, "--shard", "1/2", "--series",
+                         status=1)
+        self.assertIn(f"out.1-of-2.h5: points were computed with different instructions ({', '.join(used)};", done.stderr)
 
     def test_names_what_is_missing(self):
         shards = self.shards(4)

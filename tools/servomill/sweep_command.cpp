@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/simd.h"
 #include "sim/hdf5/system_error.h"
 #include "sim/sweep/point_series.h"
 #include "sim/sweep/sweep.h"
@@ -99,6 +100,16 @@ class Teller {
 void print_file(const std::string& path) {
   std::ifstream file(path);
   std::cout << file.rdbuf() << std::flush;
+}
+
+// Of its points; where signals are kept also that of this process, which may have added signals to
+// rows of another one.
+std::vector<SimdLevel> levels_of(const sim::SweepTable& table, const std::string& signals) {
+  std::vector<SimdLevel> levels = table.simd_levels();
+  const bool is_new = std::find(levels.begin(), levels.end(), simd_level()) == levels.end();
+  if (!signals.empty() && is_new) levels.push_back(simd_level());
+  std::sort(levels.begin(), levels.end());
+  return levels;
 }
 
 int status_of(const sim::StatusCounts& counts) {
@@ -201,7 +212,7 @@ int sweep_command(const Arguments& arguments) {
   };
   sim::run_sweep(sweep, selection, done, control);
   bar.clear();
-  tell_mixed_levels(out, table.simd_levels());
+  tell_mixed_levels(out, levels_of(table, signals));
   if (left > 0) {
     fmt::print(stderr, "interrupted; kept in {}: {} complete points of {}\n", path,
                selection.size() - left, selection.size());

@@ -1,0 +1,18 @@
+/// How much memory this process may use.
+#pragma once
+
+#include <filesystem>
+
+namespace servomill::sim {
+
+/// Bytes that this process may use: those of the machine, or fewer where the shell (ulimit -v), a
+/// container or a job allows less.
+double memory_of_process();
+
+/// Bytes that the control groups of a process allow, of version 1 and 2, from its own group up to
+/// the root; infinite where none sets a limit.
+/// @param groups  the file that lists them (/proc/PID/cgroup)
+/// @param root    where the groups are mounted (/sys/fs/cgroup)
+double memory_of_groups(const std::filesystem::path& groups, const std::filesystem::path& root);
+
+}  // namespace servomill::sim
