@@ -185,7 +185,7 @@ void FairSpline::set_ends() {
   const auto coefficients = [](const Eigen::Matrix4d& Q, const State& state) {
     Eigen::Matrix<double, 3, kJoints> values;
     values << state.q.transpose(), state.d1.transpose(), state.d2.transpose();
-    const Eigen::Matrix<double, 3, kJoints> c = Q.topLeftCorner<3, 3>().inverse() * values;
+    Eigen::Matrix<double, 3, kJoints> c = Q.topLeftCorner<3, 3>().inverse() * values;
     return c;
   };
   const auto first = coefficients(intervals_[0].Q, begin_);

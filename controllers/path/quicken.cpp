@@ -483,7 +483,8 @@ class Quickener {
 TimeLaw quicken(TimeLaw law, const SmoothPath& path, std::span<const double> v_top,
                 const JointLimits& limits) {
   TimeLaw quicker;
-  return Quickener(law, path, v_top, limits).run(quicker) ? quicker : law;
+  if (Quickener(law, path, v_top, limits).run(quicker)) return quicker;
+  return law;
 }
 
 }  // namespace servomill::controllers
