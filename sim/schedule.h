@@ -1,6 +1,6 @@
 /// Static schedule of one case: the instants at which anything is due, over one common multiple of
 /// all periods. Nothing is visited that is not due; between instants the drives take one exact
-/// step.
+/// step, or one past several instants (DriveWay in sim/servo_axes.h).
 #pragma once
 
 #include <cstdint>

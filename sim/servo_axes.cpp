@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -39,10 +40,36 @@ std::vector<Rate> loop_rates(const LoopPeriods& p, Tick reading_delay) {
           {kCurrentLoop, p.current, 0}};
 }
 
-std::vector<Tick> steps_of(const std::vector<Instant>& schedule) {
-  std::vector<Tick> steps;
-  for (const Instant& instant : schedule) steps.push_back(instant.step);
-  return steps;
+DriveWay drive_way(const std::vector<Instant>& schedule) {
+  // Matrices are prepared for each stop: beyond these numbers steps are taken as they come.
+  constexpr std::size_t kMostStops = 8, kMostStretches = 32;
+  DriveWay way;
+  for (std::size_t n = 0; n < schedule.size();) {
+    plant::Stretch stretch{.step = schedule[n].step};
+    const std::size_t first = n++;
+    for (; n < schedule.size() && schedule[n].due == kErrorModel; ++n) {
+      if (stretch.stops.size() == kMostStops) break;
+      stretch.stops.push_back(stretch.step);
+      stretch.step += schedule[n].step;
+    }
+    const auto known = std::find(way.stretches.begin(), way.stretches.end(), stretch);
+    const auto number = known - way.stretches.begin();
+    const bool goes_on = !stretch.stops.empty() &&
+                         (known != way.stretches.end() || way.stretches.size() < kMostStretches);
+    for (std::size_t leg = first; leg < n; ++leg) {
+      way.legs.push_back({schedule[leg].step});
+      if (goes_on) {
+        way.legs.back().stretch = static_cast<int>(number);
+        way.legs.back().stop = leg - first;
+      } else {
+        way.steps.push_back(schedule[leg].step);
+      }
+    }
+    if (!goes_on || known != way.stretches.end()) continue;
+    way.most_stops = std::max(way.most_stops, stretch.stops.size());
+    way.stretches.push_back(std::move(stretch));
+  }
+  return way;
 }
 
 namespace {
@@ -81,10 +108,13 @@ ServoAxes::ServoAxes(std::vector<const MachineSettings*> machines, std::vector<i
       joints_(std::move(joints)),
       places_(machines_.size()),
       params_(params_of(machines_, joints_)),
-      drives_(
-          params_, machines_[0]->nc.periods.base,
-          machines_[0]->integrator == Integrator::exact ? steps_of(schedule) : std::vector<Tick>(),
-          kept),
+      way_(drive_way(schedule)),
+      positions_(way_.most_stops * blocks_of(params_.size())),
+      drives_(params_, machines_[0]->nc.periods.base,
+              machines_[0]->integrator == Integrator::exact ? way_.steps : std::vector<Tick>(),
+              kept, simd_level(),
+              machines_[0]->integrator == Integrator::exact ? way_.stretches
+                                                            : std::vector<plant::Stretch>()),
       state_(params_.size()),
       input_(params_.size()),
       servos_(blocks_of(params_.size())),
@@ -148,6 +178,7 @@ void ServoAxes::describe(std::size_t l) {
 }
 
 void ServoAxes::settle(const Joints& Q, const Eigen::Vector3d& displacement, std::size_t run) {
+  assert(!on_the_way_);
   displace(displacement, run);
   for (const int j : joints_) settle(lane(run, j), Q[j], j < kLinearJoints ? displacement[j] : 0.0);
 }
@@ -243,6 +274,7 @@ void ServoAxes::follow(const AxisSetPoint& set, std::size_t run) {
 }
 
 void ServoAxes::inject(int joint, const Injection& injection, std::size_t run) {
+  assert(!on_the_way_);
   const std::size_t l = lane(run, joint);
   at(&ServoBlock::added_velocity, l) = injection.velocity;
   at(&ServoBlock::added_current, l) = injection.current;
@@ -289,6 +321,7 @@ void ServoAxes::read_scales() {
 }
 
 void ServoAxes::take_readings() {
+  assert(!on_the_way_);
   read_scales();
   read_motors();
   kernel_.take_readings(servos_.data(), servos_.size());
@@ -318,10 +351,12 @@ void ServoAxes::run_position_loops() {
 }
 
 void ServoAxes::run_current_loops() {
+  assert(!on_the_way_);
   kernel_.current_loops(servos_.data(), state_.blocks.data(), input_.blocks.data(), servos_.size());
 }
 
 void ServoAxes::run_velocity_loops() {
+  assert(!on_the_way_);
   for (const std::size_t l : with_friction_) {
     const NcSettings& nc = machine_of(l).nc;
     const auto j = static_cast<std::size_t>(axes_[l].joint);

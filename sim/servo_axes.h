@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,8 +23,22 @@ namespace servomill::sim {
 ///                       much before the position loop
 std::vector<Rate> loop_rates(const LoopPeriods& periods, Tick reading_delay);
 
-/// Lengths of the steps of a schedule.
-std::vector<Tick> steps_of(const std::vector<Instant>& schedule);
+/// Way of the drives through a schedule. Where nothing but the error model is due, the drives feel
+/// nothing and nothing but positions is read: they move past such an instant and only tell where
+/// they are at it.
+struct DriveWay {
+  /// From one instant to the next.
+  struct Leg {
+    Tick step;
+    int stretch = -1;      // that it belongs to; -1: it is a step of its own
+    std::size_t stop = 0;  // of the stretch, that it ends at; behind the last one: its end
+  };
+  std::vector<Leg> legs;  // one for each instant
+  std::vector<plant::Stretch> stretches;
+  std::vector<Tick> steps;     // of the legs that are steps of their own
+  std::size_t most_stops = 0;  // of a stretch
+};
+DriveWay drive_way(const std::vector<Instant>& schedule);
 
 /// What the position loops follow, for all joints.
 struct AxisSetPoint {
@@ -45,9 +61,10 @@ struct Injection {
 };
 
 /// One function for each kind of instant of the schedule (sim/schedule.h), to be called in its
-/// order when due; then `advance` to the next instant. They treat all runs in lockstep, eight axes
-/// at once; a run gives the same bits alone and among others, and goes on as it is if another one
-/// ends.
+/// order when due, from the schedule's beginning on; then `advance` to the next instant. Where only
+/// the error model is due the drives show their positions only (DriveWay). They treat all runs in
+/// lockstep, eight axes at once; a run gives the same bits alone and among others, and goes on as
+/// it is if another one ends.
 ///
 /// Runs are numbered from 0; functions that concern one of them take its number last, and the
 /// first if it is left out.
@@ -55,7 +72,7 @@ class ServoAxes {
  public:
   /// @param machines  one a run; must outlive this. All have the same periods and integrator
   /// @param joints    those that take part; the others stand at zero
-  /// @param schedule  its steps are what `advance` may be asked for
+  /// @param schedule  its steps are what `advance` will be asked for
   /// @param kept      drives prepared for other axes, and where those of these are kept
   ServoAxes(std::vector<const MachineSettings*> machines, std::vector<int> joints,
             const std::vector<Instant>& schedule, plant::PreparedDrives* kept = nullptr);
@@ -89,14 +106,19 @@ class ServoAxes {
   void run_current_loops();
   /// kVelocityLoop
   void run_velocity_loops();
-  /// Moves the drives to the next instant.
+  /// Moves the drives to the next instant. @pre step is that of the schedule
   void advance(Tick step) {
+    const DriveWay::Leg& leg = way_.legs[leg_];
+    assert(step == leg.step);
+    leg_ = leg_ + 1 == way_.legs.size() ? 0 : leg_ + 1;
+    now_ += step;
     if (cvode_) {
       cvode_->advance(state_, input_, step);
-    } else {
+    } else if (leg.stretch < 0) {
       drives_.advance(state_, input_, step);
+    } else {
+      advance_to_stop(leg);
     }
-    now_ += step;
   }
 
   /// What read_scales read.
@@ -191,6 +213,18 @@ class ServoAxes {
   }
 
   const MachineSettings& machine_of(std::size_t lane) const { return *machines_[axes_[lane].run]; }
+  void advance_to_stop(const DriveWay::Leg& leg) {
+    if (leg.stop == 0) {
+      drives_.advance_with_stops(state_, input_, static_cast<std::size_t>(leg.stretch), positions_);
+    }
+    // Positions of this stop come in; those of the end wait in the place of the first stop's.
+    const std::size_t count = state_.blocks.size();
+    const bool at_end =
+        leg.stop == way_.stretches[static_cast<std::size_t>(leg.stretch)].stops.size();
+    drives_.exchange_positions(state_,
+                               std::span(positions_).subspan(at_end ? 0 : leg.stop * count, count));
+    on_the_way_ = !at_end;
+  }
   void describe(std::size_t lane);
   void settle(std::size_t lane, double Q, double displacement);
   void read_motors();
@@ -204,6 +238,10 @@ class ServoAxes {
   std::array<std::size_t, kJoints> first_lane_{};
   std::vector<std::array<Place, kJoints>> places_;  // by run
   std::vector<plant::FeedDriveParams> params_;      // by lane
+  DriveWay way_;
+  std::size_t leg_ = 0;               // the next one
+  std::vector<LaneArray> positions_;  // at the stops of a stretch
+  bool on_the_way_ = false;           // past a stop, of which only the positions are shown
   plant::DriveBank drives_;
   std::optional<plant::CvodeBank> cvode_;  // moves the drives instead, if asked for
   plant::DriveState state_;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 
 namespace servomill::plant {
 namespace {
@@ -24,18 +25,39 @@ struct SlopeBounds {
   }
 };
 
+// Of a HoldBlock: without the position, which nothing depends on and which is counted from where it
+// was.
+constexpr Eigen::Index kHoldColumns[] = {0, 1, 2, 3, 5, 6};
+
+// Calls what(n, ticks) of the pieces from stop to stop, the last one up to the end.
+template <class What>
+void each_piece(const Stretch& stretch, What what) {
+  Tick from = 0;
+  for (std::size_t n = 0; n <= stretch.stops.size(); ++n) {
+    const Tick to = n < stretch.stops.size() ? stretch.stops[n] : stretch.step;
+    what(n, to - from);
+    from = to;
+  }
+}
+
 }  // namespace
 
 DriveBank::DriveBank(std::span<const FeedDriveParams> lanes, double base_period,
-                     std::span<const Tick> steps, PreparedDrives* kept, SimdLevel level)
-    : kernel_(at_simd_level(level, []<SimdLevel l>() { return make_drive_kernel<l>(); })) {
+                     std::span<const Tick> steps, PreparedDrives* kept, SimdLevel level,
+                     std::span<const Stretch> stretches)
+    : stretches_(stretches.begin(), stretches.end()),
+      kernel_(at_simd_level(level, []<SimdLevel l>() { return make_drive_kernel<l>(); })) {
   steps_.assign(steps.begin(), steps.end());
+  for (const Stretch& stretch : stretches_) {
+    steps_.push_back(stretch.step);
+    each_piece(stretch, [&](std::size_t, Tick piece) { steps_.push_back(piece); });
+  }
   std::sort(steps_.begin(), steps_.end());
   steps_.erase(std::unique(steps_.begin(), steps_.end()), steps_.end());
   assert(steps_.empty() || steps_.front() > 0);
   PreparedDrives own(lanes.size());
   for (const FeedDriveParams& params : lanes) {
-    drives_.push_back((kept != nullptr ? *kept : own).get(params, base_period, steps_));
+    drives_.push_back((kept != nullptr ? *kept : own).get(params, base_period, steps_, stretches_));
     inverse_r_.push_back(1.0 / params.r);
   }
   constants_.resize(blocks_of(lanes.size()));
@@ -53,6 +75,44 @@ DriveBank::DriveBank(std::span<const FeedDriveParams> lanes, double base_period,
       block_steps_.back().ladder.whole = &parabolas[step];
       block_steps_.back().ladder.rungs = &parabolas[steps_.size()];
     }
+  }
+  prepare_stretches();
+}
+
+void DriveBank::prepare_stretches() {
+  std::size_t stop_count = 0;
+  for (const Stretch& stretch : stretches_) stop_count += stretch.stops.size();
+  stops_.resize(stop_count * constants_.size());
+  for (std::size_t l = 0; l < lanes(); ++l) {
+    StopBlock* to = &stops_[l / kLaneWidth * stop_count];
+    for (const PreparedDrive::Stop& from : drives_[l]->stops) {
+      for (std::size_t column = 0; column < HoldBlock::kColumns; ++column) {
+        to->hold.set(column, l % kLaneWidth, from.hold[kHoldColumns[column]]);
+      }
+      for (std::size_t column = 0; column < ParabolaBlock::kColumns; ++column) {
+        to->parabola.set(column, l % kLaneWidth, from.parabola[column]);
+      }
+      ++to;
+    }
+  }
+  std::size_t first = 0;
+  for (const Stretch& stretch : stretches_) {
+    Tick longest_piece = 0;
+    each_piece(stretch,
+               [&](std::size_t, Tick piece) { longest_piece = std::max(longest_piece, piece); });
+    const auto rung = [](Tick step) {
+      return static_cast<int>(std::bit_width(static_cast<std::uint64_t>(step))) - 1 +
+             Ladder::kDepth;
+    };
+    for (std::size_t block = 0; block < constants_.size(); ++block) {
+      BlockStep step = steps_of(stretch.step)[block];
+      step.stops = &stops_[block * stop_count + first];
+      step.stop_count = stretch.stops.size();
+      // what the pieces may grow to, or more where they would not show that it does
+      step.least_wanted = std::min(rung(stretch.step), rung(longest_piece) + 1);
+      stretch_steps_.push_back(step);
+    }
+    first += stretch.stops.size();
   }
 }
 
@@ -75,14 +135,12 @@ void DriveBank::prepare_lane(std::size_t block, std::size_t j, const PreparedDri
   for (std::size_t step = 0; step < steps_.size(); ++step) {
     HoldBlock& hold = holds_[step * constants_.size() + block];
     const PreparedDrive::Hold& from = drive.hold[step];
-    // without the position, which nothing depends on and which is counted from where it was
-    constexpr Eigen::Index kColumn[] = {0, 1, 2, 3, 5, 6};
     for (std::size_t column = 0; column < HoldBlock::kColumns; ++column) {
       for (std::size_t row = 0; row < HoldBlock::kRows; ++row) {
         hold.end.set(row * HoldBlock::kColumns + column, j,
-                     from.end(static_cast<Eigen::Index>(row), kColumn[column]));
+                     from.end(static_cast<Eigen::Index>(row), kHoldColumns[column]));
       }
-      hold.middle.set(column, j, from.middle(kColumn[column]));
+      hold.middle.set(column, j, from.middle(kHoldColumns[column]));
     }
   }
   if (!drive.exact) return;
@@ -141,16 +199,55 @@ void DriveBank::advance_rest(DriveState& s, const DriveInput& input, Tick step,
                              const BlockStep* steps, LanesLeft left) const {
   const std::size_t end = constants_.size();
   while (left.block != end) {
-    for (unsigned lanes = left.lanes; lanes != 0; lanes &= lanes - 1U) {
-      const auto j = static_cast<std::size_t>(std::countr_zero(lanes));
-      const std::size_t l = left.block * kLaneWidth + j;
-      const DriveInputBlock& in = input.blocks[left.block];
-      LaneState lane = s.lane(l);
-      drives_[l]->exact->advance(lane, in.command[j], in.F[j], step);
-      s.set_lane(l, lane);
-    }
-    left = kernel_.advance(s.blocks.data(), input.blocks.data(), steps, left.block + 1, end);
+    advance_lanes(s, input.blocks[left.block], step, left);
+    left =
+        kernel_.advance(s.blocks.data(), input.blocks.data(), steps, nullptr, left.block + 1, end);
   }
+}
+
+void DriveBank::advance_lanes(DriveState& s, const DriveInputBlock& in, Tick step,
+                              LanesLeft left) const {
+  for (unsigned lanes = left.lanes; lanes != 0; lanes &= lanes - 1U) {
+    const auto j = static_cast<std::size_t>(std::countr_zero(lanes));
+    const std::size_t l = left.block * kLaneWidth + j;
+    LaneState lane = s.lane(l);
+    drives_[l]->exact->advance(lane, in.command[j], in.F[j], step);
+    s.set_lane(l, lane);
+  }
+}
+
+void DriveBank::advance_with_stops(DriveState& s, const DriveInput& input, std::size_t stretch,
+                                   std::span<LaneArray> positions) const {
+  const std::size_t end = constants_.size();
+  assert(s.blocks.size() == end && input.blocks.size() == end && stretch < stretches_.size());
+  assert(positions.size() >= stretches_[stretch].stops.size() * end);
+  const BlockStep* const steps = &stretch_steps_[stretch * end];
+  for (std::size_t first = 0; first < end; ++first) {
+    const LanesLeft left =
+        kernel_.advance(s.blocks.data(), input.blocks.data(), steps, positions.data(), first, end);
+    if (left.block == end) return;
+    advance_in_pieces(s, input.blocks[left.block], stretches_[stretch], positions, left);
+    first = left.block;
+  }
+}
+
+// Lanes that are left of a stretch, from stop to stop.
+void DriveBank::advance_in_pieces(DriveState& s, const DriveInputBlock& of_all,
+                                  const Stretch& stretch, std::span<LaneArray> positions,
+                                  LanesLeft left) const {
+  DriveInputBlock input = of_all;
+  for (std::size_t j = 0; j < kLaneWidth; ++j) input.active[j] = left.lanes >> j & 1U;
+  DriveBlock& block = s.blocks[left.block];
+  each_piece(stretch, [&](std::size_t n, Tick piece) {
+    const LanesLeft others =
+        kernel_.advance(&block, &input, steps_of(piece) + left.block, nullptr, 0, 1);
+    if (others.block == 0) advance_lanes(s, input, piece, {left.block, others.lanes});
+    if (n == stretch.stops.size()) return;
+    LaneArray& at_stop = positions[n * constants_.size() + left.block];
+    for (std::size_t j = 0; j < kLaneWidth; ++j) {
+      if (input.active[j]) at_stop[j] = block.x[j];
+    }
+  });
 }
 
 DriveState DriveBank::at_rest(std::span<const double> x) const {

@@ -28,8 +28,10 @@ class DriveBank {
   ///                     be called, nor anything prepared for it
   /// @param kept         drives prepared earlier, and where those prepared now are kept
   /// @param level        instruction set; results differ between them by rounding
+  /// @param stretches    that `advance_with_stops` will be asked for
   DriveBank(std::span<const FeedDriveParams> lanes, double base_period, std::span<const Tick> steps,
-            PreparedDrives* kept = nullptr, SimdLevel level = simd_level());
+            PreparedDrives* kept = nullptr, SimdLevel level = simd_level(),
+            std::span<const Stretch> stretches = {});
   DriveBank(DriveBank&&) = default;  // a copy's block_steps_ would point into the original
 
   std::size_t lanes() const { return drives_.size(); }
@@ -37,14 +39,24 @@ class DriveBank {
   /// Moves the active lanes by `step` ticks. @pre step is one of those given at construction; state
   /// and input have the blocks of lanes()
   void advance(DriveState& state, const DriveInput& input, Tick step) const {
-    assert(static_cast<std::size_t>(step) < first_of_step_.size());
     assert(state.blocks.size() == constants_.size() && input.blocks.size() == constants_.size());
-    assert(first_of_step_[static_cast<std::size_t>(step)] >= 0);
-    const BlockStep* const steps =
-        block_steps_.data() + first_of_step_[static_cast<std::size_t>(step)];
+    const BlockStep* const steps = steps_of(step);
     const std::size_t end = constants_.size();
-    const LanesLeft left = kernel_.advance(state.blocks.data(), input.blocks.data(), steps, 0, end);
+    const LanesLeft left =
+        kernel_.advance(state.blocks.data(), input.blocks.data(), steps, nullptr, 0, end);
     if (left.block != end) advance_rest(state, input, step, steps, left);
+  }
+
+  /// Moves the active lanes by a stretch, in one where that is exact, and tells where they were on
+  /// the way: less work than as many steps.
+  /// @param stretch    number of one of those given at construction
+  /// @param positions  x of block b at stop n goes to positions[n * blocks + b]
+  void advance_with_stops(DriveState& state, const DriveInput& input, std::size_t stretch,
+                          std::span<LaneArray> positions) const;
+  /// Exchanges the positions of the state with others, one array for each block.
+  void exchange_positions(DriveState& state, std::span<LaneArray> others) const {
+    assert(others.size() == state.blocks.size());
+    kernel_.exchange_positions(state.blocks.data(), others.data(), others.size());
   }
 
   /// Motor angle (rad) of a lane: (delta + x) / r.
@@ -66,6 +78,18 @@ class DriveBank {
   // From the first block of which lanes are left.
   void advance_rest(DriveState& state, const DriveInput& input, Tick step, const BlockStep* steps,
                     LanesLeft left) const;
+  // Lane by lane.
+  void advance_lanes(DriveState& state, const DriveInputBlock& input, Tick step,
+                     LanesLeft left) const;
+  void advance_in_pieces(DriveState& state, const DriveInputBlock& of_all, const Stretch& stretch,
+                         std::span<LaneArray> positions, LanesLeft left) const;
+  // Of the blocks.
+  const BlockStep* steps_of(Tick step) const {
+    assert(static_cast<std::size_t>(step) < first_of_step_.size());
+    assert(first_of_step_[static_cast<std::size_t>(step)] >= 0);
+    return block_steps_.data() + first_of_step_[static_cast<std::size_t>(step)];
+  }
+  void prepare_stretches();
   void prepare_block(std::size_t block);
   void prepare_lane(std::size_t block, std::size_t j, const PreparedDrive& drive);
 
@@ -78,6 +102,9 @@ class DriveBank {
   // of each block with friction that the kernel moves: steps as a whole, then the rungs
   std::vector<std::vector<ParabolaBlock>> parabolas_;
   std::vector<BlockStep> block_steps_;  // as holds_
+  std::vector<Stretch> stretches_;
+  std::vector<StopBlock> stops_;          // block after block, its stops stretch after stretch
+  std::vector<BlockStep> stretch_steps_;  // stretch after stretch, block after block
   DriveKernel kernel_;
 };
 

@@ -163,6 +163,11 @@ class SubStep {
   }
 
   KnownFriction<Arch> friction_at_end() const { return {end.v, friction_end_, slope_end_}; }
+  // Position at a stop.
+  P position_at(const Coefficients<ParabolaBlock::kColumns>& row, const P& command) const {
+    const P in[] = {s_.i, s_.w, s_.delta, s_.v, command, f_[0], f_[1], f_[2]};
+    return s_.x + product<Arch, same>(row, 0, in);
+  }
   Mask resolved(const P& tolerance) const { return (error <= tolerance) & (kink == P(0.0)); }
 
  private:
@@ -441,32 +446,88 @@ template <class Arch, FrictionKind kind, bool same>
   return others;
 }
 
-// As a rule all lanes take the step as a whole.
+// Where the positions of a block at the stops of a step go.
+struct Positions {
+  LaneArray* first;
+  std::size_t block, blocks;
+
+  LaneArray& at(std::size_t stop) const { return first[stop * blocks + block]; }
+};
+
+// The step as a whole through the zone of friction. Returns the lanes that took it; the others are
+// as they were.
 template <class Arch, FrictionKind kind, bool same>
-[[gnu::noinline]] SERVOMILL_FLATTEN LaneBits through_zone(DriveBlock& s,
-                                                          const DriveInputBlock& input,
-                                                          const DriveConstants& c,
-                                                          const Ladder& ladder, LaneBits lanes) {
+[[gnu::noinline]] SERVOMILL_FLATTEN LaneBits in_one(DriveBlock& s, const DriveInputBlock& input,
+                                                    const BlockStep& whole,
+                                                    const Positions& positions, LaneBits lanes) {
   using P = Pack<Arch>;
   using Mask = PackMask<Arch>;
+  const DriveConstants& c = *whole.constants;
+  const Start<Arch> start = start_of<Arch>(s, input, c);
+  const FrictionPack<Arch> p(c, lanes);
+  const Mask active = Mask::of(lanes);
+  const KnownFriction<Arch> known(s);
+  const SubStep<Arch, kind, same> step(start.at, known, start.command, start.load, p, c,
+                                       *whole.ladder.whole, active);
+  const Mask good = active & step.resolved(P(c.tolerance));
+  for (std::size_t n = 0; n < whole.stop_count; ++n) {
+    LaneArray& x = positions.at(n);
+    select(good, step.position_at(whole.stops[n].parabola, start.command), P(x)).store(x);
+  }
+  store(select(good, step.end, motion_of<Arch>(s)), s);
+  select(good, step.friction_at_end(), known).store(s);
+  return static_cast<LaneBits>(good.bits());
+}
+
+// Those that do not take the step in one want sub-steps that are shorter from now on.
+template <class Arch, FrictionKind kind, bool same>
+LaneBits through_zone_with_stops(DriveBlock& s, const DriveInputBlock& input, const BlockStep& step,
+                                 const Positions& positions, LaneBits lanes) {
+  const DriveConstants& c = *step.constants;
+  const int whole = log2_of(step.ladder.ticks) + Ladder::kDepth;
+  unsigned trying = 0;
+  for (std::size_t j = 0; j < kLaneWidth; ++j) {
+    const int wanted = c.coarsest[j] - s.control[j].halvings;
+    trying |= static_cast<unsigned>((wanted >= step.least_wanted) & (c.coarsest[j] >= whole)) << j;
+  }
+  trying &= lanes;
+  if (trying == 0) return lanes;
+  const LaneBits moved =
+      in_one<Arch, kind, same>(s, input, step, positions, static_cast<LaneBits>(trying));
+  for (unsigned failed = trying & ~moved; failed != 0; failed &= failed - 1U) {
+    const int j = __builtin_ctz(failed);
+    s.control[static_cast<std::size_t>(j)].halvings =
+        c.coarsest[static_cast<std::size_t>(j)] - (step.least_wanted - 1);
+  }
+  return static_cast<LaneBits>(lanes & ~moved);
+}
+
+// As a rule all lanes take the step as a whole. Returns those that are left.
+template <class Arch, FrictionKind kind, bool same>
+LaneBits through_zone(DriveBlock& s, const DriveInputBlock& input, const BlockStep& step,
+                      const Positions& positions, LaneBits lanes) {
+  if (step.stop_count != 0) {
+    return through_zone_with_stops<Arch, kind, same>(s, input, step, positions, lanes);
+  }
+  const DriveConstants& c = *step.constants;
   int halvings = 0;
   for (std::size_t j = 0; j < kLaneWidth; ++j) {
     halvings |= s.control[j].halvings & -static_cast<int>(lanes >> j & 1U);
   }
-  if (halvings == 0 && c.least_coarsest >= log2_of(ladder.ticks) + Ladder::kDepth) {
-    const Start<Arch> start = start_of<Arch>(s, input, c);
-    const FrictionPack<Arch> p(c, lanes);
-    const Mask active = Mask::of(lanes);
-    const KnownFriction<Arch> known(s);
-    const SubStep<Arch, kind, same> step(start.at, known, start.command, start.load, p, c,
-                                         *ladder.whole, active);
-    if ((active & step.resolved(P(c.tolerance))).bits() == lanes) {
-      store(select(active, step.end, motion_of<Arch>(s)), s);
-      select(active, step.friction_at_end(), known).store(s);
-      return 0;
-    }
+  if (halvings == 0 && c.least_coarsest >= log2_of(step.ladder.ticks) + Ladder::kDepth) {
+    lanes &= static_cast<LaneBits>(~in_one<Arch, kind, same>(s, input, step, positions, lanes));
+    if (lanes == 0) return 0;
   }
-  return in_sub_steps<Arch, kind, same>(s, input, c, ladder, lanes);
+  return in_sub_steps<Arch, kind, same>(s, input, c, step.ladder, lanes);
+}
+
+// The positions of the lanes that moved; the others stand.
+template <class Arch, bool same>
+void hold_at_stops(const BlockStep& step, const Positions& positions, const PackMask<Arch>& moved,
+                   const Pack<Arch>& x, const Pack<Arch> (&in)[HoldBlock::kColumns]) {
+  for (std::size_t n = 0; n < step.stop_count; ++n) {
+    select(moved, x + product<Arch, same>(step.stops[n].hold, 0, in), x).store(positions.at(n));
+  }
 }
 
 // The end of a step while the force against the slides is constant.
@@ -481,21 +542,26 @@ Motion<Arch> held(const HoldBlock& hold, const Motion<Arch>& at,
 
 template <class Arch, bool same>
 [[gnu::always_inline]] inline void advance_linear(DriveBlock& s, const DriveInputBlock& input,
-                                                  const HoldBlock& hold, const DriveConstants& c) {
+                                                  const BlockStep& step,
+                                                  const Positions& positions) {
+  using P = Pack<Arch>;
   const unsigned active = bits_of(input.active);
-  const Start<Arch> start = start_of<Arch>(s, input, c);
+  const Start<Arch> start = start_of<Arch>(s, input, *step.constants);
   const Motion<Arch>& at = start.at;
-  const Motion<Arch> end =
-      held<Arch, same>(hold, at, {at.i, at.w, at.delta, at.v, start.command, start.load});
+  const P in[] = {at.i, at.w, at.delta, at.v, start.command, start.load};
+  const Motion<Arch> end = held<Arch, same>(*step.hold, at, in);
+  hold_at_stops<Arch, same>(step, positions, PackMask<Arch>::of(active), at.x, in);
   store(active == 0xFFU ? end : select(PackMask<Arch>::of(active), end, at), s);
 }
 
 // Returns the active lanes that do not glide all over the step, untouched.
 template <class Arch, bool same>
-SERVOMILL_FLATTEN unsigned glide(DriveBlock& s, const DriveInputBlock& input, const HoldBlock& hold,
-                                 const DriveConstants& c, unsigned active) {
+SERVOMILL_FLATTEN unsigned glide(DriveBlock& s, const DriveInputBlock& input, const BlockStep& step,
+                                 const Positions& positions, unsigned active) {
   using P = Pack<Arch>;
   using Mask = PackMask<Arch>;
+  const DriveConstants& c = *step.constants;
+  const HoldBlock& hold = *step.hold;
   const Start<Arch> start = start_of<Arch>(s, input, c);
   const Motion<Arch>& at = start.at;
   const P speed(c.glide_speed), zero(0.0);
@@ -508,7 +574,10 @@ SERVOMILL_FLATTEN unsigned glide(DriveBlock& s, const DriveInputBlock& input, co
     moved = moved & (Mask::of(0xFFU & ~c.lugre) |
                      (abs(fma(P(c.sigma0), at.z, -friction)) <= P(kSettled) * abs(friction)));
   }
-  if (!moved.any()) return active;
+  if (!moved.any()) {
+    for (std::size_t n = 0; n < step.stop_count; ++n) at.x.store(positions.at(n));
+    return active;
+  }
   const P in[] = {at.i, at.w, at.delta, at.v, start.command, start.load + friction};
   const P middle = product<Arch, same>(hold.middle, 0, in);
   const Motion<Arch> end = held<Arch, same>(hold, at, in);
@@ -516,6 +585,7 @@ SERVOMILL_FLATTEN unsigned glide(DriveBlock& s, const DriveInputBlock& input, co
   const P slowest = select(forwards, min(middle, end.v), -max(middle, end.v));
   moved = moved & (linear | (slowest > speed));
   const unsigned gone = moved.bits();
+  hold_at_stops<Arch, same>(step, positions, moved, at.x, in);
   store(gone == 0xFFU ? end : select(moved, end, at), s);
   if (const unsigned modes = c.has_slide_mode & gone; modes != 0) {
     const unsigned up = forwards.bits();
@@ -529,52 +599,65 @@ SERVOMILL_FLATTEN unsigned glide(DriveBlock& s, const DriveInputBlock& input, co
 
 template <class Arch, bool same>
 [[gnu::noinline]] LaneBits advance_with_friction(DriveBlock& s, const DriveInputBlock& input,
-                                                 const BlockStep& step) {
+                                                 const BlockStep& step,
+                                                 const Positions& positions) {
   const DriveConstants& c = *step.constants;
   const unsigned active = bits_of(input.active);
-  const unsigned stay = glide<Arch, same>(s, input, *step.hold, c, active);
+  const unsigned stay = glide<Arch, same>(s, input, step, positions, active);
   unsigned others = stay & ~(c.regularised | c.lugre);
   if (const auto lanes = static_cast<LaneBits>(stay & c.regularised)) {
-    others |= through_zone<Arch, FrictionKind::regularised, same>(s, input, c, step.ladder, lanes);
+    others |= through_zone<Arch, FrictionKind::regularised, same>(s, input, step, positions, lanes);
   }
   if (const auto lanes = static_cast<LaneBits>(stay & c.lugre)) {
-    others |= through_zone<Arch, FrictionKind::lugre, same>(s, input, c, step.ladder, lanes);
+    others |= through_zone<Arch, FrictionKind::lugre, same>(s, input, step, positions, lanes);
   }
   return static_cast<LaneBits>(others);
 }
 
 template <class Arch, bool same>
-LaneBits advance_block(DriveBlock& s, const DriveInputBlock& input, const BlockStep& step) {
-  if (!step.constants->linear) return advance_with_friction<Arch, same>(s, input, step);
-  advance_linear<Arch, same>(s, input, *step.hold, *step.constants);
+LaneBits advance_block(DriveBlock& s, const DriveInputBlock& input, const BlockStep& step,
+                       const Positions& positions) {
+  if (!step.constants->linear) return advance_with_friction<Arch, same>(s, input, step, positions);
+  advance_linear<Arch, same>(s, input, step, positions);
   return 0;
 }
 
 // Only the registers of AVX-512 take one number for all as they read it.
 template <class Arch>
-LaneBits advance_one(DriveBlock& s, const DriveInputBlock& input, const BlockStep& step) {
+LaneBits advance_one(DriveBlock& s, const DriveInputBlock& input, const BlockStep& step,
+                     const Positions& positions) {
   if constexpr (Pack<Arch>::kRegisters == 1) {
-    if (step.constants->same) return advance_block<Arch, true>(s, input, step);
+    if (step.constants->same) return advance_block<Arch, true>(s, input, step, positions);
   }
-  return advance_block<Arch, false>(s, input, step);
+  return advance_block<Arch, false>(s, input, step, positions);
 }
 
 template <class Arch>
 SERVOMILL_FLATTEN LanesLeft advance(DriveBlock* states, const DriveInputBlock* inputs,
-                                    const BlockStep* steps, std::size_t first, std::size_t end) {
+                                    const BlockStep* steps, LaneArray* positions, std::size_t first,
+                                    std::size_t end) {
   for (std::size_t n = first; n < end; ++n) {
-    if (const LaneBits lanes = advance_one<Arch>(states[n], inputs[n], steps[n]); lanes != 0) {
-      return {n, lanes};
-    }
+    const LaneBits lanes =
+        advance_one<Arch>(states[n], inputs[n], steps[n], Positions{positions, n, end});
+    if (lanes != 0) return {n, lanes};
   }
   return {end, 0};
+}
+
+template <class Arch>
+void exchange_positions(DriveBlock* states, LaneArray* positions, std::size_t count) {
+  for (std::size_t n = 0; n < count; ++n) {
+    const Pack<Arch> x(states[n].x);
+    Pack<Arch>(positions[n]).store(states[n].x);
+    x.store(positions[n]);
+  }
 }
 
 }  // namespace
 
 template <>
 DriveKernel make_drive_kernel<SERVOMILL_LEVEL>() {
-  return {&advance<SERVOMILL_ARCH>};
+  return {&advance<SERVOMILL_ARCH>, &exchange_positions<SERVOMILL_ARCH>};
 }
 
 }  // namespace servomill::plant

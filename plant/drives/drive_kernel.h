@@ -44,6 +44,13 @@ struct ParabolaBlock {
   LaneArray speed_tolerance{};          // m/s, of the last correction of Newton's iteration
 };
 
+/// An instant within a step at which positions are wanted: the row of the position, while the force
+/// against each slide is constant and while it is a parabola over the step.
+struct StopBlock {
+  Coefficients<HoldBlock::kColumns> hold;
+  Coefficients<ParabolaBlock::kColumns> parabola;
+};
+
 /// Lengths into which a step may be cut: rung n is 2^(n - kDepth) base periods.
 struct Ladder {
   static constexpr int kDepth = 4;
@@ -80,10 +87,14 @@ struct BlockStep {
   const HoldBlock* hold;
   const DriveConstants* constants;
   Ladder ladder;
+  const StopBlock* stops = nullptr;
+  std::size_t stop_count = 0;
+  int least_wanted = 0;  // rung: with stops, lanes that want shorter sub-steps do not try the step
 };
 
 /// Lanes of a block that the kernel cannot move and leaves untouched: friction that is no function
-/// of speed, backlash, cogging; and sub-steps below the lowest rung.
+/// of speed, backlash, cogging; sub-steps below the lowest rung; and if there are stops, all that
+/// does not take the step in one.
 struct LanesLeft {
   std::size_t block;  // behind the last one: none are left
   LaneBits lanes;
@@ -92,9 +103,12 @@ struct LanesLeft {
 /// Functions that are compiled for each instruction set.
 struct DriveKernel {
   /// Moves the active lanes of the blocks from `first` to before `end`, or up to and with the first
-  /// block of which lanes are left. states[n], inputs[n] and steps[n] belong together.
+  /// block of which lanes are left. states[n], inputs[n] and steps[n] belong together, and
+  /// positions[stop * end + n], which are not written for lanes that are left.
   LanesLeft (*advance)(DriveBlock* states, const DriveInputBlock* inputs, const BlockStep* steps,
-                       std::size_t first, std::size_t end);
+                       LaneArray* positions, std::size_t first, std::size_t end);
+  /// Exchanges the positions of the states with others.
+  void (*exchange_positions)(DriveBlock* states, LaneArray* positions, std::size_t count);
 };
 
 template <SimdLevel level>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <unsupported/Eigen/MatrixFunctions>
 #include <utility>
 
@@ -10,7 +11,7 @@
 namespace servomill::plant {
 namespace {
 
-enum Row : int { kCurrent = 0, kVelocity = 3, kCommand = 5 };
+enum Row : int { kCurrent = 0, kVelocity = 3, kPosition = 4, kCommand = 5 };
 
 using Matrix7l = Eigen::Matrix<long double, 7, 7>;
 
@@ -36,13 +37,29 @@ Eigen::Matrix<double, 5, 7> hold_matrix(const FeedDriveParams& p, double h) {
 
 }  // namespace
 
-PreparedDrive::PreparedDrive(const FeedDriveParams& drive, double period, std::vector<Tick> lengths)
-    : params(drive), base_period(period), steps(std::move(lengths)) {
+PreparedDrive::PreparedDrive(const FeedDriveParams& drive, double period, std::vector<Tick> lengths,
+                             std::vector<Stretch> with_stops)
+    : params(drive),
+      base_period(period),
+      steps(std::move(lengths)),
+      stretches(std::move(with_stops)) {
+  std::map<Tick, Eigen::Matrix<double, 5, 7>> known;
+  const auto held = [&](Tick half_ticks) -> const Eigen::Matrix<double, 5, 7>& {
+    const auto [at, is_new] = known.try_emplace(half_ticks);
+    if (is_new) {
+      at->second = hold_matrix(params, 0.5 * static_cast<double>(half_ticks) * base_period);
+    }
+    return at->second;
+  };
   Tick longest = 0;
   for (const Tick step : steps) {
     longest = std::max(longest, step);
-    const double h = static_cast<double>(step) * base_period;
-    hold.push_back({hold_matrix(params, h), hold_matrix(params, 0.5 * h).row(kVelocity)});
+    hold.push_back({held(2 * step), held(step).row(kVelocity)});
+  }
+  for (const Stretch& stretch : stretches) {
+    for (const Tick stop : stretch.stops) {
+      stops.push_back({held(2 * stop).row(kPosition), {}});
+    }
   }
   if (params.is_linear() || steps.empty()) return;
   exact.emplace(params, base_period, longest);
@@ -50,6 +67,13 @@ PreparedDrive::PreparedDrive(const FeedDriveParams& drive, double period, std::v
   const PropagatorSeries series(drive_equations(params));
   for (const Tick step : steps) {
     whole.push_back(series.over(static_cast<long double>(step) * base_period));
+  }
+  auto to = stops.begin();
+  for (const Stretch& stretch : stretches) {
+    for (const Tick stop : stretch.stops) {
+      to++->parabola = series.position_at(static_cast<long double>(stop) * base_period,
+                                          static_cast<long double>(stretch.step) * base_period);
+    }
   }
   for (int n = 0; (1 << n) <= longest << Ladder::kDepth; ++n) {
     rungs.push_back(
@@ -65,10 +89,12 @@ bool PreparedDrive::smooth() const {
 
 std::shared_ptr<const PreparedDrive> PreparedDrives::get(const FeedDriveParams& params,
                                                          double base_period,
-                                                         const std::vector<Tick>& steps) {
+                                                         const std::vector<Tick>& steps,
+                                                         const std::vector<Stretch>& stretches) {
   const auto find = [&] {
     const auto found = std::find_if(drives_.begin(), drives_.end(), [&](const auto& drive) {
-      return drive->params == params && drive->base_period == base_period && drive->steps == steps;
+      return drive->params == params && drive->base_period == base_period &&
+             drive->steps == steps && drive->stretches == stretches;
     });
     return found == drives_.end() ? nullptr : *found;
   };
@@ -76,7 +102,7 @@ std::shared_ptr<const PreparedDrive> PreparedDrives::get(const FeedDriveParams& 
     const std::lock_guard lock(mutex_);
     if (auto drive = find()) return drive;
   }
-  auto drive = std::make_shared<const PreparedDrive>(params, base_period, steps);
+  auto drive = std::make_shared<const PreparedDrive>(params, base_period, steps, stretches);
   const std::lock_guard lock(mutex_);
   if (drives_.size() < most_) {
     drives_.push_back(drive);

@@ -1,6 +1,7 @@
 /// What is costly to compute of a drive, kept for all lanes that have the same one.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -13,6 +14,13 @@
 
 namespace servomill::plant {
 
+/// A step with stops on the way, at which positions are wanted.
+struct Stretch {
+  Tick step = 0;
+  std::vector<Tick> stops{};  // ticks after its beginning, rising
+  bool operator==(const Stretch&) const = default;
+};
+
 /// One drive, ready to be moved by steps of certain lengths.
 struct PreparedDrive {
   /// The drive over one of the steps while the force against its slide is constant: rows
@@ -22,13 +30,23 @@ struct PreparedDrive {
     Eigen::Matrix<double, 1, 7> middle;  // v at half the step
   };
 
-  /// @param steps  ticks, without repetition
-  PreparedDrive(const FeedDriveParams& params, double base_period, std::vector<Tick> steps);
+  /// The row of the position of `Hold`, and of Propagator over a whole stretch (zero if the drive
+  /// is not smooth), at a stop.
+  struct Stop {
+    Eigen::Matrix<double, 1, 7> hold;
+    std::array<double, Propagator::kColumns> parabola{};
+  };
+
+  /// @param steps  ticks, without repetition; the lengths of stretches are among them
+  PreparedDrive(const FeedDriveParams& params, double base_period, std::vector<Tick> steps,
+                std::vector<Stretch> stretches = {});
 
   FeedDriveParams params;
   double base_period;  // s
   std::vector<Tick> steps;
+  std::vector<Stretch> stretches;
   std::vector<Hold> hold;          // one for each step
+  std::vector<Stop> stops;         // stretch after stretch
   std::optional<ExactStep> exact;  // of a drive that is not linear
 
   /// Whether its friction is a smooth function of its state, so that the kernel moves it.
@@ -46,7 +64,8 @@ class PreparedDrives {
 
   /// The drive from the store, or made now.
   std::shared_ptr<const PreparedDrive> get(const FeedDriveParams& params, double base_period,
-                                           const std::vector<Tick>& steps);
+                                           const std::vector<Tick>& steps,
+                                           const std::vector<Stretch>& stretches = {});
 
  private:
   std::mutex mutex_;

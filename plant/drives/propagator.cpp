@@ -55,7 +55,7 @@ PropagatorSeries::PropagatorSeries(const Eigen::Matrix<double, 5, 7>& equations)
 }
 
 PropagatorSeries::Values PropagatorSeries::at(long double t) const {
-  Values v;
+  Values S;
   // An entry begins with one of the first terms; each further one is smaller by rate t / k.
   constexpr std::size_t kFirst = 6;
   std::size_t terms = kFirst;
@@ -65,34 +65,46 @@ PropagatorSeries::Values PropagatorSeries::at(long double t) const {
   std::array<long double, 4> factor = {1.0L, t, t * t / 2.0L, t * t * t / 3.0L};
   for (std::size_t k = 0; k < terms; ++k) {
     const auto n = static_cast<long double>(k + 1);
-    v.E += A_[k] * factor[0];
-    v.command += command_[k] * factor[1];
-    for (std::size_t m = 0; m < 3; ++m) v.moment[m] += force_[k] * factor[m + 1];
+    S.E += A_[k] * factor[0];
+    S.command += command_[k] * factor[1];
+    for (std::size_t m = 0; m < 3; ++m) S.moment[m] += force_[k] * factor[m + 1];
     for (std::size_t m = 0; m < 4; ++m) factor[m] *= t / (n + static_cast<long double>(m));
   }
-  return v;
+  return S;
+}
+
+// What a column of Propagator, of a sub-step of length h, adds to a state.
+long double PropagatorSeries::entry(const Values& S, State state, std::size_t column,
+                                    long double h) {
+  // The parabolas that are 1 at one of 0, 1/2, 1 and 0 at the others: coefficients of 1, s, s^2.
+  constexpr double kLagrange[3][3] = {{1.0, -3.0, 2.0}, {0.0, 4.0, -4.0}, {0.0, -1.0, 2.0}};
+  if (column < 4) return S.E(state, static_cast<Eigen::Index>(column));
+  if (column == 4) return S.command(state);
+  const double(&l)[3] = kLagrange[column - 5];
+  return l[0] * S.moment[0](state) + l[1] * S.moment[1](state) / h +
+         l[2] * S.moment[2](state) / (h * h);
+}
+
+std::array<double, Propagator::kColumns> PropagatorSeries::position_at(long double t,
+                                                                       long double h) const {
+  const Values S = at(t);
+  std::array<double, Propagator::kColumns> row{};
+  for (std::size_t column = 0; column < row.size(); ++column) {
+    row[column] = static_cast<double>(entry(S, x, column, h));
+  }
+  return row;
 }
 
 Propagator PropagatorSeries::over(long double h) const {
-  // The parabolas that are 1 at one of 0, 1/2, 1 and 0 at the others: coefficients of 1, s, s^2.
-  constexpr double kLagrange[3][3] = {{1.0, -3.0, 2.0}, {0.0, 4.0, -4.0}, {0.0, -1.0, 2.0}};
-  enum State : int { i, w, delta, v, x };
   Propagator P;
   for (std::size_t node = 0; node < Propagator::kNodes; ++node) {
     const Values S = at(h * static_cast<long double>(node + 1) / 4.0L);
-    const auto entry = [&](State state, std::size_t column) -> long double {
-      if (column < 4) return S.E(state, static_cast<Eigen::Index>(column));
-      if (column == 4) return S.command(state);
-      const double(&l)[3] = kLagrange[column - 5];
-      return l[0] * S.moment[0](state) + l[1] * S.moment[1](state) / h +
-             l[2] * S.moment[2](state) / (h * h);
-    };
     constexpr State kOthers[] = {i, w, delta, x};
     for (std::size_t column = 0; column < Propagator::kColumns; ++column) {
-      P.slide[column][node] = static_cast<double>(entry(v, column));
+      P.slide[column][node] = static_cast<double>(entry(S, v, column, h));
       const bool last = node + 1 == Propagator::kNodes;
       double* to = last ? &P.slide[column][Propagator::kCurrent] : &P.inner[column][4 * node];
-      for (const State state : kOthers) *to++ = static_cast<double>(entry(state, column));
+      for (const State state : kOthers) *to++ = static_cast<double>(entry(S, state, column, h));
     }
   }
   return P;

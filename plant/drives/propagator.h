@@ -36,11 +36,15 @@ class PropagatorSeries {
   explicit PropagatorSeries(const Eigen::Matrix<double, 5, 7>& equations);
   /// @param h  s
   Propagator over(long double h) const;
+  /// The increment of the position at the time t of a sub-step of length h, by the same columns.
+  std::array<double, Propagator::kColumns> position_at(long double t, long double h) const;
 
  private:
   static constexpr std::size_t kTerms = 30;  // 2^30 / 30!
   struct Values;
   Values at(long double t) const;
+  enum State : int { i, w, delta, v, x };
+  static long double entry(const Values& S, State state, std::size_t column, long double h);
 
   using Matrix5l = Eigen::Matrix<long double, 5, 5>;
   using Vector5l = Eigen::Matrix<long double, 5, 1>;

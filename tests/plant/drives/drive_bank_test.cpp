@@ -134,6 +134,62 @@ FeedDriveParams with_friction(FrictionKind kind) {
   return p;
 }
 
+// Where a drive is at the stops of stretches and where steps of their lengths bring it, to and fro
+// through both zones of friction: the largest difference (m).
+double difference_at_stops(const FeedDriveParams& p, const Stretch& stretch) {
+  const std::array<Tick, 0> none{};
+  const DriveBank bank(std::array{p}, kTick, none, nullptr, simd_level(), std::array{stretch});
+  One with_stops, in_steps;
+  std::vector<LaneArray> positions(stretch.stops.size());
+  double largest = 0.0;
+  for (int n = 0; n < 4000; ++n) {
+    with_stops.command = in_steps.command = n % 2000 < 1200 ? 8.0 * std::sin(0.005 * n) : 0.0;
+    with_stops.F = in_steps.F = 50.0;
+    bank.advance_with_stops(with_stops.state, with_stops.input, 0, positions);
+    Tick from = 0;
+    for (std::size_t stop = 0; stop <= stretch.stops.size(); ++stop) {
+      const bool at_end = stop == stretch.stops.size();
+      const Tick to = at_end ? stretch.step : stretch.stops[stop];
+      bank.advance(in_steps.state, in_steps.input, to - from);
+      from = to;
+      const double x = at_end ? with_stops.at.x[0] : positions[stop][0];
+      largest = std::max(largest, std::abs(x - in_steps.at.x[0]));
+    }
+  }
+  EXPECT_EQ(DriveBank::unresolved(with_stops.state, 0), 0U);
+  return largest;
+}
+
+const Stretch kOneStop = {10, {6}}, kShortPieces = {20, {2, 4, 10, 18}}, kLongPiece = {10, {8}};
+
+TEST(DriveBank, StopsShowWhereALinearDriveIs) {
+  constexpr double kRoundingTol = 1e-14;  // m, of a way of 0.3 m in ten thousand steps
+  for (const Stretch& stretch : {kOneStop, kShortPieces, kLongPiece}) {
+    EXPECT_LE(difference_at_stops(x_axis(), stretch), kRoundingTol);
+  }
+}
+
+TEST(DriveBank, StopsShowWhereADriveWithFrictionIs) {
+  constexpr double kPositionTol = 1e-10;  // m, as close as both are to CVODE (agreement_test.cpp)
+  for (const FrictionKind kind :
+       {FrictionKind::set_valued, FrictionKind::regularised, FrictionKind::lugre}) {
+    for (const Stretch& stretch : {kOneStop, kShortPieces, kLongPiece}) {
+      EXPECT_LE(difference_at_stops(with_friction(kind), stretch), kPositionTol);
+    }
+  }
+}
+
+TEST(DriveBank, ExchangesThePositionsOfItsLanes) {
+  const DriveBank bank = bank_of(x_axis(), {1});
+  One s;
+  s.state.blocks[0].x[0] = 1.0;
+  std::vector<LaneArray> others(1);
+  others[0][0] = 2.0;
+  bank.exchange_positions(s.state, others);
+  EXPECT_EQ(s.at.x[0], 2.0);
+  EXPECT_EQ(others[0][0], 1.0);
+}
+
 // To and fro through both zones of friction and the standstill between them: the largest difference
 // (m) between a lane of the bank and its exact step.
 double difference_from_exact_step(FrictionKind kind, Tick step) {

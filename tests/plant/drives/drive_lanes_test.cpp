@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kTick = 10e-6;
 constexpr Tick kSteps[] = {2, 4, 6};
+const std::vector<Stretch> kStretches = {{10, {6}}, {12, {2, 6, 10}}};
 constexpr int kCalls = 600;
 
 // A drive with the commands and rests that it is given, call after call.
@@ -47,12 +48,18 @@ std::vector<Story> random_stories(unsigned first, unsigned count) {
   return stories;
 }
 
-// All stories in one bank: where each lane is in the end.
-std::vector<LaneState> told_together(const std::vector<Story>& stories,
-                                     SimdLevel level = simd_level()) {
+// Where a lane is in the end, and where it was on the way.
+struct Told : LaneState {
+  std::vector<double> at_stops;  // m
+};
+
+// All stories in one bank.
+std::vector<Told> told_together(const std::vector<Story>& stories, SimdLevel level = simd_level()) {
   std::vector<FeedDriveParams> drives;
   for (const Story& s : stories) drives.push_back(s.drive);
-  const DriveBank bank(drives, kTick, kSteps, nullptr, level);
+  const DriveBank bank(drives, kTick, kSteps, nullptr, level, kStretches);
+  std::vector<Told> lanes(drives.size());
+  std::vector<LaneArray> positions(3 * blocks_of(drives.size()));
   DriveState state = bank.at_rest(std::vector<double>(drives.size(), 0.1));
   DriveInput input(drives.size());
   for (int n = 0; n < kCalls; ++n) {
@@ -62,10 +69,22 @@ std::vector<LaneState> told_together(const std::vector<Story>& stories,
       in.F[l % kLaneWidth] = stories[l].F[static_cast<std::size_t>(n)];
       in.active[l % kLaneWidth] = stories[l].active[static_cast<std::size_t>(n)];
     }
-    bank.advance(state, input, kSteps[n % 3]);
+    if (n % 5 < 3) {
+      bank.advance(state, input, kSteps[n % 5]);
+      continue;
+    }
+    const auto stretch = static_cast<std::size_t>(n % 5 - 3);
+    bank.advance_with_stops(state, input, stretch, positions);
+    for (std::size_t stop = 0; stop < kStretches[stretch].stops.size(); ++stop) {
+      for (std::size_t l = 0; l < stories.size(); ++l) {
+        lanes[l].at_stops.push_back(
+            positions[stop * state.blocks.size() + l / kLaneWidth][l % kLaneWidth]);
+      }
+    }
   }
-  std::vector<LaneState> lanes;
-  for (std::size_t l = 0; l < stories.size(); ++l) lanes.push_back(state.lane(l));
+  for (std::size_t l = 0; l < stories.size(); ++l) {
+    static_cast<LaneState&>(lanes[l]) = state.lane(l);
+  }
   return lanes;
 }
 
@@ -83,9 +102,14 @@ void expect_equal(const LaneState& a, const LaneState& b, std::size_t lane) {
   EXPECT_EQ(a.control.unresolved, b.control.unresolved);
 }
 
+void expect_equal(const Told& a, const Told& b, std::size_t lane) {
+  expect_equal(static_cast<const LaneState&>(a), static_cast<const LaneState&>(b), lane);
+  EXPECT_EQ(a.at_stops, b.at_stops) << lane;
+}
+
 TEST(DriveLanes, MoveAmongOthersAsTheyDoAlone) {
   const std::vector<Story> stories = random_stories(1, 29);
-  const std::vector<LaneState> together = told_together(stories);
+  const std::vector<Told> together = told_together(stories);
   int moved = 0;
   for (std::size_t l = 0; l < stories.size(); ++l) {
     expect_equal(told_together({stories[l]}).front(), together[l], l);
@@ -133,9 +157,11 @@ TEST(DriveLanes, EightTimesTheSameDriveMoveAsOne) {
 TEST(DriveLanes, AnInactiveLaneStaysAsItIs) {
   Story story = random_story(3);
   std::fill(story.active.begin(), story.active.end(), false);
-  const LaneState still = told_together({random_story(1), story})[1];
+  const Told still = told_together({random_story(1), story})[1];
   const DriveBank bank(std::vector{story.drive}, kTick, kSteps);
-  expect_equal(still, bank.at_rest(std::vector{0.1}).lane(0), 1);
+  const LaneState rest = bank.at_rest(std::vector{0.1}).lane(0);
+  expect_equal(static_cast<const LaneState&>(still), rest, 1);
+  for (const double x : still.at_stops) EXPECT_EQ(x, rest.x);
 }
 
 TEST(DriveLanes, DifferBetweenInstructionSetsByRounding) {
@@ -163,12 +189,15 @@ TEST(PreparedDrives, AreMadeOnceAndKeptInTheNumberAllowed) {
   PreparedDrives kept(2);
   const auto drive = [](unsigned seed) { return random_story(seed).drive; };
   const std::vector<Tick> steps = {2};
+  const std::vector<Stretch> stretches = {{2, {1}}};
   const auto first = kept.get(drive(1), kTick, steps);
   EXPECT_EQ(kept.get(drive(1), kTick, steps), first);
   EXPECT_NE(kept.get(drive(1), 2 * kTick, steps), first);
   EXPECT_EQ(kept.get(drive(1), kTick, steps), first);
   EXPECT_NE(kept.get(drive(2), kTick, steps), first);  // the oldest goes
   EXPECT_NE(kept.get(drive(1), kTick, steps), first);
+  const auto last = kept.get(drive(1), kTick, steps);
+  EXPECT_NE(kept.get(drive(1), kTick, steps, stretches), last);
 }
 
 TEST(PreparedDrives, GiveTheSameBankAsThoseMadeForIt) {
