@@ -190,5 +190,82 @@ void BM_VolumetricBatch(benchmark::State& state) {
 }
 BENCHMARK(BM_VolumetricBatch);
 
+// A table-table machine with all of its 43 errors, but for the zero positions of the rotary axes,
+// which move an axis within itself: cubic functions of every axis, and location errors.
+plant::VolumetricModel five_axis_model() {
+  const auto chain = plant::make_chain(plant::parse_structure("[w C' B' X b Y Z (C1) t]"));
+  const auto rows = read_rows("vol.csv");
+  plant::ErrorModel errors;
+  std::size_t next = 0;
+  for (const Axis axis : {Axis::X, Axis::Y, Axis::Z, Axis::B, Axis::C}) {
+    for (const Axis direction : kAllAxes) {
+      errors.component({direction, axis, false}) = plant::polynomial(rows.at(next++ % 18));
+    }
+  }
+  using namespace plant;  // the names of errors
+  for (const ErrorName name :
+       {"EC0Y"_err, "EB0Z"_err, "EA0Z"_err, "EX0B"_err, "EZ0B"_err, "EA0B"_err, "EC0B"_err,
+        "EX0C"_err, "EY0C"_err, "EA0C"_err, "EB0C"_err}) {
+    errors.location(name) = 1e-5;
+  }
+  return {chain, errors};
+}
+
+// The rotary axes turn, too.
+std::vector<Joints> five_axis_poses() {
+  std::vector<Joints> all = poses();
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const double s = 0.37 * static_cast<double>(n);
+    all[n].tail<2>() << 0.6 * std::sin(0.9 * s), 3.0 * std::cos(0.2 * s);
+  }
+  return all;
+}
+
+template <class Find>
+void one_by_one(benchmark::State& state, Find find) {
+  const plant::VolumetricModel model = five_axis_model();
+  const std::vector<Joints> Q = five_axis_poses();
+  for (auto _ : state) {
+    for (const Joints& at : Q) benchmark::DoNotOptimize(find(model, at));
+  }
+  count(state, static_cast<double>(Q.size()));
+}
+
+template <class Result, class Find>
+void all_at_once(benchmark::State& state, Find find) {
+  const plant::VolumetricModel model = five_axis_model();
+  const std::vector<Joints> Q = five_axis_poses();
+  std::vector<Result> out(Q.size());
+  for (auto _ : state) {
+    find(model, Q, out);
+    benchmark::DoNotOptimize(out.data());
+  }
+  count(state, static_cast<double>(Q.size()));
+}
+
+using plant::VolumetricError, plant::VolumetricModel;
+
+void BM_FiveAxisError(benchmark::State& state) {
+  one_by_one(state, [](const VolumetricModel& m, const Joints& Q) { return m.error(Q, kTip); });
+}
+BENCHMARK(BM_FiveAxisError);
+
+void BM_FiveAxisForward(benchmark::State& state) {
+  one_by_one(state, [](const VolumetricModel& m, const Joints& Q) { return m.forward(Q, kTip); });
+}
+BENCHMARK(BM_FiveAxisForward);
+
+void BM_FiveAxisErrors(benchmark::State& state) {
+  all_at_once<VolumetricError>(
+      state, [](const VolumetricModel& m, const auto& Q, auto& out) { m.errors(Q, kTip, out); });
+}
+BENCHMARK(BM_FiveAxisErrors);
+
+void BM_FiveAxisPoses(benchmark::State& state) {
+  all_at_once<ToolPose>(
+      state, [](const VolumetricModel& m, const auto& Q, auto& out) { m.poses(Q, kTip, out); });
+}
+BENCHMARK(BM_FiveAxisPoses);
+
 }  // namespace
 }  // namespace servomill::reference_problem
