@@ -28,8 +28,18 @@ SERVOMILL_INLINE double larger(double a, double b) { return a > b ? a : b; }
 SERVOMILL_INLINE Register larger(const Register& a, const Register& b) {
   return xsimd::max(Batch(a), Batch(b));
 }
+SERVOMILL_INLINE Pair larger(const Pair& a, const Pair& b) {
+  return {larger(a.first, b.first), larger(a.second, b.second)};
+}
+SERVOMILL_INLINE bool are_small_half_turns(const Pair& t2) {
+  return are_small_half_turns(larger(t2.first, t2.second));
+}
 
-// --- the formulas, of one pose (N: double) or of poses in lanes (N: Register) -------------------
+// What of a and b x m is there last, and so comes last in a b x m: a for the first axis, whose tip
+// is known from the beginning, m for those behind it.
+constexpr bool is_factor_last(std::size_t axis) { return axis == 0; }
+
+// --- the formulas, of one pose (N: double) or of poses in lanes (N: Register, Pair) -------------
 
 // Powers of q beyond the zeroth. values(power): coefficients along three directions.
 template <Parts has, class N, class F>
@@ -79,14 +89,11 @@ SERVOMILL_INLINE void pass(const StraightProgram& program, const N& q, const Vec
       return fma(slope_i, q, before != nullptr ? *before + sum : sum);
     }
   };
-  const Vector<N> w = slope<has>(program, q, [&](std::size_t power) SERVOMILL_INLINE_LAMBDA {
-    return powers[power].shift[axis];
-  });
-  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
-    D.v[i] = value(w.v[i], powers[0].shift[axis][i], i, axis > 0 ? &D.v[i] : nullptr);
-  });
+  // what is needed first stands first, as a processor looks ahead only so far
+  Vector<N> b, m;
+  N a;
   if constexpr (has.angles) {
-    Vector<N> b = slope<has>(program, q, [&](std::size_t power) SERVOMILL_INLINE_LAMBDA {
+    b = slope<has>(program, q, [&](std::size_t power) SERVOMILL_INLINE_LAMBDA {
       return powers[power].half_turn[axis];
     });
     repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
@@ -94,14 +101,28 @@ SERVOMILL_INLINE void pass(const StraightProgram& program, const N& q, const Vec
     });
     const N t2 = fma(b.v[2], b.v[2], fma(b.v[1], b.v[1], b.v[0] * b.v[0]));
     t2_max = larger(t2_max, t2);
-    N a = small_half_turn_factor(t2);
+    a = small_half_turn_factor(t2);
     if constexpr (has.way == Way::general) {
       const auto exact = turn_factors(4.0 * t2);
       a = exact.a / exact.h;  // of the b that follows
       repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { b.v[i] = b.v[i] * (2.0 * exact.h); });
     }
-    const Vector<N> m = plus_cross(u, b, u), c = cross(b, m);
-    repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { D.v[i] = fma(a, c.v[i], D.v[i]); });
+    m = plus_cross(u, b, u);
+  }
+  const Vector<N> w = slope<has>(program, q, [&](std::size_t power) SERVOMILL_INLINE_LAMBDA {
+    return powers[power].shift[axis];
+  });
+  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
+    D.v[i] = value(w.v[i], powers[0].shift[axis][i], i, axis > 0 ? &D.v[i] : nullptr);
+  });
+  if constexpr (has.angles) {
+    if constexpr (is_factor_last(axis)) {
+      const Vector<N> c = cross(b, m);
+      repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { D.v[i] = fma(a, c.v[i], D.v[i]); });
+    } else {
+      repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { b.v[i] = a * b.v[i]; });
+      D = plus_cross(D, b, m);
+    }
   }
 }
 
@@ -188,8 +209,9 @@ SERVOMILL_INLINE Four squares(const Four& b0, const Four& b1, const Four& b2) {
 
 struct Cross {
   Four from_next_, from_last_;
-  SERVOMILL_INLINE explicit Cross(const Four& b)
-      : from_next_(from_next(b)), from_last_(from_last(b)) {}
+  SERVOMILL_INLINE Cross(const Four& next, const Four& last) : from_next_(next), from_last_(last) {}
+  SERVOMILL_INLINE explicit Cross(const Four& b) : Cross(from_next(b), from_last(b)) {}
+  SERVOMILL_INLINE Cross times(const Four& a) const { return {a * from_next_, a * from_last_}; }
   SERVOMILL_INLINE Four plus(const Four& v, const Four& u) const {
     return fma4(from_next_, from_last(u), fnma4(from_last_, from_next(u), v));
   }
@@ -239,11 +261,11 @@ SERVOMILL_INLINE bool try_cubic(const StraightProgram& program, const double* ti
 
   const Four P1 = P0 + __builtin_shufflevector(Four{}, q0, 4, 1, 2, 3);
   const Four u1 = lever(second, q1, P1) + D0;
-  const Four D1 = fma4(everywhere<1>(a), c1.of(c1.plus(u1, u1)), shift(second, q1, &D0));
+  const Four D1 = c1.times(everywhere<1>(a)).plus(shift(second, q1, &D0), c1.plus(u1, u1));
 
   const Four P2 = P1 + __builtin_shufflevector(Four{}, q1, 0, 5, 2, 3);
   const Four u2 = lever(third, q2, P2) + D1;
-  const Four D = fma4(everywhere<2>(a), c2.of(c2.plus(u2, u2)), shift(third, q2, &D1));
+  const Four D = c2.times(everywhere<2>(a)).plus(shift(third, q2, &D1), c2.plus(u2, u2));
   out[j0] = D[0];
   out[j1] = D[1];
   out[j2] = D[2];
@@ -269,58 +291,78 @@ void one(const StraightProgram& program, const VolumetricPower* tables, const do
 
 // --- many poses in lanes ------------------------------------------------------------------------
 
-// Some of eight poses: the lanes from `first` on of the data. q, D: in the order of the axes.
-template <Parts has>
-SERVOMILL_INLINE bool try_many(const StraightProgram& program, const StraightData* data,
-                               const double* tip, std::size_t first, const Vector<Register>& q,
-                               Vector<Register>& D) {
-  Vector<Register> P;
-  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
-    const std::size_t j = program.joint[i];
-    P.v[i] = data != nullptr ? load(data->tip[j], first) : all<Register>(tip[j]);
-  });
+// Numbers of poses, a row for each axis in the order of the axes.
+struct Rows {
+  const double* q[kStraightAxes];
+  double* D[kStraightAxes];  // along their directions
+};
+
+template <class N>
+SERVOMILL_INLINE Vector<N> load_rows(const double* const (&rows)[kStraightAxes], std::size_t n) {
+  return {load_number<N>(rows[0] + n), load_number<N>(rows[1] + n), load_number<N>(rows[2] + n)};
+}
+
+// The tips of poses from n on.
+template <class N>
+SERVOMILL_INLINE Vector<N> tips(const StraightProgram& program, const StraightData* data,
+                                const double* tip, std::size_t n) {
+  const std::size_t j0 = program.joint[0], j1 = program.joint[1], j2 = program.joint[2];
+  if (data == nullptr) return {all<N>(tip[j0]), all<N>(tip[j1]), all<N>(tip[j2])};
+  return load_rows<N>({&data->tip[j0][0], &data->tip[j1][0], &data->tip[j2][0]}, n);
+}
+
+// Poses from n on, as many as N has lanes. Writes what it finds in any case: without that the
+// compiler would put off half of the work until it knows the answer.
+template <class N, Parts has>
+SERVOMILL_INLINE bool try_rows(const StraightProgram& program, const StraightData* data,
+                               const double* tip, std::size_t n, const Rows& rows) {
+  const Vector<N> q = load_rows<N>(rows.q, n), P = tips<N>(program, data, tip, n);
+  Vector<N> D;
+  bool is_done;
   if constexpr (has.way == Way::cubic) {
-    return try_offset<has>(program, q, P, NoTerms(), D);
+    is_done = try_offset<has>(program, q, P, NoTerms(), D);
   } else {
     Register sums[kStraightAxes][kErrorComponents];
-    find_terms(program.functions, data != nullptr ? data->tables : nullptr, first, q.v, sums);
+    find_terms(program.functions, data != nullptr ? data->tables : nullptr, n, q.v, sums);
     const auto terms =
         [&](std::size_t axis, std::size_t component)
             SERVOMILL_INLINE_LAMBDA -> const Register& { return sums[axis][component]; };
-    return try_offset<has>(program, q, P, terms, D);
+    is_done = try_offset<has>(program, q, P, terms, D);
   }
-}
-
-// Writes what it finds in any case: without that the compiler would put off half of the work until
-// it knows the answer.
-template <Parts has>
-SERVOMILL_INLINE bool try_lanes(const StraightProgram& program, const StraightData* data,
-                                const double* tip, std::size_t first, const LaneArray* Q,
-                                LaneArray* out) {
-  const std::size_t j0 = program.joint[0], j1 = program.joint[1], j2 = program.joint[2];
-  const Vector<Register> q{load(Q[j0], first), load(Q[j1], first), load(Q[j2], first)};
-  Vector<Register> D;
-  const bool is_done = try_many<has>(program, data, tip, first, q, D);
-  store(D.v[0], out[j0], first);
-  store(D.v[1], out[j1], first);
-  store(D.v[2], out[j2], first);
+  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { store(D.v[i], rows.D[i] + n); });
   return is_done;
 }
 
-[[gnu::noinline]] void lanes_in_general(const StraightProgram& program, const StraightData* data,
-                                        const double* tip, std::size_t first, const LaneArray* Q,
-                                        LaneArray* out) {
-  try_lanes<kEverything>(program, data, tip, first, Q, out);
+[[gnu::noinline]] void rows_in_general(const StraightProgram& program, const StraightData* data,
+                                       const double* tip, std::size_t n, const Rows& rows) {
+  try_rows<Register, kEverything>(program, data, tip, n, rows);
+}
+
+// All `poses`, a multiple of eight; eight where there are data.
+template <Parts has>
+SERVOMILL_INLINE void solve_rows(const StraightProgram& program, const StraightData* data,
+                                 const double* tip, std::size_t poses, const Rows& rows) {
+  std::size_t n = 0;
+  if constexpr (has.way == Way::cubic) {
+    for (; data == nullptr && n + 2 * kRegister <= poses; n += 2 * kRegister) {
+      if (try_rows<Pair, has>(program, nullptr, tip, n, rows)) continue;
+      rows_in_general(program, nullptr, tip, n, rows);
+      rows_in_general(program, nullptr, tip, n + kRegister, rows);
+    }
+  }
+  for (; n < poses; n += kRegister) {
+    if (!try_rows<Register, has>(program, data, tip, n, rows)) {
+      rows_in_general(program, data, tip, n, rows);
+    }
+  }
 }
 
 template <Parts has>
 void lanes(const StraightProgram& program, const StraightData* data, const double* tip,
            const LaneArray* Q, LaneArray* out) {
-  for (std::size_t first = 0; first < kLaneWidth; first += kRegister) {
-    if (!try_lanes<has>(program, data, tip, first, Q, out)) {
-      lanes_in_general(program, data, tip, first, Q, out);
-    }
-  }
+  const std::size_t j0 = program.joint[0], j1 = program.joint[1], j2 = program.joint[2];
+  solve_rows<has>(program, data, tip, kLaneWidth,
+                  {{&Q[j0][0], &Q[j1][0], &Q[j2][0]}, {&out[j0][0], &out[j1][0], &out[j2][0]}});
 }
 
 // --- poses one behind the other -----------------------------------------------------------------
@@ -388,43 +430,29 @@ SERVOMILL_INLINE void put_poses(const Register (&xyz)[3], double* out,
   });
 }
 
-template <Parts has>
-SERVOMILL_INLINE bool try_poses(const StraightProgram& program, const StraightData* data,
-                                const double* tip, std::size_t first, const double* Q,
-                                double* out) {
-  const std::size_t j0 = program.joint[0], j1 = program.joint[1], j2 = program.joint[2];
-  Register xyz[3];
-  take_poses(Q, xyz);
-  // through memory, where the order of the axes is only one of places
-  alignas(64) double in_lanes[3][kRegister];
-  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { store(xyz[i], in_lanes[i]); });
-  const Vector<Register> q{load(in_lanes[j0]), load(in_lanes[j1]), load(in_lanes[j2])};
-  Vector<Register> D;
-  const bool is_done = try_many<has>(program, data, tip, first, q, D);
-  store(D.v[0], in_lanes[j0]);
-  store(D.v[1], in_lanes[j1]);
-  store(D.v[2], in_lanes[j2]);
-  repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { xyz[i] = load(in_lanes[i]); });
-  put_poses(xyz, out, std::make_index_sequence<kRegister>());
-  return is_done;
-}
-
-[[gnu::noinline]] void poses_in_general(const StraightProgram& program, const StraightData* data,
-                                        const double* tip, std::size_t first, const double* Q,
-                                        double* out) {
-  try_poses<kEverything>(program, data, tip, first, Q, out);
-}
-
+// Many at a time: each of the three loops keeps the processor busy by itself.
 template <Parts has>
 void many(const StraightProgram& program, const StraightData* data, const double* tip,
           const double* Q, std::size_t blocks, double* out) {
-  for (std::size_t n = 0; n < blocks * kLaneWidth; n += kRegister) {
-    const std::size_t first = n % kLaneWidth;
-    if (!try_poses<has>(program, data, tip, first, Q, out)) {
-      poses_in_general(program, data, tip, first, Q, out);
+  constexpr std::size_t kAtATime = 4 * kLaneWidth;
+  const std::size_t j0 = program.joint[0], j1 = program.joint[1], j2 = program.joint[2];
+  alignas(64) double q[3][kAtATime], D[3][kAtATime];  // X, Y, Z
+  const Rows rows{{q[j0], q[j1], q[j2]}, {D[j0], D[j1], D[j2]}};
+  for (std::size_t left = blocks * kLaneWidth; left > 0;) {
+    const std::size_t poses = left < kAtATime ? left : kAtATime;
+    Register xyz[3];
+    for (std::size_t n = 0; n < poses; n += kRegister) {
+      take_poses(Q + kMachineJoints * n, xyz);
+      repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { store(xyz[i], q[i] + n); });
     }
-    Q += kMachineJoints * kRegister;
-    out += 3 * kRegister;
+    solve_rows<has>(program, data, tip, poses, rows);
+    for (std::size_t n = 0; n < poses; n += kRegister) {
+      repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { xyz[i] = load(D[i] + n); });
+      put_poses(xyz, out + 3 * n, std::make_index_sequence<kRegister>());
+    }
+    Q += kMachineJoints * poses;
+    out += 3 * poses;
+    left -= poses;
   }
 }
 

@@ -8,9 +8,10 @@
 ///     (R - 1) u = a b x (u + b x u),  a = 2 - (4/3) |b|^2
 ///
 /// where b is half the vector of angles, as the functions hold it: that is exact to 1e-16 for turns
-/// below kSmallTurn. Larger ones go the same way with b tan(t/2)/(t/2) instead of b. What is left
-/// behind the third axis is the offset: ideal turns behind it are undone at once, ideal turns
-/// before it only place the tip.
+/// below kSmallTurn. Larger ones go the same way with b tan(t/2)/(t/2) instead of b. The factor a
+/// comes last for the first axis and joins b before m is known for the others: nothing waits longer
+/// than it must. What is left behind the third axis is the offset: ideal turns behind it are undone
+/// at once, ideal turns before it only place the tip.
 ///
 /// Directions are renamed in the order in which the tool passes their axes: axis 0 moves along
 /// direction 0. Where that mirrors X Y Z, all angles are counted with the opposite sign.

@@ -35,10 +35,39 @@ SERVOMILL_INLINE void store(const Register& value, LaneArray& to, std::size_t fi
   Batch(value).store_aligned(&to[0] + first);
 }
 
+// Two registers as one number. A formula of them does two things at a time that do not wait for
+// each other: the processor looks too few instructions ahead to find such by itself.
+struct Pair {
+  Register first, second;
+};
+SERVOMILL_INLINE Pair operator+(const Pair& a, const Pair& b) {
+  return {a.first + b.first, a.second + b.second};
+}
+SERVOMILL_INLINE Pair operator+(const Pair& a, double b) { return {a.first + b, a.second + b}; }
+SERVOMILL_INLINE Pair operator*(const Pair& a, const Pair& b) {
+  return {a.first * b.first, a.second * b.second};
+}
+SERVOMILL_INLINE void store(const Pair& value, double* to) {
+  store(value.first, to);
+  store(value.second, to + kRegister);
+}
+template <class N>
+SERVOMILL_INLINE N load_number(const double* from) {
+  if constexpr (std::is_same_v<N, Pair>) {
+    return {load(from), load(from + kRegister)};
+  } else {
+    return load(from);
+  }
+}
+
 // One value for all lanes.
 template <class N>
 SERVOMILL_INLINE N all(double value) {
-  return value - N{};
+  if constexpr (std::is_same_v<N, Pair>) {
+    return {value - Register{}, value - Register{}};
+  } else {
+    return value - N{};
+  }
 }
 
 template <class F, std::size_t... i>
@@ -88,6 +117,15 @@ SERVOMILL_INLINE Register fms(const Register& a, const Register& b, const Regist
 #else
   return xsimd::fms(Batch(a), Batch(b), Batch(c));
 #endif
+}
+SERVOMILL_INLINE Pair fma(const Pair& a, const Pair& b, const Pair& c) {
+  return {fma(a.first, b.first, c.first), fma(a.second, b.second, c.second)};
+}
+SERVOMILL_INLINE Pair fnma(const Pair& a, const Pair& b, const Pair& c) {
+  return {fnma(a.first, b.first, c.first), fnma(a.second, b.second, c.second)};
+}
+SERVOMILL_INLINE Pair fms(const Pair& a, const Pair& b, const Pair& c) {
+  return {fms(a.first, b.first, c.first), fms(a.second, b.second, c.second)};
 }
 
 // As many whole numbers.

@@ -211,7 +211,7 @@ TEST(VolumetricLanes, ManyPosesHaveTheBitsOfEachAlone) {
   for_all_cases(72, [](const MachineChain& chain, const ErrorModel& errors, Uniform& random) {
     const VolumetricModel model(chain, errors);
     const Vector3d p_ST = 0.2 * random.vector();
-    for (const std::size_t number : {0U, 1U, 7U, 8U, 21U}) {
+    for (const std::size_t number : {0U, 1U, 7U, 8U, 21U, 77U}) {
       const std::vector<Joints> Q = random_poses(chain, random, number);
       std::vector<ToolPose> P(number);
       std::vector<VolumetricError> e(number);
