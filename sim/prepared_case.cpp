@@ -393,10 +393,9 @@ CaseInputs PreparedCase::inputs() const {
                     p.scenario.record_period,
                     p.scenario.settle_time,
                     p.scenario.record.format};
-  const double model_period = p.machine().nc.periods.seconds(hardware.model_period);
   for (const auto& strategy : p.strategies) {
     if (auto part = strategy->set_point()) inputs.set_points.push_back(std::move(part));
-    if (auto part = strategy->feedback(model_period)) inputs.feedback = std::move(part);
+    if (strategy->displaces_feedback()) inputs.feedback = strategy.get();
   }
   return inputs;
 }

@@ -85,12 +85,13 @@ std::vector<plant::FeedDriveParams> params_of(const std::vector<const MachineSet
   return params;
 }
 
-// A whole block is one register.
-void copy(const double* from, double* to, std::size_t count) {
+// What is known to be a whole block goes through registers.
+template <class Do>
+void each_of(std::size_t count, Do what) {
   if (count == kLaneWidth) {
-    std::copy_n(from, kLaneWidth, to);
+    for (std::size_t k = 0; k < kLaneWidth; ++k) what(k);
   } else {
-    for (std::size_t n = 0; n < count; ++n) to[n] = from[n];
+    for (std::size_t k = 0; k < count; ++k) what(k);
   }
 }
 
@@ -238,30 +239,36 @@ void ServoAxes::displace(const Eigen::Vector3d& displacement, std::size_t run) {
 }
 
 template <class What>
-void ServoAxes::each_stretch(std::size_t first, What what) const {
+void ServoAxes::each_stretch(std::size_t first, int joints, What what) const {
   assert(first < runs());
   const std::size_t runs_here = std::min(kLaneWidth, runs() - first);
   for (const int j : joints_) {
+    if (j >= joints) break;
     for (std::size_t n = 0; n < runs_here;) {
       const std::size_t l = lane(first + n, j);
       const std::size_t count = std::min(runs_here - n, kLaneWidth - place(l));
-      what(static_cast<std::size_t>(j), n, block(l), place(l), count);
+      what(j, n, block(l), place(l), count);
       n += count;
     }
   }
 }
 
-void ServoAxes::displace(const LinearJointLanes& displacement, std::size_t first) {
-  each_stretch(first, [&](std::size_t j, std::size_t n, std::size_t block, std::size_t place,
-                          std::size_t count) {
-    if (j < kLinearJoints) copy(&displacement[j][n], &servos_[block].displacement[place], count);
-  });
+void ServoAxes::displace(const LinearJointLanes& displacement, const LaneFlags& lanes,
+                         std::size_t first) {
+  each_stretch(first, kLinearJoints,
+               [&](int j, std::size_t n, std::size_t block, std::size_t place, std::size_t count) {
+                 double* to = &servos_[block].displacement[place];
+                 const double* from = &displacement[j][n];
+                 each_of(count, [&](std::size_t k) { to[k] = lanes[n + k] ? from[k] : to[k]; });
+               });
 }
 
-void ServoAxes::read_true(JointLanes& Q, std::size_t first) const {
-  each_stretch(first,
-               [&](std::size_t j, std::size_t n, std::size_t block, std::size_t place,
-                   std::size_t count) { copy(&state_.blocks[block].x[place], &Q[j][n], count); });
+void ServoAxes::get_readings(JointLanes& Q_meas, std::size_t first) const {
+  each_stretch(first, kJoints,
+               [&](int j, std::size_t n, std::size_t block, std::size_t place, std::size_t count) {
+                 const double* from = &servos_[block].scale[place];
+                 each_of(count, [&](std::size_t k) { Q_meas[j][n + k] = from[k]; });
+               });
 }
 
 void ServoAxes::follow(const AxisSetPoint& set, std::size_t run) {

@@ -12,6 +12,7 @@
 
 #include "plant/drives/cvode_bank.h"
 #include "plant/drives/drive_bank.h"
+#include "plant/vocabulary/joint_lanes.h"
 #include "sim/machine.h"
 #include "sim/schedule.h"
 #include "sim/servo_kernel.h"
@@ -48,10 +49,6 @@ struct AxisSetPoint {
   Joints ddQ_ff = Joints::Zero();
 };
 
-/// Eight runs side by side, joint by joint (m, rad): [joint][run].
-using JointLanes = LaneArray[kJoints];
-using LinearJointLanes = LaneArray[kLinearJoints];
-
 /// Added from outside to the signals of one axis, to measure how it responds; zero in a case.
 struct Injection {
   double force = 0.0;     // N, N m: on the slide, along +x
@@ -87,8 +84,9 @@ class ServoAxes {
   void settle(const Joints& Q, const Eigen::Vector3d& displacement, std::size_t run = 0);
   /// What a virtual encoder adds to the readings of the linear joints (3; m), from now on.
   void displace(const Eigen::Vector3d& displacement, std::size_t run = 0);
-  /// The same for eight runs side by side, from run `first` on.
-  void displace(const LinearJointLanes& displacement, std::size_t first = 0);
+  /// The same for some of eight runs side by side, from run `first` on.
+  void displace(const LinearJointLanes& displacement, const LaneFlags& lanes,
+                std::size_t first = 0);
   /// What the position loops follow, from now on.
   void follow(const AxisSetPoint& set, std::size_t run = 0);
   /// What is added to a joint from now on.
@@ -123,12 +121,12 @@ class ServoAxes {
 
   /// What read_scales read.
   Joints Q_meas(std::size_t run = 0) const { return joints_of(&ServoBlock::scale, run); }
+  /// The same of eight runs side by side, from run `first` on. Joints that do not take part and
+  /// runs beyond the last are left as they are.
+  void get_readings(JointLanes& Q_meas, std::size_t first = 0) const;
   /// What the position loops read last.
   Joints Q_read(std::size_t run = 0) const { return joints_of(&ServoBlock::Q_read, run); }
   Joints Q_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::x, run); }
-  /// The same of eight runs side by side, from run `first` on. Joints that do not take part and
-  /// runs beyond the last are left as they are.
-  void read_true(JointLanes& Q, std::size_t first = 0) const;
   Joints dQ_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::v, run); }
   Joints current(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::i, run); }
   /// What acts on the drives: A, with a winding V.
@@ -204,10 +202,10 @@ class ServoAxes {
   Joints drives_of(LaneArray plant::DriveBlock::*member, std::size_t run) const {
     return gathered(state_.blocks, member, run);
   }
-  // Calls what(joint, n, block, place, count) where the runs first + n and following of a joint lie
-  // in one block.
+  // Calls what(joint, n, block, place, count) where the runs first + n and following of one of the
+  // first joints lie in one block.
   template <class What>
-  void each_stretch(std::size_t first, What what) const;
+  void each_stretch(std::size_t first, int joints, What what) const;
   double& at(LaneArray ServoBlock::*member, std::size_t lane) {
     return (servos_[block(lane)].*member)[place(lane)];
   }

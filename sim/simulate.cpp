@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "plant/vocabulary/units.h"
+#include "sim/feedback_lanes.h"
 #include "sim/recorder.h"
 #include "sim/schedule.h"
 #include "sim/servo_axes.h"
@@ -26,6 +27,10 @@ std::vector<Rate> rates_of(const CaseInputs& in) {
   rates.push_back({kRecord, in.record_period, 0});
   if (in.feedback) rates.push_back({kErrorModel, in.hardware.model_period, 0});
   return rates;
+}
+
+double model_period_of(const CaseInputs& in) {
+  return in.machine.nc.periods.seconds(in.hardware.model_period);
 }
 
 Outcome interrupted(double time) {
@@ -96,10 +101,12 @@ class Reference {
 // recorder.
 class CaseRun {
  public:
-  CaseRun(CaseInputs& in, ServoAxes& axes, std::size_t run, Reference& reference)
+  CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::size_t run,
+          Reference& reference)
       : in_(in),
         nc_(in.machine.nc),
         axes_(axes),
+        feedback_(feedback),
         run_(run),
         reference_(reference),
         set_point_(nc_, in.reference, std::move(in.set_points)),
@@ -113,12 +120,6 @@ class CaseRun {
 
   Tick end() const { return end_; }
   bool goes_on_at(Tick n) const { return n <= end_ && result_.outcome.finished; }
-
-  // Feedback hardware: the model evaluated one period ago acts now, the next one is begun.
-  void displace() { axes_.displace(d_next_, run_); }
-  void displace_next(const Eigen::Vector3d& d) { d_next_ = d; }
-  strategies::FeedbackPart* feedback() const { return in_.feedback.get(); }
-  Joints Q_meas() const { return axes_.Q_meas(run_); }
 
   void interpolate(Tick n) {
     set_ = set_point_.advance(reference_.at(nc_.periods.seconds(n)));
@@ -164,6 +165,8 @@ class CaseRun {
   void interrupt(Tick n) { result_.outcome = interrupted(nc_.periods.seconds(n)); }
 
   CaseResult finish(Tick n) {
+    if (in_.feedback) feedback_.drop(run_);
+    axes_.end(run_);
     result_.simulated_time = nc_.periods.seconds(n);
     result_.servo = recorder_.take();
     if (!result_.outcome.finished)
@@ -176,19 +179,22 @@ class CaseRun {
   void settle() {
     set_ = set_point_.settle();
     Joints Q = set_.Q_cmd;
+    Eigen::Vector3d d = Eigen::Vector3d::Zero();
     if (in_.feedback) {
+      feedback_.add(run_, *in_.feedback, model_period_of(in_));
       for (int n = 0; n < 50; ++n) {  // Q + d(Q) = Q_cmd, a contraction by the slope of the errors
-        d_next_ = in_.feedback->settle(Q);
+        d = feedback_.settle(run_, Q);
         Q = set_.Q_cmd;
-        Q.head<3>() -= d_next_;
+        Q.head<3>() -= d;
       }
     }
-    axes_.settle(Q, d_next_, run_);
+    axes_.settle(Q, d, run_);
   }
 
   CaseInputs& in_;
   const NcSettings& nc_;
   ServoAxes& axes_;
+  FeedbackLanes& feedback_;
   std::size_t run_;
   Reference& reference_;
   Reference recorded_{in_.reference};
@@ -197,44 +203,7 @@ class CaseRun {
   LastTicks last_ticks_;
   Tick end_ = 0;
   AxisSetPoint set_;
-  Eigen::Vector3d d_next_ = Eigen::Vector3d::Zero();  // acts one model period later
   CaseResult result_;
-};
-
-// Feedback parts of runs that are evaluated together.
-class Feedbacks {
- public:
-  bool take(CaseRun& run) {
-    if (!runs_.empty() && !parts_.front()->goes_with(*run.feedback())) return false;
-    runs_.push_back(&run);
-    parts_.push_back(run.feedback());
-    Q_meas_.emplace_back();
-    d_.emplace_back();
-    return true;
-  }
-  void drop(const CaseRun& run) {
-    const auto at = std::find(runs_.begin(), runs_.end(), &run);
-    if (at == runs_.end()) return;
-    parts_.erase(parts_.begin() + (at - runs_.begin()));
-    runs_.erase(at);
-    Q_meas_.resize(runs_.size());
-    d_.resize(runs_.size());
-  }
-  void evaluate() {
-    if (runs_.empty()) return;
-    for (std::size_t k = 0; k < runs_.size(); ++k) {
-      runs_[k]->displace();
-      Q_meas_[k] = runs_[k]->Q_meas();
-    }
-    parts_.front()->evaluate_together(parts_, Q_meas_, d_);
-    for (std::size_t k = 0; k < runs_.size(); ++k) runs_[k]->displace_next(d_[k]);
-  }
-
- private:
-  std::vector<CaseRun*> runs_;
-  std::vector<strategies::FeedbackPart*> parts_;
-  std::vector<Joints> Q_meas_;
-  std::vector<Eigen::Vector3d> d_;
 };
 
 // Machines with their loops, stepped together from instant to instant of one static schedule.
@@ -243,11 +212,14 @@ class Lockstep {
   Lockstep(std::span<CaseInputs* const> together, plant::PreparedDrives* kept)
       : schedule_(make_schedule(rates_of(*together.front()))),
         axes_(machines_of(together), together.front()->machine.joints(), schedule_, kept) {
+    for (std::size_t first = 0; first < together.size(); first += kLaneWidth) {
+      feedbacks_.emplace_back(axes_, first);
+    }
     for (std::size_t run = 0; run < together.size(); ++run) {
       CaseInputs& in = *together[run];
-      runs_.push_back(std::make_unique<CaseRun>(in, axes_, run, reference_of(in.reference)));
+      runs_.push_back(std::make_unique<CaseRun>(in, axes_, feedbacks_[run / kLaneWidth], run,
+                                                reference_of(in.reference)));
       longest_ = std::max(longest_, runs_.back()->end());
-      if (in.feedback) add_feedback(*runs_.back());
     }
   }
 
@@ -276,12 +248,6 @@ class Lockstep {
     return machines;
   }
 
-  void add_feedback(CaseRun& run) {
-    const bool taken = std::any_of(feedbacks_.begin(), feedbacks_.end(),
-                                   [&](Feedbacks& together) { return together.take(run); });
-    if (!taken) feedbacks_.emplace_back().take(run);
-  }
-
   Reference& reference_of(const controllers::Trajectory& trajectory) {
     for (const auto& reference : references_) {
       if (reference->is(trajectory)) return *reference;
@@ -292,7 +258,7 @@ class Lockstep {
   void visit(std::uint8_t due, Tick n) {
     if (due & (kErrorModel | kRecord)) axes_.read_scales();
     if (due & kErrorModel) {
-      for (Feedbacks& together : feedbacks_) together.evaluate();
+      for (FeedbackLanes& feedback : feedbacks_) feedback.evaluate();
     }
     if (due & kSample) axes_.take_readings();
     if (due & kPositionLoop) {
@@ -331,9 +297,7 @@ class Lockstep {
         continue;
       }
       results[run] = runs_[run]->finish(n);
-      for (Feedbacks& together : feedbacks_) together.drop(*runs_[run]);
       runs_[run].reset();
-      axes_.end(run);
     }
     return none_left;
   }
@@ -342,7 +306,7 @@ class Lockstep {
   ServoAxes axes_;
   std::vector<std::unique_ptr<Reference>> references_;
   std::vector<std::unique_ptr<CaseRun>> runs_;
-  std::vector<Feedbacks> feedbacks_;
+  std::vector<FeedbackLanes> feedbacks_;  // of eight runs each
   Tick longest_ = 0;
   Tick next_end_ = 0;  // until then none of them ends
 };
@@ -354,6 +318,7 @@ class IdealRun {
       : in_(in),
         periods_(in.machine.nc.periods),
         set_point_(in.machine.nc, in.reference, std::move(in.set_points)),
+        feedback_(in.feedback ? in.feedback->feedback(model_period_of(in)) : nullptr),
         recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format) {}
 
   CaseResult run(const StopFlag& stop, std::atomic<float>& progress) {
@@ -382,8 +347,8 @@ class IdealRun {
     now.s = in_.reference.at(now.time - set_point_.delay(), record_cursor_).s;
     now.Q_ref = set.Q_ref;
     now.Q_cmd = now.Q_read = now.Q_true = set.Q_cmd;
-    for (int k = 0; in_.feedback && k < 50; ++k) {  // Q_true + d(Q_true) = Q_cmd
-      now.Q_true.head<3>() = set.Q_cmd.head<3>() - in_.feedback->settle(now.Q_true);
+    for (int k = 0; feedback_ && k < 50; ++k) {  // Q_true + d(Q_true) = Q_cmd
+      now.Q_true.head<3>() = set.Q_cmd.head<3>() - feedback_->settle(now.Q_true);
     }
     now.Q_meas = now.Q_true;
     now.dQ_true = set.dQ_ff;
@@ -393,6 +358,7 @@ class IdealRun {
   CaseInputs& in_;
   const LoopPeriods& periods_;
   SetPoint set_point_;
+  std::unique_ptr<strategies::FeedbackPart> feedback_;
   Recorder recorder_;
   controllers::Trajectory::Cursor cursor_, record_cursor_;
 };

@@ -42,7 +42,7 @@ struct CaseInputs {
   ServoModel servo = ServoModel::cascade;
   FeedbackHardware hardware;
   std::vector<std::unique_ptr<strategies::SetPointPart>> set_points;
-  std::unique_ptr<strategies::FeedbackPart> feedback;  // may be null
+  const strategies::Strategy* feedback = nullptr;  // the one that displaces it, if any
   Tick record_period = 100;
   double settle_time = 0.1;  // s, recorded after the program's end
   RecordFormat format = {};

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-
-#include "plant/vocabulary/lanes.h"
+#include <cmath>
+#include <iterator>
 
 namespace servomill::strategies {
 namespace {
@@ -11,36 +11,61 @@ namespace {
 constexpr std::array<std::string_view, 2> kWords = {"1", "converged"};
 constexpr double kConverged = 1e-13;  // m
 constexpr int kMaxIterations = 50;    // contraction by |E'|, of the order of 1e-2
-constexpr std::size_t kTogether = kLaneWidth;
+constexpr LaneFlags kOne = {true};
 
-// -offset(Q) of each.
-void removals(const Belief& b, std::span<const Joints> Q, std::span<Eigen::Vector3d> d) {
+// Of one run and of eight.
+void find_offset(const Belief& b, const Joints& Q, Eigen::Vector3d& d) {
+  d = b.model.joint_offset(Q, b.p_ST);
+}
+void find_offset(const Belief& b, const JointLanes& Q, LinearJointLanes& d) {
   b.model.joint_offsets(Q, b.p_ST, d);
-  for (Eigen::Vector3d& one : d) one = -one;
+}
+
+// -offset(Q)
+template <class Poses, class Shifts>
+void find_removal(const Belief& b, const Poses& Q, Shifts& d) {
+  find_offset(b, Q, d);
+  for (auto& joint : d) {
+    for (std::size_t k = 0; k < kLanesOf<Shifts>; ++k) {
+      lane(joint, k) = -lane(joint, k);
+    }
+  }
 }
 
 // d with d = -offset(Q + d). On the set point it is the non-ideal inverse: F_ni(Q + d) = F_i(Q). On
 // a reading it is the error at the position that was programmed, Q + d. What has converged stays.
-void converged_removals(const Belief& b, std::span<const Joints> Q, std::span<Eigen::Vector3d> d) {
-  std::array<Joints, kTogether> shifted;
-  std::array<Eigen::Vector3d, kTogether> next;
-  std::array<bool, kTogether> open{};
-  const std::size_t count = Q.size();
-  std::fill_n(open.begin(), count, true);
-  removals(b, Q, d);
+template <class Poses, class Shifts>
+void find_converged_removal(const Belief& b, const Poses& Q, LaneFlags open, Shifts& d) {
+  Poses shifted;
+  Shifts next;
+  std::copy(std::begin(Q), std::end(Q), std::begin(shifted));
+  find_removal(b, Q, d);
   for (int n = 0; n < kMaxIterations; ++n) {
-    for (std::size_t k = 0; k < count; ++k) {
-      shifted[k] = Q[k];
-      shifted[k].head<3>() += d[k];
+    for (int j = 0; j < kLinearJoints; ++j) {
+      for (std::size_t k = 0; k < kLanesOf<Shifts>; ++k)
+        lane(shifted[j], k) = lane(Q[j], k) + lane(d[j], k);
     }
-    removals(b, {shifted.data(), count}, {next.data(), count});
-    for (std::size_t k = 0; k < count; ++k) {
+    find_removal(b, shifted, next);
+    bool any_open = false;
+    for (std::size_t k = 0; k < kLanesOf<Shifts>; ++k) {
       if (!open[k]) continue;
-      open[k] = !((next[k] - d[k]).cwiseAbs().maxCoeff() < kConverged);
-      d[k] = next[k];
+      open[k] = false;
+      for (int j = 0; j < kLinearJoints; ++j) {
+        open[k] |= !(std::abs(lane(next[j], k) - lane(d[j], k)) < kConverged);
+        lane(d[j], k) = lane(next[j], k);
+      }
+      any_open |= open[k];
     }
-    if (std::none_of(open.begin(), open.end(), [](bool one) { return one; })) break;
+    if (!any_open) break;
   }
+}
+
+template <class Poses, class Shifts>
+void find_feedback_displacement(const Belief& b, Sign sign, Iterations iterations, const Poses& Q,
+                                const LaneFlags& lanes, Shifts& d) {
+  if (sign == Sign::correct) return find_offset(b, Q, d);
+  if (iterations == Iterations::one) return find_removal(b, Q, d);
+  find_converged_removal(b, Q, lanes, d);
 }
 
 }  // namespace
@@ -61,18 +86,18 @@ Eigen::Vector3d set_point_displacement(const Belief& b, Sign sign, Iterations it
   if (sign == Sign::generate) return b.model.joint_offset(Q, b.p_ST);
   if (iterations == Iterations::one) return -b.model.joint_offset(Q, b.p_ST);
   Eigen::Vector3d d;
-  converged_removals(b, {&Q, 1}, {&d, 1});
+  find_converged_removal(b, Q, kOne, d);
   return d;
 }
 
-void feedback_displacements(const Belief& b, Sign sign, Iterations iterations,
-                            std::span<const Joints> Q, std::span<Eigen::Vector3d> out) {
-  if (sign == Sign::correct) return b.model.joint_offsets(Q, b.p_ST, out);
-  if (iterations == Iterations::one) return removals(b, Q, out);
-  for (std::size_t first = 0; first < Q.size(); first += kTogether) {
-    const std::size_t count = std::min(kTogether, Q.size() - first);
-    converged_removals(b, Q.subspan(first, count), out.subspan(first, count));
-  }
+void feedback_displacement(const Belief& b, Sign sign, Iterations iterations, const Joints& Q,
+                           Eigen::Vector3d& d) {
+  find_feedback_displacement(b, sign, iterations, Q, kOne, d);
+}
+
+void feedback_displacement(const Belief& b, Sign sign, Iterations iterations, const JointLanes& Q,
+                           const LaneFlags& lanes, LinearJointLanes& d) {
+  find_feedback_displacement(b, sign, iterations, Q, lanes, d);
 }
 
 }  // namespace servomill::strategies

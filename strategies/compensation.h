@@ -3,8 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <span>
 
+#include "plant/vocabulary/joint_lanes.h"
 #include "plant/vocabulary/parameters.h"
 #include "strategies/strategy.h"
 
@@ -29,8 +29,11 @@ Eigen::Vector3d set_point_displacement(const Belief& belief, Sign sign, Iteratio
 ///   correct:               F_ni(Q) - F_i(Q), exact in one step: the reading is where the tool is
 ///   generate, one:         -(F_ni(Q) - F_i(Q)) at the measured position, as paper [G] does
 ///   generate, converged:   -(F_ni(Q_prog) - F_i(Q_prog)) with Q = Q_prog - d
-/// @param Q, out  of several runs, each on its own
-void feedback_displacements(const Belief& belief, Sign sign, Iterations iterations,
-                            std::span<const Joints> Q, std::span<Eigen::Vector3d> out);
+void feedback_displacement(const Belief& belief, Sign sign, Iterations iterations, const Joints& Q,
+                           Eigen::Vector3d& d);
+/// The same of eight runs side by side.
+/// @param lanes  those of interest: the others take no time
+void feedback_displacement(const Belief& belief, Sign sign, Iterations iterations,
+                           const JointLanes& Q, const LaneFlags& lanes, LinearJointLanes& d);
 
 }  // namespace servomill::strategies

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
-#include "plant/vocabulary/lanes.h"
 #include "strategies/compensation.h"
 
 namespace servomill::strategies {
@@ -58,18 +58,29 @@ class VelocityWindow {
       : readings_(std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(window / period)))),
         inverse_length_(1.0 / (static_cast<double>(readings_.size()) * period)) {}
 
-  void settle(const Eigen::Vector3d& reading) {
-    std::fill(readings_.begin(), readings_.end(), reading);
+  void settle(const Joints& reading, std::size_t run) {
+    for (Readings& one : readings_) {
+      for (int j = 0; j < kLinearJoints; ++j) one.Q[j][run] = reading[j];
+    }
   }
-  Eigen::Vector3d advance(const Eigen::Vector3d& reading) {
-    const Eigen::Vector3d velocity = (reading - readings_[oldest_]) * inverse_length_;
-    readings_[oldest_] = reading;
+  // Of one run, or of eight from the first on.
+  template <class Poses, class Shifts>
+  void advance(const Poses& reading, std::size_t first, Shifts& velocity) {
+    for (int j = 0; j < kLinearJoints; ++j) {
+      double* before = readings_[oldest_].Q[j].data() + first;
+      for (std::size_t k = 0; k < kLanesOf<Shifts>; ++k) {
+        lane(velocity[j], k) = (lane(reading[j], k) - before[k]) * inverse_length_;
+        before[k] = lane(reading[j], k);
+      }
+    }
     oldest_ = oldest_ + 1 == readings_.size() ? 0 : oldest_ + 1;
-    return velocity;
   }
 
  private:
-  std::vector<Eigen::Vector3d> readings_;
+  struct Readings {
+    LinearJointLanes Q{};
+  };
+  std::vector<Readings> readings_;
   double inverse_length_;
   std::size_t oldest_ = 0;
 };
@@ -79,89 +90,89 @@ class VirtualEncoder final : public FeedbackPart {
   VirtualEncoder(const Belief& belief, const FeedbackParams& params, double period)
       : belief_(belief),
         params_(params),
+        leads_(!params.lead.isZero(0.0)),
         max_change_(params.max_rate * period),
         velocity_(params.window, period) {}
 
-  Eigen::Vector3d settle(const Joints& Q_meas) override {
-    velocity_.settle(Q_meas.head<3>());
-    find_displacements({&Q_meas, 1}, {&out_, 1});
-    out_ = limited(out_);
-    return out_;
+  Eigen::Vector3d settle(const Joints& Q_meas, std::size_t run) override {
+    velocity_.settle(Q_meas, run);
+    Eigen::Vector3d d;
+    find_displacement(Q_meas, {}, d);
+    for (int j = 0; j < kLinearJoints; ++j) out_[j][run] = d[j] = limited(d[j], params_.max);
+    return d;
   }
-
-  // One belief belongs to one strategy.
-  bool goes_with(const FeedbackPart& other) const override {
-    const auto* one = dynamic_cast<const VirtualEncoder*>(&other);
-    return one != nullptr && &one->belief_ == &belief_;
+  Eigen::Vector3d evaluate(const Joints& Q_meas, std::size_t run) override {
+    Eigen::Vector3d d;
+    advance(Q_meas, {}, run, d);
+    return d;
   }
-
-  void evaluate_together(std::span<FeedbackPart* const> parts, std::span<const Joints> Q_meas,
-                         std::span<Eigen::Vector3d> d) override {
-    for (std::size_t first = 0; first < parts.size(); first += kLaneWidth) {
-      const std::size_t count = std::min(kLaneWidth, parts.size() - first);
-      evaluate_eight(parts.subspan(first, count), Q_meas.subspan(first, count),
-                     d.subspan(first, count));
-    }
+  void evaluate(const JointLanes& Q_meas, const LaneFlags& lanes, LinearJointLanes& d) override {
+    advance(Q_meas, lanes, 0, d);
   }
 
  private:
-  using Parts = std::span<FeedbackPart* const>;
-  static VirtualEncoder& of(FeedbackPart* part) { return static_cast<VirtualEncoder&>(*part); }
-
-  void evaluate_eight(Parts parts, std::span<const Joints> Q_meas,
-                      std::span<Eigen::Vector3d> d) const {
-    find_ahead(parts, Q_meas, d);
-    for (std::size_t k = 0; k < parts.size(); ++k) d[k] = of(parts[k]).approach(limited(d[k]));
+  template <class Poses, class Shifts>
+  void advance(const Poses& Q_meas, const LaneFlags& lanes, std::size_t first, Shifts& d) {
+    if (leads_) {
+      find_ahead(Q_meas, lanes, first, d);
+    } else {
+      find_displacement(Q_meas, lanes, d);
+    }
+    for (int j = 0; j < kLinearJoints; ++j) {
+      double* out = out_[j].data() + first;
+      for (std::size_t k = 0; k < kLanesOf<Shifts>; ++k) {
+        out[k] += limited(limited(lane(d[j], k), params_.max) - out[k], max_change_);
+        lane(d[j], k) = out[k];
+      }
+    }
   }
 
   // Displacement where the machine will be when an axis has followed it: each displaced axis has
   // its own lag, hence its own lead.
-  void find_ahead(Parts parts, std::span<const Joints> Q_meas, std::span<Eigen::Vector3d> d) const {
+  template <class Poses, class Shifts>
+  void find_ahead(const Poses& Q_meas, const LaneFlags& lanes, std::size_t first, Shifts& d) {
     const Eigen::Vector3d& lead = params_.lead;
-    if (lead.isZero(0.0)) return find_displacements(Q_meas, d);
-    const std::size_t count = parts.size();
-    std::array<Eigen::Vector3d, kLaneWidth> velocity, other;
-    for (std::size_t k = 0; k < count; ++k) {
-      velocity[k] = of(parts[k]).velocity_.advance(Q_meas[k].head<3>());
-    }
-    const auto find_after = [&](double time, std::span<Eigen::Vector3d> out) {
-      std::array<Joints, kLaneWidth> Q;
-      for (std::size_t k = 0; k < count; ++k) {
-        Q[k] = Q_meas[k];
-        Q[k].head<3>() += time * velocity[k];
+    Poses Q;
+    Shifts velocity, other;
+    std::copy(std::begin(Q_meas), std::end(Q_meas), std::begin(Q));
+    velocity_.advance(Q_meas, first, velocity);
+    const auto find_after = [&](double time, Shifts& out) {
+      for (int j = 0; j < kLinearJoints; ++j) {
+        for (std::size_t k = 0; k < kLanesOf<Shifts>; ++k) {
+          lane(Q[j], k) = lane(Q_meas[j], k) + time * lane(velocity[j], k);
+        }
       }
-      find_displacements({Q.data(), count}, out);
+      find_displacement(Q, lanes, out);
     };
     find_after(lead[0], d);
     for (int j = 1; j < kLinearJoints; ++j) {
       if (lead[j] == lead[0]) continue;
-      find_after(lead[j], {other.data(), count});
-      for (std::size_t k = 0; k < count; ++k) d[k][j] = other[k][j];
+      find_after(lead[j], other);
+      d[j] = other[j];
     }
   }
 
-  void find_displacements(std::span<const Joints> Q, std::span<Eigen::Vector3d> d) const {
-    feedback_displacements(belief_, params_.sign, params_.iterations, Q, d);
+  void find_displacement(const Joints& Q, const LaneFlags&, Eigen::Vector3d& d) const {
+    feedback_displacement(belief_, params_.sign, params_.iterations, Q, d);
   }
-  Eigen::Vector3d limited(const Eigen::Vector3d& d) const {
-    return d.cwiseMax(-params_.max).cwiseMin(params_.max);
+  void find_displacement(const JointLanes& Q, const LaneFlags& lanes, LinearJointLanes& d) const {
+    feedback_displacement(belief_, params_.sign, params_.iterations, Q, lanes, d);
   }
-  const Eigen::Vector3d& approach(const Eigen::Vector3d& wanted) {
-    out_ += (wanted - out_).cwiseMax(-max_change_).cwiseMin(max_change_);
-    return out_;
-  }
+  static double limited(double value, double most) { return std::clamp(value, -most, most); }
 
   const Belief& belief_;
   FeedbackParams params_;
+  bool leads_;
   double max_change_;  // m per model period
   VelocityWindow velocity_;
-  Eigen::Vector3d out_ = Eigen::Vector3d::Zero();
+  LinearJointLanes out_{};
 };
 
 class ModifiedFeedback final : public Strategy {
  public:
   ModifiedFeedback(const Belief& belief, const FeedbackParams& params)
       : belief_(belief), params_(params) {}
+  bool displaces_feedback() const override { return true; }
   std::unique_ptr<FeedbackPart> feedback(double model_period) const override {
     return std::make_unique<VirtualEncoder>(belief_, params_, model_period);
   }

@@ -3,13 +3,13 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "plant/geometry/volumetric.h"
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/axes.h"
+#include "plant/vocabulary/joint_lanes.h"
 #include "plant/vocabulary/move.h"
 #include "plant/vocabulary/set_point_entry.h"
 
@@ -42,28 +42,22 @@ class SetPointPart {
 };
 
 /// Offset of the position feedback: the NC reads x_measured + d, hence moves the axis by -d.
-/// Evaluated once per model period of the feedback hardware; state belongs to one run.
+/// Evaluated once per model period of the feedback hardware. Has the state of up to eight runs,
+/// side by side in lanes; a run gives the same bits in any lane, alone and among others.
 class FeedbackPart {
  public:
   virtual ~FeedbackPart() = default;
-  /// Settles at standstill in Q_meas, as if the hardware had been on for long.
-  virtual Eigen::Vector3d settle(const Joints& Q_meas) = 0;
+  /// Settles one run at standstill in Q_meas, as if the hardware had been on for long.
+  virtual Eigen::Vector3d settle(const Joints& Q_meas, std::size_t lane = 0) = 0;
+  /// One model period of one run, the only one that goes on.
   /// @param Q_meas  scale readings of this instant (5; m, rad)
   /// @return d for X, Y, Z (3; m), acting one model period later
-  Eigen::Vector3d evaluate(const Joints& Q_meas) {
-    FeedbackPart* const self = this;
-    Eigen::Vector3d d;
-    evaluate_together({&self, 1}, {&Q_meas, 1}, {&d, 1});
-    return d;
-  }
-
-  /// Whether this part and another one, of another run, can be evaluated together.
-  virtual bool goes_with(const FeedbackPart& other) const { return this == &other; }
-  /// Evaluates parts that all go with this one, in less time than one by one and with the same
-  /// bits.
-  /// @param Q_meas, d  as of `evaluate`, one for each part
-  virtual void evaluate_together(std::span<FeedbackPart* const> parts,
-                                 std::span<const Joints> Q_meas, std::span<Eigen::Vector3d> d) = 0;
+  virtual Eigen::Vector3d evaluate(const Joints& Q_meas, std::size_t lane = 0) = 0;
+  /// One model period of all runs that go on, in less time than of each.
+  /// @param Q_meas  as above; of other lanes anything
+  /// @param lanes   those of the runs
+  /// @param d       as above; of other lanes anything
+  virtual void evaluate(const JointLanes& Q_meas, const LaneFlags& lanes, LinearJointLanes& d) = 0;
 };
 
 /// Up to three parts, each optional. A strategy is constant and may be shared by runs; the parts
@@ -78,6 +72,8 @@ class Strategy {
 
   virtual std::unique_ptr<SetPointPart> set_point() const { return nullptr; }
 
+  /// Whether it has a part that displaces the feedback.
+  virtual bool displaces_feedback() const { return false; }
   /// @param model_period  s, time between two calls of FeedbackPart::evaluate
   virtual std::unique_ptr<FeedbackPart> feedback(double model_period) const {
     (void)model_period;

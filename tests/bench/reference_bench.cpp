@@ -110,7 +110,6 @@ void take_row(std::size_t run, const sim::AxisSetPoint& set, const sim::ServoAxe
 
 void BM_Servomill(benchmark::State& state, const char* file, bool friction) {
   const auto runs = static_cast<std::size_t>(state.range(0));
-  const plant::VolumetricModel volumetric = read_volumetric();
   std::vector<sim::MachineSettings> machines(runs, read_machine(file, friction));
   std::vector<const sim::MachineSettings*> all;
   for (std::size_t m = 0; m < runs; ++m) {  // no two alike, as in a sweep
@@ -120,7 +119,7 @@ void BM_Servomill(benchmark::State& state, const char* file, bool friction) {
   std::vector<double> log(PLAIN_SIGNALS * runs * (kTicks / kRecord + 1));
   for (auto _ : state) {
     state.PauseTiming();
-    Problem run(all, volumetric);
+    Problem run(all);
     state.ResumeTiming();
     double* row = log.data();
     run.until(kTicks, [&](std::size_t n, const sim::AxisSetPoint& set, const sim::ServoAxes& axes) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
@@ -12,7 +13,9 @@
 
 #include "plant/geometry/volumetric.h"
 #include "plant/kinematics/structure.h"
+#include "sim/feedback_lanes.h"
 #include "sim/servo_axes.h"
+#include "strategies/registry.h"
 
 namespace servomill::reference_problem {
 
@@ -131,6 +134,19 @@ inline Joints reference_trajectory(double t) {
   return Q;
 }
 
+// The virtual encoder of these errors, the limits of which are never reached.
+inline std::unique_ptr<strategies::Strategy> make_virtual_encoder() {
+  strategies::Belief belief{{}, read_volumetric()};
+  belief.p_ST << 0.0, 0.0, -0.15;
+  Parameters parameters;
+  parameters.set("max_um", 1.0);             // m
+  parameters.set("max_rate_mm_per_s", 1e6);  // m/s
+  parameters.set("lead_ms", 0.0);
+  parameters.set("velocity_window_ms", 0.0);
+  parameters.set("iterations", "converged");  // one step is exact when errors are corrected
+  return strategies::find("feedback")->make(parameters, strategies::Sign::correct, belief);
+}
+
 // Backward differences of the set point over the position period.
 class SetPoint {
  public:
@@ -152,18 +168,17 @@ class SetPoint {
 class Problem {
  public:
   /// @param machines  one a run; must outlive this
-  Problem(const std::vector<const sim::MachineSettings*>& machines,
-          const plant::VolumetricModel& volumetric)
+  explicit Problem(const std::vector<const sim::MachineSettings*>& machines)
       : schedule_(sim::make_schedule({{sim::kErrorModel, kVolumetric, 0},
                                       {sim::kSample, kPosition, 0},
                                       {sim::kPositionLoop, kPosition, 0},
                                       {sim::kVelocityLoop, kVelocity, 0},
                                       {sim::kCurrentLoop, kCurrent, 0},
                                       {sim::kRecord, kRecord, 0}})),
-        axes_(machines, {0, 1, 2, 3, 4}, schedule_),
-        volumetric_(volumetric),
-        next_(blocks_of(machines.size())) {
+        axes_(machines, {0, 1, 2, 3, 4}, schedule_) {
     for (std::size_t run = 0; run < machines.size(); ++run) {
+      if (run % kLaneWidth == 0) feedbacks_.emplace_back(axes_, run);
+      feedbacks_.back().add(run, *virtual_encoder_, kVolumetric * kTick);
       axes_.settle(Joints::Zero(), Eigen::Vector3d::Zero(), run);
     }
   }
@@ -185,13 +200,12 @@ class Problem {
   }
 
  private:
-  struct Next {
-    sim::LinearJointLanes displacement{};
-  };
-
   // The velocity loop before the current loop, which uses its result at once.
   void visit(std::uint8_t due, Tick n) {
-    if (due & sim::kErrorModel) displace();
+    if (due & sim::kErrorModel) {
+      axes_.read_scales();
+      for (sim::FeedbackLanes& feedback : feedbacks_) feedback.evaluate();
+    }
     if (due & sim::kPositionLoop) {
       set_point_.take(reference_trajectory(static_cast<double>(n) * kTick));
       set_.Q_ref = set_.Q_cmd = set_point_.Q();
@@ -205,28 +219,10 @@ class Problem {
     if (due & sim::kCurrentLoop) axes_.run_current_loops();
   }
 
-  void displace() {
-    if (axes_.runs() == 1) return displace_one();
-    for (std::size_t first = 0; first < axes_.runs(); first += kLaneWidth) {
-      Next& next = next_[first / kLaneWidth];
-      axes_.displace(next.displacement, first);
-      axes_.read_true(Q_, first);
-      volumetric_.joint_offsets(Q_, p_ST_, next.displacement);
-    }
-  }
-
-  void displace_one() {
-    axes_.displace(next_of_one_);
-    next_of_one_ = volumetric_.joint_offset(axes_.Q_true(), p_ST_);
-  }
-
   std::vector<sim::Instant> schedule_;
   sim::ServoAxes axes_;
-  const plant::VolumetricModel& volumetric_;
-  const Eigen::Vector3d p_ST_{0.0, 0.0, -0.15};
-  sim::JointLanes Q_{};
-  std::vector<Next> next_;  // of eight runs each
-  Eigen::Vector3d next_of_one_ = Eigen::Vector3d::Zero();
+  std::unique_ptr<strategies::Strategy> virtual_encoder_ = make_virtual_encoder();
+  std::vector<sim::FeedbackLanes> feedbacks_;  // of eight runs each
   SetPoint set_point_;
   sim::AxisSetPoint set_;
 };

@@ -16,8 +16,7 @@ constexpr double kFrictionTol = 0.05;  // nm, asked for; the exact step adds 2e-
 // Largest |x - x_ref| (nm) over all axes and rows.
 double largest_error(const sim::MachineSettings& machine, const std::string& reference) {
   const auto x_ref = read_reference(reference);
-  const plant::VolumetricModel volumetric = read_volumetric();
-  Problem run({&machine}, volumetric);
+  Problem run({&machine});
   double largest = 0.0;
   std::size_t row = 0;
   run.until(kEnd, [&](std::size_t, const sim::AxisSetPoint&, const sim::ServoAxes& axes) {
@@ -48,7 +47,6 @@ TEST(ReferenceProblem, FrictionTenTimesSharper) {
 // Eight machines with gains and friction of their own, in lockstep.
 TEST(ReferenceProblem, GivesTheSameBitsAloneAndAmongOthers) {
   constexpr Tick kShort = 40'000;
-  const plant::VolumetricModel volumetric = read_volumetric();
   std::vector<sim::MachineSettings> machines(8, read_machine("axes.csv", true));
   for (std::size_t m = 0; m < machines.size(); ++m) {
     const double share = 1.0 + 0.03 * static_cast<double>(m);
@@ -61,12 +59,12 @@ TEST(ReferenceProblem, GivesTheSameBitsAloneAndAmongOthers) {
   std::vector<const sim::MachineSettings*> all;
   for (const auto& machine : machines) all.push_back(&machine);
   std::vector<std::vector<Joints>> together(machines.size());
-  Problem(all, volumetric).until(kShort, [&](std::size_t run, const auto&, const auto& axes) {
+  Problem(all).until(kShort, [&](std::size_t run, const auto&, const auto& axes) {
     together[run].push_back(axes.Q_true(run));
   });
   for (std::size_t m = 0; m < machines.size(); ++m) {
     std::vector<Joints> alone;
-    Problem({all[m]}, volumetric).until(kShort, [&](std::size_t, const auto&, const auto& axes) {
+    Problem({all[m]}).until(kShort, [&](std::size_t, const auto&, const auto& axes) {
       alone.push_back(axes.Q_true());
     });
     EXPECT_TRUE(alone == together[m]) << "run " << m;

@@ -49,18 +49,8 @@ struct FiveAxisCase {
   }
 
   CaseInputs inputs() {
-    return {machine,
-            belief.model,
-            nullptr,
-            trajectory,
-            path,
-            tips,
-            ServoModel::cascade,
-            hardware,
-            {},
-            strategy->feedback(6 * machine.nc.periods.base),
-            100,
-            0.02};
+    return {machine,  belief.model, nullptr,        trajectory, path, tips, ServoModel::cascade,
+            hardware, {},           strategy.get(), 100,        0.02};
   }
 };
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "plant/sensing/encoder.h"
 #include "tests/strategies/beliefs.h"
 
@@ -129,13 +131,14 @@ TEST(VirtualEncoder, KeepsTheStepsOfTheEncoderOutOfItsLead) {
   EXPECT_LT(noise(3.0), 0.2 * noise(0.3));
 }
 
-// Parts of several runs, each with readings of its own, give the same bits together and alone:
-// whatever the sign and the lead, one step or many, up to and beyond a register.
+// Runs side by side, each with readings of its own, give the same bits together and alone: whatever
+// the sign and the lead, one step or many, and whatever lanes of no concern hold.
 TEST(VirtualEncoder, GivesTheSameBitsTogetherAndAlone) {
   plant::Uniform random(23);
   Belief belief = belief_in(plant::random_errors(random, 50e-6));
   belief.Kv = {60.0, 40.0, 40.0};  // leads that differ
   const Entry entry = feedback_entry();
+  constexpr LaneFlags kRuns = {true, true, false, true, true, true, false, true};
   for (const Sign sign : kBothSigns) {
     for (const bool lead : {false, true}) {
       for (const std::string_view iterations : {"1", "converged"}) {
@@ -143,37 +146,39 @@ TEST(VirtualEncoder, GivesTheSameBitsTogetherAndAlone) {
         parameters.set("iterations", iterations);
         if (lead) parameters.set("lead_ms", std::string_view("auto"));
         const auto strategy = entry.make(parameters, sign, belief);
-        constexpr std::size_t kRuns = 9;
-        std::vector<std::unique_ptr<FeedbackPart>> alone, among;
-        std::vector<FeedbackPart*> together;
-        std::vector<Joints> Q(kRuns, belief.reference);
-        for (std::size_t run = 0; run < kRuns; ++run) {
-          for (int j = 0; j < kLinearJoints; ++j) Q[run][j] = 0.15 * random();
+        const auto together = strategy->feedback(kModelPeriod);
+        std::vector<std::unique_ptr<FeedbackPart>> alone;
+        std::vector<Joints> Q(kLaneWidth, belief.reference);
+        JointLanes Q_lanes;
+        LinearJointLanes d;
+        for (LaneArray& of_joint : Q_lanes) of_joint.fill(std::numeric_limits<double>::quiet_NaN());
+        for (std::size_t run = 0; run < kLaneWidth; ++run) {
           alone.push_back(strategy->feedback(kModelPeriod));
-          among.push_back(strategy->feedback(kModelPeriod));
-          together.push_back(among.back().get());
-          ASSERT_TRUE(together.front()->goes_with(*together.back()));
-          EXPECT_EQ(alone[run]->settle(Q[run]), among[run]->settle(Q[run]));
+          if (!kRuns[run]) continue;
+          for (int j = 0; j < kLinearJoints; ++j) Q[run][j] = 0.15 * random();
+          EXPECT_EQ(alone[run]->settle(Q[run]), together->settle(Q[run], run));
         }
-        std::vector<Eigen::Vector3d> d(kRuns);
         for (int n = 0; n < 100; ++n) {
-          for (Joints& one : Q) one.head<3>() += 1e-6 * Eigen::Vector3d(random(), random(), 1.0);
-          together.front()->evaluate_together(together, Q, d);
-          for (std::size_t run = 0; run < kRuns; ++run) {
-            ASSERT_EQ(alone[run]->evaluate(Q[run]), d[run]) << "run " << run << ", period " << n;
+          for (std::size_t run = 0; run < kLaneWidth; ++run) {
+            if (!kRuns[run]) continue;
+            Q[run].head<3>() += 1e-6 * Eigen::Vector3d(random(), random(), 1.0);
+            for (int j = 0; j < kJoints; ++j) Q_lanes[j][run] = Q[run][j];
+          }
+          together->evaluate(Q_lanes, kRuns, d);
+          for (std::size_t run = 0; run < kLaneWidth; ++run) {
+            if (!kRuns[run]) continue;
+            const Eigen::Vector3d one = alone[run]->evaluate(Q[run]);
+            for (int j = 0; j < kLinearJoints; ++j) {
+              ASSERT_EQ(d[j][run], one[j]) << "run " << run << ", period " << n;
+            }
           }
         }
+        // one that is left goes on by itself
+        const Joints further = Q[4] + Joints::Constant(1e-6);
+        EXPECT_EQ(together->evaluate(further, 4), alone[4]->evaluate(further));
       }
     }
   }
-}
-
-// Another strategy believes something else, or wants it otherwise.
-TEST(VirtualEncoder, DoesNotGoWithOneOfAnotherStrategy) {
-  const Belief belief = ramp_of_y_over_x();
-  const Acting one = virtual_encoder(belief, {}), other = virtual_encoder(belief, {});
-  EXPECT_TRUE(one.feedback->goes_with(*one.feedback));
-  EXPECT_FALSE(one.feedback->goes_with(*other.feedback));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "sim/batch.h"
+#include "sim/preparation_cache.h"
 
 namespace servomill::sim {
 namespace {
@@ -57,13 +58,14 @@ Scenario usual(std::size_t k) { return scenario_with({fmt::format("machine.nc.Kv
 std::map<std::size_t, BatchResult> run(const std::vector<Scenario>& points,
                                        const StopFlag& stop = false) {
   std::atomic<float> progress = 0.0F;
+  PreparationCache cache;  // else each has a strategy of its own
   std::map<std::size_t, BatchResult> results;
   const auto keep = [&](std::vector<EndedPoint>&& ended) {
     for (EndedPoint& one : ended) {
       EXPECT_TRUE(results.emplace(one.place, std::move(one.result)).second) << one.place;
     }
   };
-  run_batch(points, stop, progress, keep, {.keep = Keep::series});
+  run_batch(points, stop, progress, keep, {.keep = Keep::series, .cache = &cache});
   return results;
 }
 
@@ -134,6 +136,28 @@ TEST(Lockstep, HasOddRunsThatAreOdd) {
     EXPECT_EQ(odd.at(name).status, PointStatus::done) << name << ": " << odd.at(name).reason;
   }
   EXPECT_LT(series("ends early").rows(), series("has a winding").rows());
+}
+
+// Virtual encoders of two strategies in turn, at feeds of their own, one with a machine that stops:
+// they end one by one, until one of each strategy is left, and then one of all.
+TEST(Lockstep, OfVirtualEncodersGivesEachTheBitsThatItHasAlone) {
+  std::vector<Scenario> points;
+  for (std::size_t k = 0; k < 8; ++k) {
+    const bool leads = k % 2 == 1;
+    std::vector<std::string> changes = {
+        fmt::format("case=[{{name=\"only\",strategy=[{{type=\"feedback\",model=\"imposed\","
+                    "sign=\"generate\",iterations=\"converged\",lead_ms={}}}]}}]",
+                    leads ? "\"auto\"" : "0"),
+        fmt::format("program.feed_override={}", 3.0 + 0.5 * static_cast<double>(k))};
+    if (k == 5) changes.push_back("machine.nc.following_error_limit_mm=0.001");
+    points.push_back(scenario_with(changes));
+  }
+  const auto together = run(points);
+  ASSERT_EQ(together.size(), 8U);
+  for (std::size_t k = 0; k < 8; ++k) {
+    EXPECT_EQ(together.at(k).status, k == 5 ? PointStatus::stopped : PointStatus::done);
+    expect_same(run({points[k]}).at(0), together.at(k), k);
+  }
 }
 
 TEST(RunBatch, TellsOfPointsAsSoonAsTheyHaveEnded) {

@@ -1,0 +1,70 @@
+#include "sim/feedback_lanes.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace servomill::sim {
+
+void FeedbackLanes::add(std::size_t run, const strategies::Strategy& strategy,
+                        double model_period) {
+  auto together = std::find_if(all_.begin(), all_.end(),
+                               [&](const Together& one) { return one.strategy == &strategy; });
+  if (together == all_.end()) {
+    all_.push_back({&strategy, strategy.feedback(model_period)});
+    together = all_.end() - 1;
+  }
+  use(*together, run - first_, true);
+}
+
+void FeedbackLanes::use(Together& together, std::size_t lane, bool used) {
+  together.lanes.at(lane) = used;
+  together.count = 0;
+  for (std::size_t n = 0; n < kLaneWidth; ++n) {
+    if (!together.lanes[n]) continue;
+    ++together.count;
+    together.last = n;
+  }
+}
+
+FeedbackLanes::Together& FeedbackLanes::of(std::size_t run) {
+  const auto found = std::find_if(all_.begin(), all_.end(), [&](const Together& together) {
+    return together.lanes.at(run - first_);
+  });
+  assert(found != all_.end());
+  return *found;
+}
+
+Eigen::Vector3d FeedbackLanes::settle(std::size_t run, const Joints& Q_meas) {
+  Together& together = of(run);
+  const Eigen::Vector3d d = together.part->settle(Q_meas, run - first_);
+  for (int j = 0; j < kLinearJoints; ++j) together.d_next[j][run - first_] = d[j];
+  return d;
+}
+
+void FeedbackLanes::drop(std::size_t run) { use(of(run), run - first_, false); }
+
+void FeedbackLanes::evaluate() {
+  bool are_read = false;
+  for (Together& together : all_) {
+    if (together.count == 0) continue;
+    if (together.count == 1) {
+      evaluate_one(together);
+      continue;
+    }
+    axes_.displace(together.d_next, together.lanes, first_);
+    if (!are_read) axes_.get_readings(Q_meas_, first_);
+    are_read = true;
+    together.part->evaluate(Q_meas_, together.lanes, together.d_next);
+  }
+}
+
+void FeedbackLanes::evaluate_one(Together& one) {
+  const std::size_t run = first_ + one.last;
+  Eigen::Vector3d d;
+  for (int j = 0; j < kLinearJoints; ++j) d[j] = one.d_next[j][one.last];
+  axes_.displace(d, run);
+  d = one.part->evaluate(axes_.Q_meas(run), one.last);
+  for (int j = 0; j < kLinearJoints; ++j) one.d_next[j][one.last] = d[j];
+}
+
+}  // namespace servomill::sim

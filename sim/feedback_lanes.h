@@ -1,0 +1,51 @@
+/// Feedback parts of runs in lockstep.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "plant/vocabulary/joint_lanes.h"
+#include "sim/servo_axes.h"
+#include "strategies/strategy.h"
+
+namespace servomill::sim {
+
+/// The feedback hardware of eight runs that lie side by side in ServoAxes: what was evaluated one
+/// model period ago acts now, the next one is begun. Runs with one strategy are evaluated together,
+/// in the lanes in which they lie; what other lanes hold is left aside. A run that is the only one
+/// with its strategy goes by itself.
+class FeedbackLanes {
+ public:
+  /// @param axes   must outlive this
+  /// @param first  run in the first lane
+  FeedbackLanes(ServoAxes& axes, std::size_t first) : axes_(axes), first_(first) {}
+
+  /// A run has the feedback of a strategy from now on, and displacements of 0 (3; m).
+  /// @param model_period  s, of all runs
+  void add(std::size_t run, const strategies::Strategy& strategy, double model_period);
+  /// Settles at standstill in Q_meas; d for X, Y, Z (3; m).
+  Eigen::Vector3d settle(std::size_t run, const Joints& Q_meas);
+  /// The run goes on no longer.
+  void drop(std::size_t run);
+  /// To be called once a model period, after ServoAxes::read_scales.
+  void evaluate();
+
+ private:
+  struct Together {
+    const strategies::Strategy* strategy;
+    std::unique_ptr<strategies::FeedbackPart> part;
+    LaneFlags lanes = {};
+    std::size_t count = 0, last = 0;  // of the lanes in use
+    LinearJointLanes d_next = {};     // acts one model period later
+  };
+  Together& of(std::size_t run);
+  void use(Together& together, std::size_t lane, bool used);
+  void evaluate_one(Together& one);
+
+  ServoAxes& axes_;
+  std::size_t first_;
+  std::vector<Together> all_;
+  JointLanes Q_meas_{};
+};
+
+}  // namespace servomill::sim
