@@ -158,7 +158,11 @@ class VirtualEncoder final : public FeedbackPart {
   void find_displacement(const JointLanes& Q, const LaneFlags& lanes, LinearJointLanes& d) const {
     feedback_displacement(belief_, params_.sign, params_.iterations, Q, lanes, d);
   }
-  static double limited(double value, double most) { return std::clamp(value, -most, most); }
+  // Without references, so that lanes go through registers.
+  static double limited(double value, double most) {
+    const double above = value < -most ? -most : value;
+    return most < above ? most : above;
+  }
 
   const Belief& belief_;
   FeedbackParams params_;
