@@ -72,15 +72,13 @@ struct Run {
   CaseInputs& inputs() const { return *point->inputs[number]; }
 };
 
-// Runs that share lanes, at most eight; case after case, so that neighbours are alike. In an order
-// in which the first points are done with first.
+// Runs that share lanes, at most eight; point after point, so that runs of one program and feed are
+// neighbours: they share its interpolation and end together. In an order in which the first points
+// are done with first.
 std::vector<std::vector<Run>> groups_of(std::span<Point> points) {
   std::vector<std::vector<Run>> groups;
-  std::size_t most_cases = 0;
-  for (const Point& point : points) most_cases = std::max(most_cases, point.inputs.size());
-  for (std::size_t number = 0; number < most_cases; ++number) {
-    for (Point& point : points) {
-      if (point.error || number >= point.inputs.size()) continue;
+  for (Point& point : points) {
+    for (std::size_t number = 0; !point.error && number < point.inputs.size(); ++number) {
       const Run run{&point, number};
       const auto open = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
         return group.size() < kLaneWidth && share_lanes(group.front().inputs(), run.inputs());

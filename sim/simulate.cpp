@@ -79,22 +79,40 @@ class LastTicks {
   std::size_t count_ = 0;
 };
 
-// The reference of one trajectory, asked for once at each instant however many runs follow it.
+// The reference of one trajectory some time ago, asked for once at each instant however many runs
+// follow and record it.
 class Reference {
  public:
-  explicit Reference(const controllers::Trajectory& trajectory) : trajectory_(trajectory) {}
-  bool is(const controllers::Trajectory& other) const { return &trajectory_ == &other; }
+  Reference(const controllers::Trajectory& trajectory, double delay)
+      : trajectory_(trajectory), delay_(delay) {}
+  bool is(const controllers::Trajectory& other, double delay) const {
+    return &trajectory_ == &other && delay_ == delay;
+  }
   const controllers::Trajectory::Sample& at(double t) {
-    if (t != t_) sample_ = trajectory_.at(t, cursor_);
+    if (t != t_) sample_ = trajectory_.at(t - delay_, cursor_);
     t_ = t;
     return sample_;
   }
 
  private:
   const controllers::Trajectory& trajectory_;
+  double delay_;
   controllers::Trajectory::Cursor cursor_;
   double t_ = std::numeric_limits<double>::quiet_NaN();
   controllers::Trajectory::Sample sample_;
+};
+
+class References {
+ public:
+  Reference& of(const controllers::Trajectory& trajectory, double delay) {
+    for (const auto& reference : all_) {
+      if (reference->is(trajectory, delay)) return *reference;
+    }
+    return *all_.emplace_back(std::make_unique<Reference>(trajectory, delay));
+  }
+
+ private:
+  std::vector<std::unique_ptr<Reference>> all_;
 };
 
 // What belongs to one case among those that run in lockstep: set point, feedback hardware,
@@ -102,14 +120,15 @@ class Reference {
 class CaseRun {
  public:
   CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::size_t run,
-          Reference& reference)
+          References& references)
       : in_(in),
         nc_(in.machine.nc),
         axes_(axes),
         feedback_(feedback),
         run_(run),
-        reference_(reference),
         set_point_(nc_, in.reference, std::move(in.set_points)),
+        reference_(references.of(in.reference, 0.0)),
+        recorded_(references.of(in.reference, set_point_.delay())),
         recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format),
         last_ticks_(in.machine.joints()) {
     end_ =
@@ -144,8 +163,7 @@ class CaseRun {
   void record(Tick n) {
     // The reference of this very instant: between position periods the held one is older than
     // Q_true.
-    const double t = nc_.periods.seconds(n) - set_point_.delay();
-    const auto& reference = recorded_.at(t);
+    const auto& reference = recorded_.at(nc_.periods.seconds(n));
     Snapshot now;
     now.time = nc_.periods.seconds(n);
     now.s = reference.s;
@@ -196,9 +214,8 @@ class CaseRun {
   ServoAxes& axes_;
   FeedbackLanes& feedback_;
   std::size_t run_;
-  Reference& reference_;
-  Reference recorded_{in_.reference};
   SetPoint set_point_;
+  Reference &reference_, &recorded_;
   Recorder recorder_;
   LastTicks last_ticks_;
   Tick end_ = 0;
@@ -217,8 +234,8 @@ class Lockstep {
     }
     for (std::size_t run = 0; run < together.size(); ++run) {
       CaseInputs& in = *together[run];
-      runs_.push_back(std::make_unique<CaseRun>(in, axes_, feedbacks_[run / kLaneWidth], run,
-                                                reference_of(in.reference)));
+      runs_.push_back(
+          std::make_unique<CaseRun>(in, axes_, feedbacks_[run / kLaneWidth], run, references_));
       longest_ = std::max(longest_, runs_.back()->end());
     }
   }
@@ -246,13 +263,6 @@ class Lockstep {
     std::vector<const MachineSettings*> machines;
     for (const CaseInputs* in : together) machines.push_back(&in->machine);
     return machines;
-  }
-
-  Reference& reference_of(const controllers::Trajectory& trajectory) {
-    for (const auto& reference : references_) {
-      if (reference->is(trajectory)) return *reference;
-    }
-    return *references_.emplace_back(std::make_unique<Reference>(trajectory));
   }
 
   void visit(std::uint8_t due, Tick n) {
@@ -304,7 +314,7 @@ class Lockstep {
 
   std::vector<Instant> schedule_;
   ServoAxes axes_;
-  std::vector<std::unique_ptr<Reference>> references_;
+  References references_;
   std::vector<std::unique_ptr<CaseRun>> runs_;
   std::vector<FeedbackLanes> feedbacks_;  // of eight runs each
   Tick longest_ = 0;
