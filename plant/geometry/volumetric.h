@@ -22,12 +22,6 @@ struct VolumetricError {
   Eigen::Vector3d dk_W = Eigen::Vector3d::Zero();  // of the unit tool axis
 };
 
-/// Derivatives of the tool pose at Q: dp_WT = J_pQ dQ (m/m, m/rad), dk_W = J_kQ dQ (1/m, 1/rad).
-struct PoseJacobian {
-  Eigen::Matrix<double, 3, kJoints> J_pQ = Eigen::Matrix<double, 3, kJoints>::Zero();
-  Eigen::Matrix<double, 3, kJoints> J_kQ = Eigen::Matrix<double, 3, kJoints>::Zero();
-};
-
 /// A machine with its errors, prepared so that one evaluation costs only the errors that are not
 /// zero. Constant after construction: any number of threads may share it. No allocation after that.
 ///

@@ -1,5 +1,6 @@
 #include "plant/kinematics/chain.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace {
 
 void turn_columns(const ChainAxis& a, double q, Eigen::Matrix3d& R) {
   const JointMotion m = motion_at(a, q);
-  for (int i = 0; i < 3; ++i) R.col(i) = turned(a.axis, m.cosine, m.sine, R.col(i));
+  for (int i = 0; i < 3; ++i) R.col(i) = turned(a, m, R.col(i));
 }
 
 }  // namespace
@@ -42,6 +43,25 @@ MachineChain make_chain(const Structure& structure) {
     chain.axes.push_back(axis);
   }
   return chain;
+}
+
+void incline(ChainAxis& axis, const Eigen::Vector3d& direction) {
+  assert(!is_linear(axis.axis) && direction.squaredNorm() > 0.0);
+  const int own = index_of(axis.axis) % 3;
+  const Eigen::Vector3d from = Eigen::Vector3d::Unit(own), to = direction.normalized();
+  axis.is_inclined = to != from;
+  axis.R_MA.setIdentity();
+  if (!axis.is_inclined) return;
+  // half a turn about `from`, then half a turn about the middle
+  Eigen::Vector3d middle = from + to;
+  if (middle.isZero(0.0)) middle = Eigen::Vector3d::Unit((own + 1) % 3);
+  middle.normalize();
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  axis.R_MA = (2.0 * middle * middle.transpose() - one) * (2.0 * from * from.transpose() - one);
+}
+
+Eigen::Vector3d direction_of(const ChainAxis& axis) {
+  return axis.R_MA.col(index_of(axis.axis) % 3);
 }
 
 JointMotion motion_at(const ChainAxis& axis, double q) {
@@ -89,22 +109,50 @@ LeastSquares least_squares(const Eigen::Matrix3d& J, const Eigen::Vector3d& v) {
   return {QR.solve(v), static_cast<int>(QR.rank())};
 }
 
-std::optional<Joints> inverse_fixed_rotary(const MachineChain& chain, const Eigen::Vector3d& p_WT,
-                                           const Joints& Q_rotary, const Eigen::Vector3d& p_ST) {
-  Joints Q = Q_rotary;
-  Q.head<kLinearJoints>().setZero();
+PoseJacobian jacobian(const MachineChain& chain, const Joints& Q, const Eigen::Vector3d& p_ST) {
+  PoseJacobian J;
+  ToolPose P{p_ST, Eigen::Vector3d::UnitZ()};
+  for (auto a = chain.axes.rbegin(); a != chain.axes.rend(); ++a) {
+    const JointMotion m = motion_at(*a, Q[a->joint]);
+    apply(*a, m, P);
+    if (is_linear(a->axis)) {
+      J.J_pQ(index_of(a->axis), a->joint) = 1.0;
+      continue;
+    }
+    for (int j = 0; j < kJoints; ++j) {
+      J.J_pQ.col(j) = turned(*a, m, J.J_pQ.col(j));
+      J.J_kQ.col(j) = turned(*a, m, J.J_kQ.col(j));
+    }
+    const Eigen::Vector3d w = (a->sense == Sense::table ? -1.0 : 1.0) * direction_of(*a);
+    J.J_pQ.col(a->joint) = w.cross(P.p_WT - a->centre);
+    J.J_kQ.col(a->joint) = w.cross(P.k_W);
+  }
+  return J;
+}
+
+LinearJoints linear_joints(const MachineChain& chain, const Eigen::Vector3d& p_WT,
+                           const Joints& Q_rotary, const Eigen::Vector3d& p_ST) {
+  LinearJoints out{Q_rotary, 0.0};
+  out.Q.head<kLinearJoints>().setZero();
   // The tip is an affine function of the linear joints; the second round removes rounding.
-  const Eigen::Matrix3d J = linear_jacobian(chain, Q);
-  const Eigen::Vector3d way = p_WT - forward(chain, Q, p_ST).p_WT;
+  const Eigen::Matrix3d J = linear_jacobian(chain, out.Q);
+  const Eigen::Vector3d way = p_WT - forward(chain, out.Q, p_ST).p_WT;
   Eigen::Vector3d q = Eigen::Vector3d::Zero();
   for (int round = 0; round < 2; ++round) {
     const LeastSquares step = least_squares(J, way - J * q);
-    if (step.rank < number_of_linear_axes(chain)) return std::nullopt;
+    out.is_unique = step.rank == number_of_linear_axes(chain);
     q += step.x;
   }
-  if (!((way - J * q).norm() <= kReachTolerance)) return std::nullopt;
-  Q.head<kLinearJoints>() = q;
-  return Q;
+  out.miss = (way - J * q).norm();
+  out.Q.head<kLinearJoints>() = q;
+  return out;
+}
+
+std::optional<Joints> inverse_fixed_rotary(const MachineChain& chain, const Eigen::Vector3d& p_WT,
+                                           const Joints& Q_rotary, const Eigen::Vector3d& p_ST) {
+  const LinearJoints linear = linear_joints(chain, p_WT, Q_rotary, p_ST);
+  if (!linear.is_unique || !(linear.miss <= kReachTolerance)) return std::nullopt;
+  return linear.Q;
 }
 
 }  // namespace servomill::plant

@@ -34,7 +34,20 @@ struct ChainAxis {
                                                      // turns about a line through this point;
                                                      // angular errors of any axis turn about it.
   Sense sense = Sense::tool;                         // rotary axes only
+  // Rotary axes only: frame A of the axis in M, in which it turns about X, Y or Z as its letter
+  // says and its errors are counted. Not the identity for an inclined axis; set by incline().
+  Eigen::Matrix3d R_MA = Eigen::Matrix3d::Identity();
+  bool is_inclined = false;
 };
+
+/// Lets a rotary axis turn about `direction` (3; not zero, of any length; in M) instead of X, Y or
+/// Z. The frame of the axis is M turned the shortest way; for the opposite direction, where many
+/// are as short, half a turn about the next of X, Y, Z.
+void incline(ChainAxis& axis, const Eigen::Vector3d& direction);
+
+/// Along which, or about which, an axis moves with all axes at zero (unit vector in M), whatever
+/// its sense.
+Eigen::Vector3d direction_of(const ChainAxis& axis);
 
 struct MachineChain {
   std::vector<ChainAxis> axes;  // reading order
@@ -61,6 +74,24 @@ Eigen::Matrix3d R_WM(const MachineChain& chain, const Joints& Q);
 /// dp_WT/d(X, Y, Z) at Q (3x3, m/m). Columns have length 1; that of an axis that the machine lacks
 /// is 0. It does not depend on X, Y, Z.
 Eigen::Matrix3d linear_jacobian(const MachineChain& chain, const Joints& Q);
+
+/// Derivatives of the tool pose at Q: dp_WT = J_pQ dQ (m/m, m/rad), dk_W = J_kQ dQ (1/m, 1/rad).
+struct PoseJacobian {
+  Eigen::Matrix<double, 3, kJoints> J_pQ = Eigen::Matrix<double, 3, kJoints>::Zero();
+  Eigen::Matrix<double, 3, kJoints> J_kQ = Eigen::Matrix<double, 3, kJoints>::Zero();
+};
+
+/// Derivatives of forward() with respect to all joints; 0 for axes that the machine lacks.
+PoseJacobian jacobian(const MachineChain& chain, const Joints& Q, const Eigen::Vector3d& p_ST);
+
+/// Linear joints that bring the tip as near to p_WT as the machine can.
+struct LinearJoints {
+  Joints Q;               // m, rad; rotary joints as given
+  double miss;            // m, between p_WT and the tip
+  bool is_unique = true;  // no two linear axes are parallel at these angles
+};
+LinearJoints linear_joints(const MachineChain& chain, const Eigen::Vector3d& p_WT,
+                           const Joints& Q_rotary, const Eigen::Vector3d& p_ST);
 
 /// Linear joints that put the tip at p_WT while the rotary joints stand as in Q_rotary.
 /// @return all joints (5; m, rad), or nullopt if the linear axes of the machine, at these angles,
@@ -90,14 +121,32 @@ inline Eigen::Vector3d turned(Axis about, double cosine, double sine, const Eige
   return u;
 }
 
+/// R v and R^T v, each sum from left to right as the kernels of the volumetric model add.
+inline Eigen::Vector3d times(const Eigen::Matrix3d& R, const Eigen::Vector3d& v) {
+  Eigen::Vector3d u;
+  for (int i = 0; i < 3; ++i) u[i] = (R(i, 0) * v[0] + R(i, 1) * v[1]) + R(i, 2) * v[2];
+  return u;
+}
+inline Eigen::Vector3d transpose_times(const Eigen::Matrix3d& R, const Eigen::Vector3d& v) {
+  Eigen::Vector3d u;
+  for (int i = 0; i < 3; ++i) u[i] = (R(0, i) * v[0] + R(1, i) * v[1]) + R(2, i) * v[2];
+  return u;
+}
+
+/// v turned by a rotary axis.
+inline Eigen::Vector3d turned(const ChainAxis& a, const JointMotion& m, const Eigen::Vector3d& v) {
+  if (!a.is_inclined) return turned(a.axis, m.cosine, m.sine, v);
+  return times(a.R_MA, turned(a.axis, m.cosine, m.sine, transpose_times(a.R_MA, v)));
+}
+
 /// What one ideal joint does to a tool pose given in the frame behind it.
 inline void apply(const ChainAxis& a, const JointMotion& m, ToolPose& P) {
   if (is_linear(a.axis)) {
     P.p_WT[index_of(a.axis)] += m.shift;
     return;
   }
-  P.p_WT = turned(a.axis, m.cosine, m.sine, P.p_WT - a.centre) + a.centre;
-  P.k_W = turned(a.axis, m.cosine, m.sine, P.k_W);
+  P.p_WT = turned(a, m, P.p_WT - a.centre) + a.centre;
+  P.k_W = turned(a, m, P.k_W);
 }
 
 /// The shifts x that bring J x as close as possible to v, the smallest such x; the rank of J.
