@@ -60,7 +60,9 @@ ErrorName parse_error_name(std::string_view text, const JointLayout& layout, con
 /// errors are constants; along X, Y, Z in m, about A, B, C in rad. Empty: the ideal machine.
 ///
 /// One sign convention: an error is the deviation of the tool side as seen from the workpiece side,
-/// whichever side of the bed carries the axis, in the axes of M at zero.
+/// whichever side of the bed carries the axis, in the axes of M at zero. The errors of an inclined
+/// rotary axis count in its own frame (ChainAxis::R_MA), so that of an inclined B axis EYB still is
+/// along the axis, EXB and EZB across, EBB in its angle, and EY0B and EB0B mean nothing.
 ///
 // clang-format off
 ///     Z ^  EZ. along, EC. about            Y  actual   nominal

@@ -142,16 +142,17 @@ VolumetricError VolumetricModel::first_order_error(const Joints& Q, const Vector
     const Screw component = values(errors_[i], Q[a.joint]);
     const JointMotion m = motion_at(a, Q[a.joint]);
     const auto add_screw = [&](const Screw& screw) {
-      sum.dp_W += shift_of(screw) + turn_of(screw).cross(P.p_WT - a.centre);
-      sum.dk_W += turn_of(screw).cross(P.k_W);
+      const Vector3d shift = a.R_MA * shift_of(screw), turn = a.R_MA * turn_of(screw);
+      sum.dp_W += shift + turn.cross(P.p_WT - a.centre);
+      sum.dk_W += turn.cross(P.k_W);
     };
     // L J L^-1 = J + dL J - J dL: the location error at the tool behind and before the joint
     if (a.side == Side::tool) add_screw(component);
     add_screw(-errors_[i].location);
     apply(a, m, P);
     if (!is_linear(a.axis)) {
-      sum.dp_W = turned(a.axis, m.cosine, m.sine, sum.dp_W);
-      sum.dk_W = turned(a.axis, m.cosine, m.sine, sum.dk_W);
+      sum.dp_W = turned(a, m, sum.dp_W);
+      sum.dk_W = turned(a, m, sum.dk_W);
     }
     add_screw(errors_[i].location);
     if (a.side == Side::workpiece) add_screw(component);
@@ -217,6 +218,7 @@ PoseJacobian VolumetricModel::jacobian(const Joints& Q, const Vector3d& p_ST) co
       tool.move_with(a.joint, shift_of(de));
     };
     tool.shift(-a.centre);
+    if (a.is_inclined) tool.turn(a.R_MA.transpose());
     if (a.side == Side::tool) apply_components();
     // L^-1
     tool.turn(errors.R_location.transpose());
@@ -238,6 +240,7 @@ PoseJacobian VolumetricModel::jacobian(const Joints& Q, const Vector3d& p_ST) co
     tool.shift(shift_of(errors.location));
     tool.turn(errors.R_location);
     if (a.side == Side::workpiece) apply_components();
+    if (a.is_inclined) tool.turn(a.R_MA);
     tool.shift(a.centre);
   }
   return tool.J;

@@ -83,8 +83,17 @@ struct Faults {
   bool has_location() const { return !shift.isZero(0.0) || !angles.isZero(0.0); }
 };
 
+void write(const Matrix3d& R, double (&out)[3][3]) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) out[i][j] = R(i, j);
+  }
+}
+
 bool is_turn(const VolumetricStep& step) {
   return step.move == VolumetricMove::turn || step.move == VolumetricMove::tilted_turn;
+}
+bool is_frame(const VolumetricStep& step) {
+  return step.move == VolumetricMove::enter_frame || step.move == VolumetricMove::leave_frame;
 }
 bool is_shift(const VolumetricStep& step) {
   return step.move == VolumetricMove::shift || step.move == VolumetricMove::faulty_shift;
@@ -192,7 +201,11 @@ VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const Erro
                                            SimdLevel level)
     : kernel_(kernel_of(level)) {
   for (auto a = chain.axes.rbegin(); a != chain.axes.rend(); ++a) {
-    add_steps_of(*a, errors);
+    if (a->is_inclined) {
+      add_inclined_steps_of(*a, errors);
+    } else {
+      add_steps_of(*a, errors);
+    }
     if (!is_linear(a->axis)) rotary_.push_back(*a);
   }
   find_ends();
@@ -201,6 +214,21 @@ VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const Erro
   program_.functions = functions_.finish();
   find_straight_way(chain, errors);
   if (is_straight_) straight_kernel_ = straight_kernel_of(straight_, level);
+}
+
+// In the frame of an inclined axis, of which the centre is the origin, nothing is inclined.
+void VolumetricEvaluation::add_inclined_steps_of(const ChainAxis& axis, const ErrorModel& errors) {
+  VolumetricStep frame{};
+  frame.joint = static_cast<std::uint8_t>(axis.joint);
+  Vector3d::Map(frame.centre) = axis.centre;
+  write(axis.R_MA, frame.R);
+  ChainAxis upright = axis;
+  upright.centre.setZero();
+  frame.move = VolumetricMove::enter_frame;
+  steps_.push_back(frame);
+  add_steps_of(upright, errors);
+  frame.move = VolumetricMove::leave_frame;
+  steps_.push_back(frame);
 }
 
 void VolumetricEvaluation::add_steps_of(const ChainAxis& axis, const ErrorModel& errors) {
@@ -215,10 +243,8 @@ void VolumetricEvaluation::add_steps_of(const ChainAxis& axis, const ErrorModel&
   Vector3d::Map(step.centre) = axis.centre;
   // L = Rot(angles) Trans(shift)
   const Matrix3d R = TurnOf(faults.angles).matrix();
-  for (int i = 0; i < 3; ++i) {
-    step.t[i] = faults.shift[i];
-    for (int j = 0; j < 3; ++j) step.R[i][j] = R(i, j);
-  }
+  write(R, step.R);
+  Vector3d::Map(step.t) = faults.shift;
   const bool linear = is_linear(axis.axis), workpiece = axis.side == Side::workpiece;
   if (linear) {
     step.move = VolumetricMove::shift;
@@ -243,8 +269,9 @@ void VolumetricEvaluation::find_ends() {
     return static_cast<std::size_t>(steps_.rend() - last);
   };
   program_.linear_end = behind_last(is_shift);
-  program_.offset_steps =
-      behind_last([](const VolumetricStep& step) { return step.move != VolumetricMove::turn; });
+  program_.offset_steps = behind_last([](const VolumetricStep& step) {
+    return step.move != VolumetricMove::turn && !is_frame(step);
+  });
   const auto end = steps_.begin() + static_cast<std::ptrdiff_t>(program_.offset_steps);
   offset_rotary_ = static_cast<std::size_t>(std::count_if(steps_.begin(), end, is_turn));
 }
@@ -252,26 +279,29 @@ void VolumetricEvaluation::find_ends() {
 // Turns, which place the tip, and then three linear axes; what follows are turns that do not count.
 void VolumetricEvaluation::find_straight_way(const MachineChain& chain, const ErrorModel& errors) {
   const std::size_t end = program_.offset_steps;
-  tip_turns_ = offset_rotary_;
-  if (end != tip_turns_ + kStraightAxes) return;
+  if (end < kStraightAxes) return;
+  const std::size_t first = end - kStraightAxes;
   for (std::size_t n = 0; n < end; ++n) {
     const VolumetricStep& step = steps_[n];
-    if (n < tip_turns_ ? step.move != VolumetricMove::turn : !is_shift(step)) return;
+    const bool is_ideal_turn = step.move == VolumetricMove::turn || is_frame(step);
+    if (n < first ? !is_ideal_turn : !is_shift(step)) return;
   }
+  tip_turns_ = offset_rotary_;
   is_straight_ = true;
   for (std::size_t n = 0; n < kStraightAxes; ++n) {
-    straight_.joint[n] = steps_[tip_turns_ + n].joint;
+    straight_.joint[n] = steps_[first + n].joint;
   }
-  for (std::size_t n = 0; n < kStraightAxes; ++n) add_straight_axis(n, chain, errors);
+  for (std::size_t n = 0; n < kStraightAxes; ++n) {
+    add_straight_axis(n, steps_[first + n], chain, errors);
+  }
   straight_.functions = straight_functions_.finish();
   straight_.functions.axes = kStraightAxes;
   lay_out_straight_powers();
   is_plain_ = tip_turns_ == 0 && !straight_functions_.has_tables();
 }
 
-void VolumetricEvaluation::add_straight_axis(std::size_t n, const MachineChain& chain,
-                                             const ErrorModel& errors) {
-  const VolumetricStep& step = steps_[tip_turns_ + n];
+void VolumetricEvaluation::add_straight_axis(std::size_t n, const VolumetricStep& step,
+                                             const MachineChain& chain, const ErrorModel& errors) {
   const auto& order = straight_.joint;
   const bool is_mirrored = (order[0] + 1) % 3 != order[1];
   const auto functions = functions_of(chain.at(kAllAxes[step.direction]), errors);

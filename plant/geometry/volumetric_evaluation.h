@@ -102,9 +102,11 @@ class VolumetricEvaluation {
 
  private:
   void add_steps_of(const ChainAxis& axis, const ErrorModel& errors);
+  void add_inclined_steps_of(const ChainAxis& axis, const ErrorModel& errors);
   void find_ends();
   void find_straight_way(const MachineChain& chain, const ErrorModel& errors);
-  void add_straight_axis(std::size_t n, const MachineChain& chain, const ErrorModel& errors);
+  void add_straight_axis(std::size_t n, const VolumetricStep& step, const MachineChain& chain,
+                         const ErrorModel& errors);
   void lay_out_straight_powers();
 
   void one(VolumetricKernel::One call, std::size_t turned, const Joints& Q,

@@ -39,6 +39,18 @@ struct Tools {
     p = plus(times(step.R, plus(turned(about, c, s, u), step.t)), step.centre);
     if constexpr (kAxis) k = times(step.R, turned(about, c, s, transpose_times(step.R, k)));
   }
+  SERVOMILL_INLINE void enter(const VolumetricStep& frame) {
+    p = transpose_times(frame.R, minus(p, frame.centre));
+    if constexpr (kAxis) k = transpose_times(frame.R, k);
+    if constexpr (kIdeal) p_ideal = transpose_times(frame.R, minus(p_ideal, frame.centre));
+    if constexpr (kIdeal && kAxis) k_ideal = transpose_times(frame.R, k_ideal);
+  }
+  SERVOMILL_INLINE void leave(const VolumetricStep& frame) {
+    p = plus(times(frame.R, p), frame.centre);
+    if constexpr (kAxis) k = times(frame.R, k);
+    if constexpr (kIdeal) p_ideal = plus(times(frame.R, p_ideal), frame.centre);
+    if constexpr (kIdeal && kAxis) k_ideal = times(frame.R, k_ideal);
+  }
   template <class F>
   SERVOMILL_INLINE void fault(const F& f, const VolumetricStep& step, const N& q) {
     Vector<N> w{f.w(0), f.w(1), f.w(2)};
@@ -87,6 +99,10 @@ SERVOMILL_INLINE void go(const VolumetricProgram& program, std::size_t steps, So
       const N q = at.q(joint);
       add(step->direction, q, tools.p.v);
       if constexpr (T::kHasIdeal) add(step->direction, q, tools.p_ideal.v);
+    } else if (step->move == VolumetricMove::enter_frame) {
+      tools.enter(*step);
+    } else if (step->move == VolumetricMove::leave_frame) {
+      tools.leave(*step);
     } else {
       const N c = at.cosine(joint), s = at.sine(joint);
       about(step->direction, [&](auto axis) {
@@ -127,6 +143,14 @@ SERVOMILL_INLINE void solve(const VolumetricProgram& program, Source& at, const 
     for (std::size_t n = steps; n-- > program.linear_end;) {
       const VolumetricStep& step = program.steps[n];
       if (step.move == VolumetricMove::fault) continue;
+      if (step.move == VolumetricMove::enter_frame) {
+        p = times(step.R, p);
+        continue;
+      }
+      if (step.move == VolumetricMove::leave_frame) {
+        p = transpose_times(step.R, p);
+        continue;
+      }
       const N c = at.cosine(step.joint), s = -at.sine(step.joint);
       about(step.direction, [&](auto axis) { p = turned(axis, c, s, p); });
     }

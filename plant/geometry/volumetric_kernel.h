@@ -33,7 +33,9 @@ enum class VolumetricMove : std::uint8_t {
   turn,          // an ideal rotary axis
   tilted_turn,   // a rotary axis with location errors; ideal for the ideal tool
   faulty_shift,  // a linear axis with errors; ideal for the ideal tool
-  fault          // errors of a rotary axis before or after its turn; nothing for the ideal tool
+  fault,         // errors of a rotary axis before or after its turn; nothing for the ideal tool
+  enter_frame,   // p <- R^T (p - c): what follows is that of an inclined axis, in its own frame
+  leave_frame    // p <- R p + c
 };
 
 struct VolumetricStep {
@@ -42,7 +44,8 @@ struct VolumetricStep {
   std::uint8_t direction, joint;  // 0, 1, 2: along X, Y, Z or about A, B, C; place in Joints
   double centre[3];               // m, c: where the lever of a fault and a turn begin at q = 0
   double lever_slope[3];          // m/m: c moves by -lever_slope q (workpiece side)
-  double R[3][3], t[3];           // m; a tilted turn is R T J T^-1 R^T with T = Trans(t)
+  double R[3][3], t[3];           // m; a tilted turn is R T J T^-1 R^T with T = Trans(t);
+                                  // of a frame: its orientation
 };
 
 /// Eight waves sin(omega q + phase).
@@ -82,7 +85,7 @@ struct VolumetricProgram {
   const VolumetricStep* steps;  // in the order in which they move the tool
   std::size_t number_of_steps;
   std::size_t offset_steps;       // without the last ones, ideal turns, which offsets undo at once
-  std::size_t linear_end;         // behind the last linear step: what follows are turns and faults
+  std::size_t linear_end;         // behind the last linear step: no other shift follows
   VolumetricFunctions functions;  // counted as joints
 };
 

@@ -54,7 +54,7 @@ void incline(ChainAxis& axis, const Eigen::Vector3d& direction) {
   if (!axis.is_inclined) return;
   // half a turn about `from`, then half a turn about the middle
   Eigen::Vector3d middle = from + to;
-  if (middle.isZero(0.0)) middle = Eigen::Vector3d::Unit((own + 1) % 3);
+  if (middle.isZero(0.0)) middle = Eigen::Vector3d::Unit((own + 2) % 3);
   middle.normalize();
   const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
   axis.R_MA = (2.0 * middle * middle.transpose() - one) * (2.0 * from * from.transpose() - one);

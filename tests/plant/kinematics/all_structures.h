@@ -56,6 +56,15 @@ inline MachineChain random_chain(const Structure& structure, Uniform& random) {
   return chain;
 }
 
+/// The same with rotary axes that point anywhere.
+inline MachineChain random_inclined_chain(const Structure& structure, Uniform& random) {
+  MachineChain chain = random_chain(structure, random);
+  for (ChainAxis& a : chain.axes) {
+    if (!is_linear(a.axis)) incline(a, random.vector());
+  }
+  return chain;
+}
+
 /// Joints within 0.4 m and 2 rad, 0 for axes that the machine lacks.
 inline Joints random_joints(const MachineChain& chain, Uniform& random) {
   Joints Q = Joints::Zero();
