@@ -102,6 +102,9 @@ void read_limits(Reader& axis, bool linear, int j, NcSettings& nc) {
   nc.upper[j] = travel[1];
 }
 
+// Lengths of which the square is a number.
+constexpr double kLeastDirection = 1e-100, kMostDirection = 1e100;
+
 // What the machine says for all of its axes.
 struct Common {
   CommonServo servo;
@@ -121,6 +124,25 @@ void refuse_unbearable_load(Reader& axis, const plant::FeedDriveParams& drive,
   if (!(std::abs(drive.F_load) > most)) return;
   axis.fault("constant_load", fmt::format("must be <= {:g} {}, which the current limit can hold",
                                           most, linear ? "N" : "Nm"));
+}
+
+void read_direction(Reader& axis, plant::ChainAxis& chain_axis) {
+  if (!axis.has("direction")) return;
+  const std::size_t before = axis.faults();
+  const auto direction = axis.reals("direction", kNumber);
+  if (axis.faults() > before) return;
+  if (is_linear(chain_axis.axis)) {
+    axis.fault("direction",
+               "is for rotary axes; a linear axis moves along X, Y or Z as its name says");
+    return;
+  }
+  const Eigen::Vector3d d =
+      direction.size() == 3 ? Eigen::Vector3d(direction.data()) : Eigen::Vector3d::Zero();
+  if (d.norm() >= kLeastDirection && d.norm() <= kMostDirection) {
+    plant::incline(chain_axis, d);
+  } else {
+    axis.fault("direction", "must be [x, y, z], not all 0; any length means the same");
+  }
 }
 
 void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machine) {
@@ -146,6 +168,7 @@ void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machi
   if (!linear) {
     chain_axis.sense = static_cast<plant::Sense>(axis.choice_or("sense", 0, kSenses));
   }
+  read_direction(axis, chain_axis);
   if (axis.has("centre_mm")) {
     const std::size_t before = axis.faults();
     const auto centre = axis.reals("centre_mm", kLength);

@@ -49,13 +49,15 @@ void incline(ChainAxis& axis, const Eigen::Vector3d& direction) {
   assert(!is_linear(axis.axis) && direction.squaredNorm() > 0.0);
   const int own = index_of(axis.axis) % 3;
   const Eigen::Vector3d from = Eigen::Vector3d::Unit(own), to = direction.normalized();
+  Eigen::Vector3d across = to;
+  across[own] = 0.0;
   axis.is_inclined = to != from;
   axis.R_MA.setIdentity();
   if (!axis.is_inclined) return;
-  // half a turn about `from`, then half a turn about the middle
-  Eigen::Vector3d middle = from + to;
-  if (middle.isZero(0.0)) middle = Eigen::Vector3d::Unit((own + 2) % 3);
-  middle.normalize();
+  // half a turn about `from`, then half a turn about the middle between it and `to`
+  const double half = 0.5 * std::atan2(across.norm(), to[own]);
+  if (across.isZero(0.0)) across = Eigen::Vector3d::Unit((own + 2) % 3);
+  const Eigen::Vector3d middle = std::cos(half) * from + std::sin(half) * across.normalized();
   const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
   axis.R_MA = (2.0 * middle * middle.transpose() - one) * (2.0 * from * from.transpose() - one);
 }
