@@ -99,12 +99,14 @@ void add(MemoKey& key, const JointLayout& layout) {
 void add(MemoKey& key, const plant::MachineChain& chain) {
   const auto& [axes, layout] = chain;
   key.add(axes.size());
-  for (const auto& [axis, side, joint, centre, sense] : axes) {
+  for (const auto& [axis, side, joint, centre, sense, R_MA, is_inclined] : axes) {
     key.add(axis);
     key.add(side);
     key.add(joint);
     key.add(centre);
     key.add(sense);
+    for (int i = 0; i < 3; ++i) key.add(Eigen::Vector3d(R_MA.col(i)));
+    key.add(is_inclined);
   }
   add(key, layout);
 }
