@@ -169,16 +169,19 @@ void InverseKinematics::place_linear(JointSolution& solution, const ToolPose& P,
   solution.miss = linear.miss;
 }
 
+bool InverseKinematics::is_within_travel(const Joints& Q) const {
+  return beyond_travel(Q).maxCoeff() <= settings_.travel_tolerance;
+}
+
+// How far each joint lies beyond its travel, negative within.
+Joints InverseKinematics::beyond_travel(const Joints& Q) const {
+  return (settings_.lower - Q).cwiseMax(Q - settings_.upper);
+}
+
 void InverseKinematics::check_travel(JointSolution& solution) const {
-  if (!solution.is_reached()) return;
-  const Joints beyond = (settings_.lower - solution.Q).cwiseMax(solution.Q - settings_.upper);
-  const double farthest = beyond.maxCoeff(&solution.joint);
-  if (farthest <= settings_.travel_tolerance) {
-    solution.joint = 0;
-    return;
-  }
+  if (!solution.is_reached() || is_within_travel(solution.Q)) return;
   solution.reach = Reach::travel;
-  solution.miss = farthest;
+  solution.miss = beyond_travel(solution.Q).maxCoeff(&solution.joint);
 }
 
 JointSolutions InverseKinematics::solve(const ToolPose& P, const Vector3d& p_ST,

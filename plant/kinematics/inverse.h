@@ -46,7 +46,7 @@ struct InverseSettings {
                                         // tool axis may be missed by as much
   double orientation_tolerance = 1e-9;  // rad; how far the tool axis may lie beyond what the
                                         // machine can reach. The nearest axis is then taken.
-  double travel_tolerance = 1e-9;  // m, rad; how far a joint may lie beyond its travel
+  double travel_tolerance = 1e-9;       // m, rad; how far a joint may lie beyond its travel
 };
 
 /// Joints for a pose, or why there are none.
@@ -101,6 +101,9 @@ class InverseKinematics {
     return solve(P, p_ST, Q_near).nearest();
   }
 
+  /// Whether no joint lies farther beyond its travel than the tolerance.
+  bool is_within_travel(const Joints& Q) const;
+
   /// Angle between the tool axis and the nearest singular direction (rad, at most pi/2), where
   /// angles change faster than the tool axis by about its reciprocal. pi/2 with less than two
   /// rotary axes.
@@ -127,6 +130,7 @@ class InverseKinematics {
   double tool_sense(const Rotary& axis, const Joints& Q) const;
   void place_turns(JointSolution& solution, const Joints& Q_near) const;
   void place_linear(JointSolution& solution, const ToolPose& P, const Eigen::Vector3d& p_ST) const;
+  Joints beyond_travel(const Joints& Q) const;
   void check_travel(JointSolution& solution) const;
 
   MachineChain chain_;
