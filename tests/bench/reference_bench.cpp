@@ -6,6 +6,7 @@
 
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "plant/kinematics/inverse.h"
 #include "tests/bench/plain.h"
 #include "tests/known_answers/reference_problem.h"
 
@@ -265,6 +266,30 @@ void BM_FiveAxisPoses(benchmark::State& state) {
       state, [](const VolumetricModel& m, const auto& Q, auto& out) { m.poses(Q, kTip, out); });
 }
 BENCHMARK(BM_FiveAxisPoses);
+
+// Tool poses of a machine with both rotary axes anywhere, one near the other.
+void BM_FiveAxisInverse(benchmark::State& state, const char* structure, bool is_inclined) {
+  plant::MachineChain chain = plant::make_chain(plant::parse_structure(structure));
+  if (is_inclined) plant::incline(chain.at(Axis::B), {0.0, 1.0, 1.0});
+  std::vector<Joints> Q = poses();
+  std::vector<ToolPose> P;
+  for (std::size_t n = 0; n < Q.size(); ++n) {
+    const double s = 0.037 * static_cast<double>(n);
+    Q[n].tail<2>() << 0.7 + 0.5 * std::sin(s), s;
+    P.push_back(plant::forward(chain, Q[n], kTip));
+  }
+  const plant::InverseKinematics inverse(chain);
+  Joints at = Q.front();
+  for (auto _ : state) {
+    for (const ToolPose& pose : P) {
+      at = inverse.nearest(pose, kTip, at).Q;
+      benchmark::DoNotOptimize(at);
+    }
+  }
+  count(state, static_cast<double>(P.size()));
+}
+BENCHMARK_CAPTURE(BM_FiveAxisInverse, table_table, "[w C' B' X b Y Z t]", false);
+BENCHMARK_CAPTURE(BM_FiveAxisInverse, nutating_head, "[w C' X b Y Z B t]", true);
 
 }  // namespace
 }  // namespace servomill::reference_problem
