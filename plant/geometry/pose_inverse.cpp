@@ -12,6 +12,7 @@ using Eigen::Vector3d;
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
 
 constexpr double kMostTurn = 0.5;  // rad in one step; the derivatives say nothing beyond
+constexpr double kShorter = 0.25;  // where a step led away
 
 double angle_between(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -49,7 +50,7 @@ struct Step {
 };
 
 Step newton_step(const VolumetricModel& model, const Joints& Q, const Vector3d& p_ST,
-                 const Vector3d& s_p, const Vector3d& s_k) {
+                 const Vector3d& s_p, const Vector3d& s_k, double most_turn) {
   const PoseJacobian J = model.jacobian(Q, p_ST);
   const Eigen::Matrix3d J_pl = J.J_pQ.leftCols<3>(), J_kl = J.J_kQ.leftCols<3>();
   const Matrix32 J_pr = J.J_pQ.rightCols<2>(), J_kr = J.J_kQ.rightCols<2>();
@@ -58,7 +59,7 @@ Step newton_step(const VolumetricModel& model, const Joints& Q, const Vector3d& 
   for (int i = 0; i < 2; ++i) X.col(i) = least_squares(J_pl, J_pr.col(i)).x;
   Turn turn = smallest_turn(J_kr - J_kl * X, s_k - J_kl * y);
   const double longest = turn.dr.cwiseAbs().maxCoeff();
-  if (longest > kMostTurn) turn.dr *= kMostTurn / longest;
+  if (longest > most_turn) turn.dr *= most_turn / longest;
   Step step;
   step.dQ << y - X * turn.dr, turn.dr;
   // with less than two rotary axes nothing is free
@@ -87,16 +88,27 @@ TrueJoints nonideal_inverse_from(const VolumetricModel& model, const ToolPose& P
   const auto is_there = [&] {
     return out.miss_p <= kPoseTolerance && out.miss_k <= kPoseTolerance;
   };
+  double most_turn = kMostTurn;
   ToolPose got = look();
   while (!is_there() && out.steps < kMaxPoseSteps) {
-    const Step step = newton_step(model, out.Q, p_ST, P.p_WT - got.p_WT, P.k_W - got.k_W);
+    const Step step =
+        newton_step(model, out.Q, p_ST, P.p_WT - got.p_WT, P.k_W - got.k_W, most_turn);
     if (!step.dQ.allFinite()) break;
     out.is_singular = step.is_singular;
     out.Q += step.dQ;
     ++out.steps;
+    const double miss_k = out.miss_k;
     got = look();
+    if (out.miss_k > miss_k) {
+      most_turn = kShorter * std::min(most_turn, step.dQ.tail<2>().cwiseAbs().maxCoeff());
+    }
     constexpr double kStanding = 1e-15;  // m, rad
     if (step.dQ.cwiseAbs().maxCoeff() <= kStanding) break;
+  }
+  // the tip first
+  if (!(out.miss_p <= kPoseTolerance)) {
+    out.Q = model.inverse(P.p_WT, out.Q, p_ST).value_or(out.Q);
+    look();
   }
   if (!(out.miss_k <= kPoseTolerance)) out.reach = Reach::orientation;
   if (!(out.miss_p <= kPoseTolerance)) out.reach = Reach::position;

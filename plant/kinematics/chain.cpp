@@ -134,11 +134,21 @@ PoseJacobian jacobian(const MachineChain& chain, const Joints& Q, const Eigen::V
 
 LinearJoints linear_joints(const MachineChain& chain, const Eigen::Vector3d& p_WT,
                            const Joints& Q_rotary, const Eigen::Vector3d& p_ST) {
+  // The tip is an affine function of the linear joints: where it is with all at 0, and its slopes.
+  Eigen::Vector3d tip = p_ST;
+  Eigen::Matrix3d J = Eigen::Matrix3d::Zero();
+  for (auto a = chain.axes.rbegin(); a != chain.axes.rend(); ++a) {
+    if (is_linear(a->axis)) {
+      J(index_of(a->axis), a->joint) = 1.0;
+      continue;
+    }
+    const JointMotion m = motion_at(*a, Q_rotary[a->joint]);
+    tip = turned(*a, m, tip - a->centre) + a->centre;
+    for (int i = 0; i < kLinearJoints; ++i) J.col(i) = turned(*a, m, J.col(i));
+  }
+  // The second round removes rounding.
   LinearJoints out{Q_rotary, 0.0};
-  out.Q.head<kLinearJoints>().setZero();
-  // The tip is an affine function of the linear joints; the second round removes rounding.
-  const Eigen::Matrix3d J = linear_jacobian(chain, out.Q);
-  const Eigen::Vector3d way = p_WT - forward(chain, out.Q, p_ST).p_WT;
+  const Eigen::Vector3d way = p_WT - tip;
   Eigen::Vector3d q = Eigen::Vector3d::Zero();
   for (int round = 0; round < 2; ++round) {
     const LeastSquares step = least_squares(J, way - J * q);

@@ -76,8 +76,7 @@ struct JointSolutions {
 /// Laws, for all poses P that the machine reaches:
 ///   (1) forward(Q) = P for every solution, within 1e-12 m and 1e-12 unless the settings allow more
 ///   (2) Q is among the solutions of forward(Q), up to full turns
-///   (3) solve(P, Q).nearest() = Q for P = forward(Q) unless Q is singular, and there too if
-///       the other joints are right: a standing tool stands still
+///   (3) solve(forward(Q), Q).nearest() = Q: a standing tool stands still, singular or not
 ///   (4) each rotary joint is the one nearest to Q_near, among those that differ by full turns,
 ///       that lies within its travel
 class InverseKinematics {
