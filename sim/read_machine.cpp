@@ -132,8 +132,7 @@ void read_direction(Reader& axis, plant::ChainAxis& chain_axis) {
   const auto direction = axis.reals("direction", kNumber);
   if (axis.faults() > before) return;
   if (is_linear(chain_axis.axis)) {
-    axis.fault("direction",
-               "is for rotary axes; a linear axis moves along X, Y or Z as its name says");
+    axis.fault("direction", "must not be given: only rotary axes can be inclined");
     return;
   }
   const Eigen::Vector3d d =

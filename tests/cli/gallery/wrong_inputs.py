@@ -176,6 +176,7 @@ AXIS = [
     axis("a discrete current loop without a winding", 'current_loop = "pi"'),
     table_of_axis("a winding without its current loop's bandwidth",
                   '[axis.X.winding]\ninductance = "4 mH"\nresistance = "0.6 ohm"\n'),
+    axis("an inclined linear axis", "direction = [1, 1, 0]"),
     table_of_axis("cogging of a ball screw", '[axis.X.cogging]\namplitude = "3 N"\nperiod = "10 mm"\n'),
     table_of_axis("a filter beyond half the rate", '[[axis.X.filter]]\ntype = "notch"\nfrequency_Hz = 2500\nwidth_Hz = 50\n'),
     table_of_axis("a filter of no type", '[[axis.X.filter]]\ntype = "nothc"\nfrequency_Hz = 120\n'),
