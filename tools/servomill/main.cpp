@@ -20,7 +20,7 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 10> kCommands = {{
+constexpr std::array<Command, 11> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
@@ -31,6 +31,8 @@ constexpr std::array<Command, 10> kCommands = {{
      "frequency responses of an axis, exact and measured", bode_command},
     {"step", "SCENARIO.toml --axis Y [-o OUT.h5]", "step responses of an axis", step_command},
     {"tune", "SCENARIO.toml --axis Y|all", "gains of an axis for given margins", tune_command},
+    {"table", "SCENARIO.toml --format FORMAT -o FOLDER", "writes compensation tables for a real NC",
+     table_command},
     {"check", "FILE...", "checks scenarios, machines and programs", check_command},
     {"canon", "PROGRAM", "prints the canonical moves of a program, one JSON object a line",
      canon_command},

@@ -1,0 +1,182 @@
+#include "sim/export/compensation_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
+constexpr double kSlack = 1e-9;                   // of an interval, for rounding
+constexpr std::size_t kUsualPoints = 256;         // for a spacing that nobody asked for
+
+std::size_t points_over(double length, double spacing) {
+  const double intervals = std::ceil(length / spacing - kSlack);
+  constexpr double kMost = 1e9;  // enough to be refused
+  return static_cast<std::size_t>(std::clamp(intervals, 1.0, kMost)) + 1;
+}
+
+// The smallest spacing of a growing series with which the travel fits.
+double first_that_fits(double length, std::size_t most, const std::function<double(int)>& series) {
+  int n = 0;
+  while (points_over(length, series(n)) > most) ++n;
+  return series(n);
+}
+
+double round_series(double unit, int n) {
+  constexpr std::array<double, 3> kMantissa = {1.0, 2.0, 5.0};
+  constexpr int kFirstDecade = -4;
+  return kMantissa[static_cast<std::size_t>(n % 3)] * std::pow(10.0, kFirstDecade + n / 3) * unit;
+}
+
+double fitting_spacing(double length, bool linear, std::size_t most, const FormatRules& rules) {
+  if (linear && rules.power_of_two) {
+    return first_that_fits(length, most, [](int n) { return std::ldexp(kGridStep, n); });
+  }
+  const double unit = linear ? mm : deg;
+  return first_that_fits(length, most, [unit](int n) { return round_series(unit, n); });
+}
+
+using Curve = std::function<double(double)>;  // error over the position of the axis
+
+CompensationTable tabulate(const TableLine& line, const Curve& error, double step) {
+  CompensationTable table;
+  table.line = line;
+  for (std::size_t i = 0; i < line.points; ++i) {
+    const double exact = error(line.position(line.entry(i)));
+    table.error.push_back(std::round(exact / step) * step + 0.0);
+  }
+  constexpr int kWithin = 8;  // places looked at between two points
+  for (std::size_t i = 0; i + 1 < line.points; ++i) {
+    for (int k = 0; k <= kWithin; ++k) {
+      const double entry = line.entry(i) + line.spacing * k / kWithin;
+      const double q = line.position(entry);
+      if (q < line.from || q > line.to) continue;
+      table.residual = std::max(table.residual, std::abs(table.at(entry) - error(q)));
+    }
+  }
+  return table;
+}
+
+bool holds_anything(const CompensationTable& table) { return table.largest() > 0.0; }
+
+}  // namespace
+
+double TableLine::position(double entry) const {
+  return one_turn && entry > to && entry - kTurn >= from ? entry - kTurn : entry;
+}
+
+double TableLine::entry_of(double position) const {
+  return one_turn && position < 0.0 ? position + kTurn : position;
+}
+
+TableLine make_line(const LineRequest& r, const FormatRules& rules) {
+  const bool linear = r.joint < kLinearJoints, endless = !r.lower || !r.upper;
+  if (linear && endless) {
+    throw InputError({},
+                     fmt::format("axis {0} has no travel; give --travel {0}=FROM:TO", r.letter));
+  }
+  TableLine line;
+  line.joint = r.joint;
+  line.wanted = r.wanted;
+  line.from = r.lower.value_or(0.0);
+  line.to = r.upper.value_or(kTurn);
+  line.one_turn = !linear && (endless || (rules.one_turn && (line.from < 0.0 || line.to > kTurn)));
+  line.wraps = line.one_turn && rules.wraps;
+  const double first = line.one_turn ? 0.0 : line.from, last = line.one_turn ? kTurn : line.to;
+  line.first = first;
+  const double fits =
+      fitting_spacing(last - first, linear, std::min(r.most_points, kUsualPoints), rules);
+  line.spacing = r.spacing.value_or(fits);
+  line.points = points_over(last - first, line.spacing);
+  if (line.points <= r.most_points || !r.wanted) return line;
+
+  const double unit = linear ? mm : deg;
+  const char* name = linear ? "mm" : "deg";
+  const double least = (last - first) / static_cast<double>(r.most_points - 1) / unit;
+  throw InputError(
+      {}, fmt::format("table over {}: {} points, {:g} {} apart, from {:g} to {:g} {}; at most {} "
+                      "points are taken; the smallest spacing that fits is {:g} {}",
+                      r.letter, line.points, line.spacing / unit, name, first / unit, last / unit,
+                      name, r.most_points,
+                      linear && rules.power_of_two && !r.spacing ? fits / unit
+                                                                 : std::ceil(least * 1e4) / 1e4,
+                      name));
+}
+
+bool CompensationTable::is_angle() const {
+  return component ? !is_linear(component->direction) : output >= kLinearJoints;
+}
+
+double CompensationTable::at(double entry) const {
+  const double u =
+      std::clamp((entry - line.first) / line.spacing, 0.0, static_cast<double>(error.size() - 1));
+  const auto i = std::min(static_cast<std::size_t>(u), error.size() - 2);
+  return error[i] + (u - static_cast<double>(i)) * (error[i + 1] - error[i]);
+}
+
+double CompensationTable::largest() const {
+  double most = 0.0;
+  for (const double e : error) most = std::max(most, std::abs(e));
+  return most;
+}
+
+double CompensationTable::steepest() const {
+  double most = 0.0;
+  for (std::size_t i = 0; i + 1 < error.size(); ++i) {
+    most = std::max(most, std::abs(error[i + 1] - error[i]) / line.spacing);
+  }
+  return most;
+}
+
+std::vector<CompensationTable> tables_of(const TableSource& source,
+                                         const std::vector<TableLine>& lines,
+                                         const FormatRules& rules) {
+  const LineCorrection correction(source);
+  std::vector<CompensationTable> out;
+  for (const TableLine& line : lines) {
+    if (!line.wanted) continue;
+    for (int output = 0; output < kJoints; ++output) {
+      const bool own = output == line.joint;
+      if (!own && (!rules.cross || line.joint >= kLinearJoints || output >= kLinearJoints))
+        continue;
+      CompensationTable table = tabulate(
+          line, [&](double q) { return -correction.over(line.joint, q)[output]; },
+          output < kLinearJoints ? rules.length_step : rules.angle_step);
+      table.output = output;
+      if (holds_anything(table)) out.push_back(std::move(table));
+    }
+  }
+  return out;
+}
+
+std::vector<CompensationTable> component_tables_of(const TableSource& source,
+                                                   const std::vector<TableLine>& lines,
+                                                   const FormatRules& rules) {
+  std::vector<CompensationTable> out;
+  for (const TableLine& line : lines) {
+    if (!line.wanted) continue;
+    const Axis axis = *source.chain.layout.axis[static_cast<std::size_t>(line.joint)];
+    for (const Axis direction : kAllAxes) {
+      const plant::ErrorName name{direction, axis, false};
+      const plant::ErrorFunction& error = source.errors.component(name);
+      if (error.is_zero()) continue;
+      CompensationTable table = tabulate(
+          line, [&](double q) { return error.value(q); },
+          is_linear(direction) ? rules.length_step : rules.angle_step);
+      table.output = line.joint;
+      table.component = name;
+      out.push_back(std::move(table));
+    }
+  }
+  return out;
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,68 @@
+/// Compensation tables: values at equidistant points of one axis, linear between them.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "plant/geometry/error_model.h"
+#include "sim/export/line_correction.h"
+#include "sim/export/table_format.h"
+
+namespace servomill::sim {
+
+/// The positions of one axis over which tables run.
+struct TableLine {
+  int joint = 0;
+  double from = 0.0, to = 0.0;  // m, rad: the travel that must be covered
+  double first = 0.0;           // m, rad: of the first point
+  double spacing = 1.0;         // m, rad
+  std::size_t points = 2;
+  bool one_turn = false;  // runs from 0 to 360 deg; entry p stands for p - 360 deg beyond `to`
+  bool wraps = false;     // repeats every 360 deg
+  bool wanted = true;     // whether tables are made over it
+
+  double entry(std::size_t i) const { return first + static_cast<double>(i) * spacing; }
+  /// Position of the axis for which an entry stands.
+  double position(double entry) const;
+  double entry_of(double position) const;  ///< the way back
+};
+
+/// What is wanted of the line of one axis; the rest follows from the format.
+struct LineRequest {
+  int joint = 0;
+  char letter = 'X';
+  std::optional<double> lower, upper;  // m, rad: travel; absent for an endless rotary axis
+  std::optional<double> spacing;       // m, rad; absent: the smallest of a round series that fits
+  std::size_t most_points = 256;
+  bool wanted = true;
+};
+
+/// @throws InputError if the points are too many (with the smallest spacing that fits), or a linear
+///         axis has no travel
+TableLine make_line(const LineRequest& request, const FormatRules& rules);
+
+/// One column of one table.
+struct CompensationTable {
+  TableLine line;
+  int output = 0;                             // joint that is corrected
+  std::optional<plant::ErrorName> component;  // set where one error is tabulated, not an axis
+  std::vector<double> error;                  // m, rad: actual minus nominal, rounded as written
+
+  bool is_angle() const;
+  double at(double entry) const;  ///< linear between points, constant beyond them
+  double largest() const;         ///< magnitude, over the points
+  double residual = 0.0;          // m, rad: largest that linear interpolation and rounding leave
+  double steepest() const;        ///< largest magnitude of step over spacing
+};
+
+/// Tables of the displacements on the lines; none for those that would hold zeros only.
+std::vector<CompensationTable> tables_of(const TableSource& source,
+                                         const std::vector<TableLine>& lines,
+                                         const FormatRules& rules);
+
+/// Tables of the component errors themselves, by their names.
+std::vector<CompensationTable> component_tables_of(const TableSource& source,
+                                                   const std::vector<TableLine>& lines,
+                                                   const FormatRules& rules);
+
+}  // namespace servomill::sim

@@ -1,0 +1,164 @@
+#include "sim/export/table_export.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim {
+namespace {
+
+std::optional<double> finite(double limit) {
+  return std::isfinite(limit) ? std::optional(limit) : std::nullopt;
+}
+
+double unit_of(int joint) { return joint < kLinearJoints ? mm : deg; }
+const char* unit_name_of(int joint) { return joint < kLinearJoints ? "mm" : "deg"; }
+
+std::vector<TableLine> lines_of(const MachineSettings& machine, const TableRequest& request) {
+  const FormatRules& rules = rules_of(request.format);
+  std::vector<TableLine> lines;
+  for (const int j : machine.joints()) {
+    const TableRequest::AxisRequest& axis = request.axes[static_cast<std::size_t>(j)];
+    lines.push_back(
+        make_line({.joint = j,
+                   .letter = machine.chain.layout.letter_of(j),
+                   .lower = axis.from ? axis.from : finite(machine.nc.lower[j]),
+                   .upper = axis.to ? axis.to : finite(machine.nc.upper[j]),
+                   .spacing = j < kLinearJoints ? request.spacing : request.rotary_spacing,
+                   .most_points = request.most_points.value_or(rules.most_points),
+                   .wanted = axis.wanted},
+                  rules));
+  }
+  return lines;
+}
+
+Joints reference_of(const TableRequest& request, const std::vector<TableLine>& lines) {
+  Joints Q = Joints::Zero();
+  for (const TableLine& line : lines) {
+    const auto given = request.axes[static_cast<std::size_t>(line.joint)].reference;
+    const double usual = line.joint < kLinearJoints ? 0.5 * (line.from + line.to)
+                                                    : std::clamp(0.0, line.from, line.to);
+    Q[line.joint] = given.value_or(usual);
+  }
+  return Q;
+}
+
+std::string size_of(bool angle, double value) {
+  return angle ? fmt::format("{:.3f} urad", value / urad) : fmt::format("{:.3f} um", value / um);
+}
+
+std::string title_of(const TableExport& e, const CompensationTable& table) {
+  const char over = e.letter(table.line.joint);
+  return table.component ? fmt::format("{} over {}", to_string(*table.component), over)
+                         : fmt::format("{} over {}", e.letter(table.output), over);
+}
+
+std::string line_of(const TableExport& e, const CompensationTable& table) {
+  const int j = table.line.joint;
+  return fmt::format(
+      "  {}: {} points, {:g} {} apart from {:g} {}, up to {}; linear interpolation "
+      "and rounding leave up to {}",
+      title_of(e, table), table.line.points, table.line.spacing / unit_of(j), unit_name_of(j),
+      table.line.first / unit_of(j), unit_name_of(j), size_of(table.is_angle(), table.largest()),
+      size_of(table.is_angle(), table.residual));
+}
+
+std::string reference_line(const TableExport& e) {
+  std::string where;
+  for (const TableLine& line : e.lines) {
+    const int j = line.joint;
+    where += fmt::format("{}{} = {:g} {}", where.empty() ? "" : ", ", e.letter(j),
+                         e.source.reference[j] / unit_of(j), unit_name_of(j));
+  }
+  return fmt::format("reference: each table holds the line along its axis through {}, tool {:g} mm",
+                     where, e.request.tool_length / mm);
+}
+
+void add_left_over(const TableExport& e, std::vector<std::string>& out) {
+  if (e.left.empty()) {
+    out.push_back("not in these tables: nothing");
+    return;
+  }
+  out.push_back(
+      "not in these tables, or only on their lines (largest size; what it alone leaves within the "
+      "travel):");
+  for (const LeftOver& one : e.left) {
+    std::string leaves;
+    if (one.tip > kNothing) leaves = fmt::format("tip {}", size_of(false, one.tip));
+    if (one.tool_axis > kNothing) {
+      leaves +=
+          fmt::format("{}tool axis {}", leaves.empty() ? "" : ", ", size_of(true, one.tool_axis));
+    }
+    out.push_back(fmt::format("  {:<5} {}; {}", to_string(one.name),
+                              size_of(!is_linear(one.name.direction), one.size), leaves));
+  }
+}
+
+void add_notes(const TableExport& e, std::vector<std::string>& out) {
+  if (!e.rules().power_of_two) return;
+  for (const CompensationTable& table : e.tables) {
+    const double exponent = std::log2(table.line.spacing / kGridStep);
+    if (table.line.joint < kLinearJoints && std::abs(exponent - std::round(exponent)) > 1e-9) {
+      out.push_back(fmt::format(
+          "note: {}: controls without the column AXISPOS need a spacing of 2^n x 0.0001 mm",
+          title_of(e, table)));
+    }
+    if (!table.is_angle() && table.steepest() > 1.0 / kGridSteps) {
+      out.push_back(fmt::format(
+          "note: {}: {:.3f} um/mm; tables of 64 points (code number 105 296) take at most {:g} "
+          "um/mm",
+          title_of(e, table), table.steepest() / (um / mm), 1.0 / kGridSteps / (um / mm)));
+    }
+  }
+}
+
+}  // namespace
+
+TableExport export_tables(const MachineSettings& machine, const plant::ErrorModel& errors,
+                          const TableRequest& request) {
+  TableExport e;
+  e.request = request;
+  e.machine = machine.name;
+  e.lines = lines_of(machine, request);
+  e.source = {
+      machine.chain, errors, {0.0, 0.0, -request.tool_length}, reference_of(request, e.lines)};
+  const bool csv = request.format == TableFormat::csv;
+  e.tables = csv ? component_tables_of(e.source, e.lines, e.rules())
+                 : tables_of(e.source, e.lines, e.rules());
+  if (e.tables.empty() && !(csv && !errors.is_zero())) {
+    throw InputError({}, fmt::format("{} tables over the axes that are asked for can hold nothing "
+                                     "of the error model '{}'",
+                                     name_of(request.format), request.model));
+  }
+  if (csv) return e;
+  e.left = left_over(e.source, e.lines, e.rules());
+  e.volume = volume(e.source, e.lines, e.tables);
+  return e;
+}
+
+std::vector<std::string> report(const TableExport& e) {
+  const bool csv = e.request.format == TableFormat::csv;
+  std::vector<std::string> out;
+  out.push_back(
+      fmt::format("compensation tables of error model '{}' on {}", e.request.model, e.machine));
+  out.push_back(fmt::format("document: {}", e.rules().document));
+  if (!csv) out.push_back(reference_line(e));
+  out.push_back("tables:");
+  for (const CompensationTable& table : e.tables) out.push_back(line_of(e, table));
+  add_notes(e, out);
+  if (csv) {
+    out.push_back("not in these tables: nothing");
+    return out;
+  }
+  add_left_over(e, out);
+  out.push_back(
+      fmt::format("tip at poses all over the travel: off by up to {} without these tables, {} with",
+                  size_of(false, e.volume.before), size_of(false, e.volume.after)));
+  return out;
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,233 @@
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+#include "sim/export/table_files.h"
+#include "sim/hdf5/system_error.h"
+#include "tools/servomill/axis_options.h"
+
+namespace servomill::tools {
+namespace {
+
+namespace po = boost::program_options;
+namespace fs = std::filesystem;
+
+double unit_of(int joint) { return joint < kLinearJoints ? mm : deg; }
+
+// The error model that --model names; without it the only one there is.
+const plant::ErrorModel& model_of(const sim::Scenario& scenario, const Options& options,
+                                  std::string& name) {
+  std::vector<std::string_view> names;
+  for (const auto& [key, model] : scenario.errors) names.push_back(key);
+  if (names.empty()) {
+    throw InputError({options.word()}, "has no error model; write one as [errors.NAME]");
+  }
+  const std::string there_are = fmt::format("the scenario has {}", fmt::join(names, ", "));
+  if (!options.has("model") && names.size() > 1) {
+    throw InputError({"--model"}, fmt::format("is missing; {}", there_are));
+  }
+  name = options.has("model") ? options.get<std::string>("model") : std::string(names.front());
+  const auto found = scenario.errors.find(name);
+  if (found == scenario.errors.end()) {
+    throw InputError({"--model"}, fmt::format("no error model '{}'{}; {}", name,
+                                              did_you_mean(name, names), there_are));
+  }
+  return found->second;
+}
+
+std::optional<double> number_of(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+// "X=..." of an option that may come once for each axis.
+struct AxisWord {
+  int joint;
+  std::string_view value;
+};
+
+AxisWord axis_word(const std::string& option, std::string_view text, std::string_view form,
+                   const sim::MachineSettings& machine) {
+  const bool named = text.size() > 2 && text[1] == '=';
+  const auto axis = named ? axis_of(text.front()) : std::nullopt;
+  const auto joint = axis ? machine.chain.layout.joint_of(*axis) : std::nullopt;
+  if (joint) return {*joint, text.substr(2)};
+  std::string letters;
+  for (const int j : machine.joints()) {
+    letters += fmt::format("{}{}", letters.empty() ? "" : ", ", machine.chain.layout.letter_of(j));
+  }
+  throw InputError(
+      {"--" + option},
+      fmt::format("'{}'; must be {}, in mm or deg; the machine has {}", text, form, letters));
+}
+
+void read_axes(const Options& options, const sim::MachineSettings& machine,
+               sim::TableRequest& request) {
+  const auto place_of = [&](int joint) -> auto& {
+    return request.axes[static_cast<std::size_t>(joint)];
+  };
+  for (auto& axis : request.axes) axis.wanted = false;
+  for (const int j : chosen_joints(options, machine)) place_of(j).wanted = true;
+  constexpr std::string_view kTravelForm = "AXIS=FROM:TO", kAtForm = "AXIS=POSITION";
+  for (const std::string& text : options.list("travel")) {
+    const auto [joint, range] = axis_word("travel", text, kTravelForm, machine);
+    const auto colon = range.find(':');
+    const bool split = colon != std::string_view::npos;
+    const auto from = split ? number_of(range.substr(0, colon)) : std::nullopt;
+    const auto to = split ? number_of(range.substr(colon + 1)) : std::nullopt;
+    if (!from || !to || !(*from < *to)) {
+      throw InputError({"--travel"},
+                       fmt::format("'{}'; must be {} with FROM < TO", text, kTravelForm));
+    }
+    place_of(joint).from = *from * unit_of(joint);
+    place_of(joint).to = *to * unit_of(joint);
+  }
+  for (const std::string& text : options.list("at")) {
+    const auto [joint, value] = axis_word("at", text, kAtForm, machine);
+    const auto position = number_of(value);
+    if (!position) throw InputError({"--at"}, fmt::format("'{}'; must be {}", text, kAtForm));
+    place_of(joint).reference = *position * unit_of(joint);
+  }
+}
+
+sim::TableRequest request_of(const Options& options, const sim::MachineSettings& machine) {
+  sim::TableRequest request;
+  if (!options.has("format")) {
+    throw InputError({"--format"}, fmt::format("is missing; it is one of {}",
+                                               fmt::join(sim::kTableFormats, ", ")));
+  }
+  request.format =
+      static_cast<sim::TableFormat>(choice_option(options, "format", sim::kTableFormats));
+  request.tool_length = quantity_option(options, "tool-length", sim::kLength).value_or(0.0);
+  if (request.tool_length < 0.0) {
+    throw InputError({"--tool-length"},
+                     fmt::format("'{}' must be >= 0", options.get<std::string>("tool-length")));
+  }
+  request.spacing = positive_option(options, "spacing", sim::kLength);
+  request.rotary_spacing = positive_option(options, "rotary-spacing", sim::kAngle);
+  if (options.has("max-points")) {
+    const int points = options.get<int>("max-points");
+    const std::size_t most = sim::rules_of(request.format).most_points;
+    const bool may_be_more = request.format == sim::TableFormat::siemens;
+    constexpr int kMost = 10000;
+    const int limit = may_be_more ? kMost : static_cast<int>(most);
+    if (points < 2 || points > limit) {
+      throw InputError({"--max-points"}, fmt::format("{}; must be >= 2 and <= {} for {}", points,
+                                                     limit, sim::name_of(request.format)));
+    }
+    request.most_points = static_cast<std::size_t>(points);
+  }
+  request.comp_file_type = options.get<int>("comp-file-type");
+  if (request.comp_file_type != 0 && request.comp_file_type != 1) {
+    throw InputError({"--comp-file-type"},
+                     fmt::format("{}; must be 0 or 1", request.comp_file_type));
+  }
+  read_axes(options, machine, request);
+  return request;
+}
+
+// All or none: nothing is written before every name is known to be free.
+void write(const std::vector<sim::TextFile>& files, const std::string& folder, bool force) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+    throw InputError({folder}, "is no folder; name one for the tables");
+  }
+  for (const sim::TextFile& file : files) {
+    const std::string path = (fs::path(folder) / file.name).string();
+    if (fs::is_directory(path, error)) throw InputError({path}, "is a folder");
+    if (!force && fs::exists(path, error)) {
+      throw InputError({path}, "exists; use --force to overwrite");
+    }
+  }
+  fs::create_directories(folder, error);
+  if (error) throw sim::SystemError(folder, "cannot be made", error.message());
+  for (const sim::TextFile& file : files) {
+    const std::string path = (fs::path(folder) / file.name).string(), partial = path + ".partial";
+    std::FILE* out = std::fopen(partial.c_str(), "wb");
+    if (out == nullptr) throw sim::SystemError(path, "cannot be made", std::strerror(errno));
+    const bool put = std::fwrite(file.text.data(), 1, file.text.size(), out) == file.text.size();
+    const bool closed = std::fclose(out) == 0;
+    if (put && closed && std::rename(partial.c_str(), path.c_str()) == 0) continue;
+    const int reason = errno;
+    std::remove(partial.c_str());
+    throw sim::SystemError(path, "cannot be written", std::strerror(reason));
+  }
+}
+
+}  // namespace
+
+int table_command(const Arguments& arguments) {
+  Options options(
+      "table", "SCENARIO.toml --format linuxcnc|heidenhain|siemens|csv -o FOLDER",
+      "Writes an error model of a scenario as compensation tables for a real NC: what corrects\n"
+      "each axis over its own position, with heidenhain and siemens also over that of the two\n"
+      "other linear axes. A table holds the errors on one line along its axis; what it cannot\n"
+      "hold is listed by its name of ISO 230-1, with what it leaves at the tip. csv holds the\n"
+      "errors themselves. Every format names the document that it follows.",
+      "SCENARIO.toml");
+  options.add()("format", po::value<std::string>()->value_name("FORMAT"),
+                "linuxcnc, heidenhain, siemens or csv");
+  options.add()("output,o", po::value<std::string>()->value_name("FOLDER"), "folder for the files");
+  options.add()("model", po::value<std::string>()->value_name("NAME"),
+                "error model of the scenario; needed if it has several");
+  options.add()("axis,a", po::value<std::string>()->default_value("all")->value_name("X,Y"),
+                "axes over which tables run");
+  options.add()("spacing", po::value<std::string>()->value_name("\"5 mm\""),
+                "distance of the points of linear axes; otherwise 1, 2 or 5 x 10^n mm, heidenhain "
+                "2^n x 0.1 um: the smallest that gives 256 points or fewer (siemens: 200)");
+  options.add()("rotary-spacing", po::value<std::string>()->value_name("\"5 deg\""),
+                "the same of rotary axes");
+  options.add()("max-points", po::value<int>()->value_name("N"),
+                "points that the NC takes in one table: siemens as MD38000 and MD18342 say (200 "
+                "unless you say so), linuxcnc and heidenhain at most 256");
+  options.add()("travel", po::value<std::vector<std::string>>()->value_name("X=FROM:TO"),
+                "range of an axis in mm or deg, instead of the machine's travel");
+  options.add()("at", po::value<std::vector<std::string>>()->value_name("Z=POSITION"),
+                "where an axis stands while the tables of others are made, in mm or deg; otherwise "
+                "the middle of travel (linear) or 0 (rotary)");
+  options.add()("tool-length", po::value<std::string>()->value_name("\"110 mm\""),
+                "from the spindle nose to the tip, 0 unless given");
+  options.add()("comp-file-type", po::value<int>()->default_value(0)->value_name("0|1"),
+                "of linuxcnc: 0 positions reached, 1 trims");
+  options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
+                "changes a key of the scenario, as for servomill run");
+  options.add()("force,f", "replaces files of the same names");
+  options.add()("quiet,q", "prints nothing but faults");
+  if (!options.parse(arguments)) return kDone;
+  if (!options.has("output") || options.get<std::string>("output").empty()) {
+    throw InputError({"servomill table"}, "needs the name of a folder: -o FOLDER");
+  }
+
+  const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
+  sim::TableRequest request = request_of(options, scenario.machine);
+  const plant::ErrorModel& errors = model_of(scenario, options, request.model);
+  const sim::TableExport tables = [&] {
+    try {
+      return sim::export_tables(scenario.machine, errors, request);
+    } catch (const InputError& error) {  // knows what is wrong, not where
+      throw InputError({options.word()}, error.faults().front().message);
+    }
+  }();
+  const auto folder = options.get<std::string>("output");
+  const auto files = sim::table_files(tables);
+  write(files, folder, options.has("force"));
+  if (options.has("quiet")) return kDone;
+  for (const std::string& line : sim::report(tables)) fmt::print("{}\n", line);
+  fmt::print("written:");
+  for (const sim::TextFile& file : files)
+    fmt::print(" {}", (fs::path(folder) / file.name).string());
+  fmt::print("\n");
+  return kDone;
+}
+
+}  // namespace servomill::tools
