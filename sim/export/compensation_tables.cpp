@@ -70,11 +70,13 @@ bool holds_anything(const CompensationTable& table) { return table.largest() > 0
 }  // namespace
 
 double TableLine::position(double entry) const {
-  return one_turn && entry > to && entry - kTurn >= from ? entry - kTurn : entry;
+  const double middle_outside = 0.5 * (to + from + kTurn);
+  return one_turn && entry > to && entry > middle_outside ? entry - kTurn : entry;
 }
 
 double TableLine::entry_of(double position) const {
-  return one_turn && position < 0.0 ? position + kTurn : position;
+  const bool within = position >= 0.0 && position <= kTurn;
+  return one_turn && !within ? position - kTurn * std::floor(position / kTurn) : position;
 }
 
 TableLine make_line(const LineRequest& r, const FormatRules& rules) {
@@ -139,7 +141,7 @@ double CompensationTable::steepest() const {
 std::vector<CompensationTable> tables_of(const TableSource& source,
                                          const std::vector<TableLine>& lines,
                                          const FormatRules& rules) {
-  const LineCorrection correction(source);
+  const LineCorrection correction(source, lines);
   std::vector<CompensationTable> out;
   for (const TableLine& line : lines) {
     if (!line.wanted) continue;

@@ -10,23 +10,6 @@
 
 namespace servomill::sim {
 
-/// The positions of one axis over which tables run.
-struct TableLine {
-  int joint = 0;
-  double from = 0.0, to = 0.0;  // m, rad: the travel that must be covered
-  double first = 0.0;           // m, rad: of the first point
-  double spacing = 1.0;         // m, rad
-  std::size_t points = 2;
-  bool one_turn = false;  // runs from 0 to 360 deg; entry p stands for p - 360 deg beyond `to`
-  bool wraps = false;     // repeats every 360 deg
-  bool wanted = true;     // whether tables are made over it
-
-  double entry(std::size_t i) const { return first + static_cast<double>(i) * spacing; }
-  /// Position of the axis for which an entry stands.
-  double position(double entry) const;
-  double entry_of(double position) const;  ///< the way back
-};
-
 /// What is wanted of the line of one axis; the rest follows from the format.
 struct LineRequest {
   int joint = 0;

@@ -29,11 +29,13 @@ Joints held(const LineCorrection& correction, const TableLine& line, const Forma
   return d;
 }
 
-std::vector<Samples> samples_of(const std::vector<TableLine>& lines, auto count_of, auto held_at) {
+std::vector<Samples> samples_of(const TableSource& source, const std::vector<TableLine>& lines,
+                                const FormatRules& rules, auto count_of) {
+  const LineCorrection correction(source, lines);
   std::vector<Samples> out;
   for (const TableLine& line : lines) {
     Samples s{line.joint, spread(line, count_of(line.joint)), {}};
-    for (const double q : s.q) s.d.push_back(held_at(line, q));
+    for (const double q : s.q) s.d.push_back(held(correction, line, rules, q));
     out.push_back(std::move(s));
   }
   return out;
@@ -73,14 +75,10 @@ LeftOver stay_of(TableSource source, const std::vector<TableLine>& lines, const 
                  const plant::ErrorName& name, int own) {
   constexpr int kFine = 129, kFineTurn = 33, kEnds = 2, kAngles = 5;
   source.errors = only(source.errors, name);
-  const LineCorrection correction(source);
-  const auto samples = samples_of(
-      lines,
-      [&](int joint) {
-        const bool fine = joint == own && !name.is_location;
-        return joint < kLinearJoints ? (fine ? kFine : kEnds) : (fine ? kFineTurn : kAngles);
-      },
-      [&](const TableLine& line, double q) { return held(correction, line, rules, q); });
+  const auto samples = samples_of(source, lines, rules, [&](int joint) {
+    const bool fine = joint == own && !name.is_location;
+    return joint < kLinearJoints ? (fine ? kFine : kEnds) : (fine ? kFineTurn : kAngles);
+  });
   const plant::VolumetricModel machine(source.chain, source.errors);
   LeftOver out{.name = name};
   Joints Q = source.reference;
@@ -117,27 +115,40 @@ std::vector<LeftOver> left_over(const TableSource& source, const std::vector<Tab
 
 Volume volume(const TableSource& source, const std::vector<TableLine>& lines,
               const std::vector<CompensationTable>& tables) {
-  constexpr int kLinear = 14, kAngles = 6;  // 13 and 5 intervals: seldom at points of a table
-  const auto samples = samples_of(
-      lines, [](int joint) { return joint < kLinearJoints ? kLinear : kAngles; },
-      [&](const TableLine& line, double q) -> Joints {
-        Joints d = Joints::Zero();
-        for (const CompensationTable& table : tables) {
-          if (table.line.joint == line.joint) d[table.output] -= table.at(line.entry_of(q));
-        }
-        return d;
-      });
   const plant::VolumetricModel machine(source.chain, source.errors);
   Volume out;
-  Joints Q = source.reference;
-  for_all(samples, 0, Q, Joints::Zero(), [&](const Joints& at, const Joints& d) {
-    const Eigen::Vector3d nominal = plant::forward(source.chain, at, source.p_ST).p_WT;
+  const auto look_at = [&](const Joints& Q) {
+    Joints d = Joints::Zero();
+    for (const CompensationTable& table : tables) {
+      d[table.output] -= table.at(table.line.entry_of(Q[table.line.joint]));
+    }
+    const Eigen::Vector3d nominal = plant::forward(source.chain, Q, source.p_ST).p_WT;
     const auto error = [&](const Joints& where) {
       return (machine.forward(where, source.p_ST).p_WT - nominal).norm();
     };
-    out.before = std::max(out.before, error(at));
-    out.after = std::max(out.after, error(at + d));
-  });
+    out.before = std::max(out.before, error(Q));
+    out.after = std::max(out.after, error(Q + d));
+  };
+  for (unsigned corner = 0; corner < (1U << lines.size()); ++corner) {
+    Joints Q = source.reference;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      Q[lines[i].joint] = (corner >> i & 1U) != 0U ? lines[i].to : lines[i].from;
+    }
+    look_at(Q);
+  }
+  // poses n (1/g, 1/g^2, ...) modulo 1: they fill the travel evenly and repeat on no axis
+  constexpr double g = 1.1347241384015194;  // g^6 = g + 1, for up to five axes
+  constexpr int kPoses = 20000;
+  for (int n = 1; n <= kPoses; ++n) {
+    Joints Q = source.reference;
+    double step = 1.0;
+    for (const TableLine& line : lines) {
+      step /= g;
+      double whole = 0.0;
+      Q[line.joint] = line.from + (line.to - line.from) * std::modf(n * step, &whole);
+    }
+    look_at(Q);
+  }
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "sim/export/line_correction.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "strategies/compensation.h"
@@ -21,13 +22,24 @@ plant::ErrorModel without_rotary_positioning(plant::ErrorModel errors) {
 
 }  // namespace
 
-LineCorrection::LineCorrection(const TableSource& source)
+LineCorrection::LineCorrection(const TableSource& source, const std::vector<TableLine>& lines)
     : source_(source),
       belief_{.layout = source.chain.layout,
               .model = {source.chain, without_rotary_positioning(source.errors)},
               .p_ST = source.p_ST,
               .reference = source.reference},
-      base_(at(source.reference)) {}
+      base_(at(source.reference)) {
+  const auto wanted = [&](int joint) {
+    return std::any_of(lines.begin(), lines.end(), [joint](const TableLine& line) {
+      return line.joint == joint && line.wanted;
+    });
+  };
+  for (int& line : base_line_) {
+    for (int other = 0; other < kLinearJoints && !wanted(line); ++other) {
+      if (wanted(other)) line = other;
+    }
+  }
+}
 
 Eigen::Vector3d LineCorrection::at(const Joints& Q) const {
   return strategies::set_point_displacement(belief_, strategies::Sign::correct,
@@ -41,7 +53,9 @@ Joints LineCorrection::over(int joint, double q) const {
     Joints Q = source_.reference;
     Q[joint] = q;
     d.head<kLinearJoints>() = at(Q) - base_;
-    d[joint] += base_[joint];
+    for (int k = 0; k < kLinearJoints; ++k) {
+      if (base_line_[static_cast<std::size_t>(k)] == joint) d[k] += base_[k];
+    }
     return d;
   }
   // the coordinate may count the other way than the error does

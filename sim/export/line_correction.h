@@ -2,6 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <vector>
 
 #include "plant/geometry/error_model.h"
 #include "plant/kinematics/chain.h"
@@ -18,6 +21,23 @@ struct TableSource {
   Joints reference = Joints::Zero();               // m, rad; where the other axes stand
 };
 
+/// The positions of one axis over which tables run.
+struct TableLine {
+  int joint = 0;
+  double from = 0.0, to = 0.0;  // m, rad: the travel that must be covered
+  double first = 0.0;           // m, rad: of the first point
+  double spacing = 1.0;         // m, rad
+  std::size_t points = 2;
+  bool one_turn = false;  // runs from 0 to 360 deg: entries beyond the travel stand for angles < 0
+  bool wraps = false;     // repeats every 360 deg
+  bool wanted = true;     // whether tables are made over it
+
+  double entry(std::size_t i) const { return first + static_cast<double>(i) * spacing; }
+  /// Position of the axis for which an entry stands.
+  double position(double entry) const;
+  double entry_of(double position) const;  ///< the way back
+};
+
 /// Displacements of the axes that remove the errors on those lines.
 ///
 /// Laws, for a machine with three linear axes:
@@ -27,13 +47,15 @@ struct TableSource {
 ///       all Q
 class LineCorrection {
  public:
-  explicit LineCorrection(const TableSource& source);
+  /// @param lines  one for each axis of the machine
+  LineCorrection(const TableSource& source, const std::vector<TableLine>& lines);
 
   /// @param joint  the axis whose position the table looks up
   /// @param q      its position (m, rad)
-  /// @return displacement of all axes (5; m, rad). Of a linear axis: its own is that on its line,
-  ///         those of the two others are what changes since the reference, so that the sum over all
-  ///         axes counts the error at the reference once. Of a rotary axis: its own only.
+  /// @return displacement of all axes (5; m, rad). Of a rotary axis: its own only. Of a linear
+  ///         axis: of X, Y, Z what changes since the reference; what is there already is added for
+  ///         an axis to the line of its own, or to the first one wanted, so that the sum over all
+  ///         lines counts it once
   Joints over(int joint, double q) const;
 
  private:
@@ -42,6 +64,7 @@ class LineCorrection {
   TableSource source_;
   strategies::Belief belief_;  // without the positioning errors of rotary axes
   Eigen::Vector3d base_;       // m, at the reference
+  std::array<int, kLinearJoints> base_line_ = {0, 1, 2};  // that counts it
 };
 
 }  // namespace servomill::sim
