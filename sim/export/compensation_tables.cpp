@@ -141,7 +141,7 @@ double CompensationTable::steepest() const {
 std::vector<CompensationTable> tables_of(const TableSource& source,
                                          const std::vector<TableLine>& lines,
                                          const FormatRules& rules) {
-  const LineCorrection correction(source, lines);
+  const LineCorrection correction(source);
   std::vector<CompensationTable> out;
   for (const TableLine& line : lines) {
     if (!line.wanted) continue;

@@ -1,6 +1,7 @@
 /// Compensation tables: values at equidistant points of one axis, linear between them.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -9,6 +10,23 @@
 #include "sim/export/table_format.h"
 
 namespace servomill::sim {
+
+/// The positions of one axis over which tables run.
+struct TableLine {
+  int joint = 0;
+  double from = 0.0, to = 0.0;  // m, rad: the travel that must be covered
+  double first = 0.0;           // m, rad: of the first point
+  double spacing = 1.0;         // m, rad
+  std::size_t points = 2;
+  bool one_turn = false;  // runs from 0 to 360 deg: entries beyond the travel stand for angles < 0
+  bool wraps = false;     // repeats every 360 deg
+  bool wanted = true;     // whether tables are made over it
+
+  double entry(std::size_t i) const { return first + static_cast<double>(i) * spacing; }
+  /// Position of the axis for which an entry stands.
+  double position(double entry) const;
+  double entry_of(double position) const;  ///< the way back
+};
 
 /// What is wanted of the line of one axis; the rest follows from the format.
 struct LineRequest {
@@ -38,7 +56,8 @@ struct CompensationTable {
   double steepest() const;        ///< largest magnitude of step over spacing
 };
 
-/// Tables of the displacements on the lines; none for those that would hold zeros only.
+/// Tables of the displacements on the lines, 0 at the reference; none for those that would hold
+/// zeros only.
 std::vector<CompensationTable> tables_of(const TableSource& source,
                                          const std::vector<TableLine>& lines,
                                          const FormatRules& rules);

@@ -31,7 +31,7 @@ Joints held(const LineCorrection& correction, const TableLine& line, const Forma
 
 std::vector<Samples> samples_of(const TableSource& source, const std::vector<TableLine>& lines,
                                 const FormatRules& rules, auto count_of) {
-  const LineCorrection correction(source, lines);
+  const LineCorrection correction(source);
   std::vector<Samples> out;
   for (const TableLine& line : lines) {
     Samples s{line.joint, spread(line, count_of(line.joint)), {}};
@@ -82,7 +82,7 @@ LeftOver stay_of(TableSource source, const std::vector<TableLine>& lines, const 
   const plant::VolumetricModel machine(source.chain, source.errors);
   LeftOver out{.name = name};
   Joints Q = source.reference;
-  for_all(samples, 0, Q, Joints::Zero(), [&](const Joints& at, const Joints& d) {
+  for_all(samples, 0, Q, LineCorrection(source).base(), [&](const Joints& at, const Joints& d) {
     const ToolPose actual = machine.forward(at + d, source.p_ST);
     const ToolPose nominal = plant::forward(source.chain, at, source.p_ST);
     out.tip = std::max(out.tip, (actual.p_WT - nominal.p_WT).norm());
@@ -116,6 +116,7 @@ std::vector<LeftOver> left_over(const TableSource& source, const std::vector<Tab
 Volume volume(const TableSource& source, const std::vector<TableLine>& lines,
               const std::vector<CompensationTable>& tables) {
   const plant::VolumetricModel machine(source.chain, source.errors);
+  const Joints base = LineCorrection(source).base();
   Volume out;
   const auto look_at = [&](const Joints& Q) {
     Joints d = Joints::Zero();
@@ -126,8 +127,8 @@ Volume volume(const TableSource& source, const std::vector<TableLine>& lines,
     const auto error = [&](const Joints& where) {
       return (machine.forward(where, source.p_ST).p_WT - nominal).norm();
     };
-    out.before = std::max(out.before, error(Q));
-    out.after = std::max(out.after, error(Q + d));
+    out.before = std::max(out.before, error(Q + base));
+    out.after = std::max(out.after, error(Q + base + d));
   };
   for (unsigned corner = 0; corner < (1U << lines.size()); ++corner) {
     Joints Q = source.reference;

@@ -1,4 +1,5 @@
-/// What compensation tables over single axes cannot correct.
+/// What compensation tables over single axes cannot correct. A shift of the machine's zero does not
+/// count: everywhere what the machine is off at the reference is taken away.
 #pragma once
 
 #include <vector>

@@ -2,9 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <cstddef>
-#include <vector>
 
 #include "plant/geometry/error_model.h"
 #include "plant/kinematics/chain.h"
@@ -21,50 +18,35 @@ struct TableSource {
   Joints reference = Joints::Zero();               // m, rad; where the other axes stand
 };
 
-/// The positions of one axis over which tables run.
-struct TableLine {
-  int joint = 0;
-  double from = 0.0, to = 0.0;  // m, rad: the travel that must be covered
-  double first = 0.0;           // m, rad: of the first point
-  double spacing = 1.0;         // m, rad
-  std::size_t points = 2;
-  bool one_turn = false;  // runs from 0 to 360 deg: entries beyond the travel stand for angles < 0
-  bool wraps = false;     // repeats every 360 deg
-  bool wanted = true;     // whether tables are made over it
-
-  double entry(std::size_t i) const { return first + static_cast<double>(i) * spacing; }
-  /// Position of the axis for which an entry stands.
-  double position(double entry) const;
-  double entry_of(double position) const;  ///< the way back
-};
-
-/// Displacements of the axes that remove the errors on those lines.
+/// Displacements of the axes that remove the errors on those lines. They are zero at the reference,
+/// so that nothing jumps when the tables are switched on; what the machine is off there is a shift
+/// of its zero, base(), which a work offset takes.
 ///
 /// Laws, for a machine with three linear axes:
-///   (1) on the line of a linear axis j:   F_ni(Q + sum of over(i, Q_i)) = F_i(Q), of the tip, for
-///       all rotary axes at the reference and errors without positioning of the rotary axes
-///   (2) for a rotary axis j that alone has a positioning error: the same of tip and tool axis, for
+///   (1) on the line of a linear axis j:  F_ni(Q + base() + over(j, Q_j)) = F_i(Q), of the tip, for
+///       errors without positioning of the rotary axes
+///   (2) for a rotary axis j with no error but its positioning: the same of tip and tool axis, for
 ///       all Q
 class LineCorrection {
  public:
-  /// @param lines  one for each axis of the machine
-  LineCorrection(const TableSource& source, const std::vector<TableLine>& lines);
+  explicit LineCorrection(const TableSource& source);
 
   /// @param joint  the axis whose position the table looks up
   /// @param q      its position (m, rad)
-  /// @return displacement of all axes (5; m, rad). Of a rotary axis: its own only. Of a linear
-  ///         axis: of X, Y, Z what changes since the reference; what is there already is added for
-  ///         an axis to the line of its own, or to the first one wanted, so that the sum over all
-  ///         lines counts it once
+  /// @return displacement of all axes (5; m, rad) since the reference: of X, Y and Z for a linear
+  ///         axis, of itself for a rotary one
   Joints over(int joint, double q) const;
 
+  /// Displacement at the reference (5; m, rad).
+  const Joints& base() const { return base_; }
+
  private:
-  Eigen::Vector3d at(const Joints& Q) const;
+  Eigen::Vector3d linear_at(const Joints& Q) const;  // m
+  double rotary_at(int joint, double q) const;       // rad
 
   TableSource source_;
   strategies::Belief belief_;  // without the positioning errors of rotary axes
-  Eigen::Vector3d base_;       // m, at the reference
-  std::array<int, kLinearJoints> base_line_ = {0, 1, 2};  // that counts it
+  Joints base_ = Joints::Zero();
 };
 
 }  // namespace servomill::sim

@@ -78,6 +78,20 @@ std::string reference_line(const TableExport& e) {
                      where, e.request.tool_length / mm);
 }
 
+void add_base(const TableExport& e, std::vector<std::string>& out) {
+  std::string text;
+  for (const TableLine& line : e.lines) {
+    const double error = -e.base[line.joint];
+    if (std::abs(error) <= kNothing) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", e.letter(line.joint),
+                        size_of(line.joint >= kLinearJoints, error));
+  }
+  if (text.empty()) return;
+  out.push_back(fmt::format(
+      "zero: the tables are 0 at the reference; the error there stays for the work offset: {}",
+      text));
+}
+
 void add_left_over(const TableExport& e, std::vector<std::string>& out) {
   if (e.left.empty()) {
     out.push_back("not in these tables: nothing");
@@ -100,19 +114,19 @@ void add_left_over(const TableExport& e, std::vector<std::string>& out) {
 
 void add_notes(const TableExport& e, std::vector<std::string>& out) {
   if (!e.rules().power_of_two) return;
+  for (const TableLine& line : e.lines) {
+    const double exponent = std::log2(line.spacing / kGridStep);
+    if (line.joint >= kLinearJoints || !line.wanted) continue;
+    if (std::abs(exponent - std::round(exponent)) < 1e-9) continue;
+    out.push_back(fmt::format(
+        "note: {}: controls without the column AXISPOS need a spacing of 2^n x 0.0001 mm",
+        e.letter(line.joint)));
+  }
   for (const CompensationTable& table : e.tables) {
-    const double exponent = std::log2(table.line.spacing / kGridStep);
-    if (table.line.joint < kLinearJoints && std::abs(exponent - std::round(exponent)) > 1e-9) {
-      out.push_back(fmt::format(
-          "note: {}: controls without the column AXISPOS need a spacing of 2^n x 0.0001 mm",
-          title_of(e, table)));
-    }
-    if (!table.is_angle() && table.steepest() > 1.0 / kGridSteps) {
-      out.push_back(fmt::format(
-          "note: {}: {:.3f} um/mm; tables of 64 points (code number 105 296) take at most {:g} "
-          "um/mm",
-          title_of(e, table), table.steepest() / (um / mm), 1.0 / kGridSteps / (um / mm)));
-    }
+    if (table.is_angle() || table.steepest() <= 1.0 / kGridSteps) continue;
+    out.push_back(fmt::format(
+        "note: {}: {:.3f} um/mm; tables of 64 points (code number 105 296) take at most {:g} um/mm",
+        title_of(e, table), table.steepest() / (um / mm), 1.0 / kGridSteps / (um / mm)));
   }
 }
 
@@ -135,6 +149,7 @@ TableExport export_tables(const MachineSettings& machine, const plant::ErrorMode
                                      name_of(request.format), request.model));
   }
   if (csv) return e;
+  e.base = LineCorrection(e.source).base();
   e.left = left_over(e.source, e.lines, e.rules());
   e.volume = volume(e.source, e.lines, e.tables);
   return e;
@@ -147,6 +162,7 @@ std::vector<std::string> report(const TableExport& e) {
       fmt::format("compensation tables of error model '{}' on {}", e.request.model, e.machine));
   out.push_back(fmt::format("document: {}", e.rules().document));
   if (!csv) out.push_back(reference_line(e));
+  add_base(e, out);
   out.push_back("tables:");
   for (const CompensationTable& table : e.tables) out.push_back(line_of(e, table));
   add_notes(e, out);
@@ -156,7 +172,9 @@ std::vector<std::string> report(const TableExport& e) {
   }
   add_left_over(e, out);
   out.push_back(
-      fmt::format("tip at poses all over the travel: off by up to {} without these tables, {} with",
+      fmt::format("tip at poses all over the travel, beside that of the reference: off by up to {} "
+                  "without these "
+                  "tables, {} with",
                   size_of(false, e.volume.before), size_of(false, e.volume.after)));
   return out;
 }

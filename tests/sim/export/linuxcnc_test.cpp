@@ -108,11 +108,11 @@ TEST_P(BothTypes, TheAxisStandsWhereTheCommandSays) {
       Joints Q = tables.source.reference;
       Q[j] = machine.nc.lower[j] + (machine.nc.upper[j] - machine.nc.lower[j]) * n / 1000.0;
       for (const double velocity : {1.0, -1.0}) {
-        Joints motor = Q;
+        Joints motor = Q + tables.base;
         motor[j] += joint.at(Q[j] / mm, velocity) * mm;
         const Eigen::Vector3d p = actual.forward(motor, Eigen::Vector3d::Zero()).p_WT;
         worst = std::max(worst, std::abs(p[j] - Q[j]));
-        const Eigen::Vector3d off = actual.forward(Q, Eigen::Vector3d::Zero()).p_WT;
+        const Eigen::Vector3d off = actual.forward(Q + tables.base, Eigen::Vector3d::Zero()).p_WT;
         without = std::max(without, std::abs(off[j] - Q[j]));
       }
     }
@@ -145,7 +145,7 @@ TEST(Linuxcnc, TurnsARotaryAxisToWhereTheCommandSays) {
       Joints Q = Joints::Zero();
       Q.head<3>() << 1.0, 0.0, 0.1;  // 1 m off the axis: 1 m/rad
       Q[c] = n * deg;
-      Joints motor = Q;
+      Joints motor = Q + tables.base;
       motor[c] += joint.at(Q[c] / deg, 1.0) * deg;
       const Eigen::Vector3d nominal = plant::forward(machine.chain, Q, p_ST).p_WT;
       worst = std::max(worst, (actual.forward(motor, p_ST).p_WT - nominal).norm());
@@ -169,7 +169,7 @@ TEST(Linuxcnc, NamesWhatItCannotHold) {
   EXPECT_NEAR(tables.left[0].size, 30.0 * um, 0.001 * um);  // samples of a sine
   EXPECT_NEAR(tables.left[0].tip, 30.0 * um, 0.02 * um);
   EXPECT_EQ(tables.left[1].name, "EC0Y"_err);
-  // 100 mm from the reference, where the table of X counts it
+  // 100 mm from the reference
   EXPECT_NEAR(tables.left[1].tip, 40.0 * urad * 100.0 * mm, 0.001 * um);
   EXPECT_EQ(tables.left[2].name, "EAZ"_err);
   EXPECT_NEAR(tables.left[2].size, 20.0 * urad, 1e-12);
