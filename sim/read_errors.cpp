@@ -141,4 +141,18 @@ plant::ErrorModel read_errors(Reader& model, const JointLayout& layout) {
   return errors;
 }
 
+std::map<std::string, plant::ErrorModel> read_error_file(const std::string& path,
+                                                         const JointLayout& layout) {
+  const Document document = Document::from_file(path);
+  Reader root(document);
+  Reader models = root.table("errors");
+  std::map<std::string, plant::ErrorModel> out;
+  for (const std::string& name : models.keys()) {
+    Reader model = models.table(name);
+    out[name] = read_errors(model, layout);
+  }
+  root.finish();
+  return out;
+}
+
 }  // namespace servomill::sim

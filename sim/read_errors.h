@@ -1,6 +1,9 @@
 /// Reads error models of a scenario.
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "plant/geometry/error_model.h"
 #include "sim/config/reader.h"
 
@@ -9,6 +12,11 @@ namespace servomill::sim {
 /// One named model: ISO 230-1 names, each a function of the axis' coordinate or the name of another
 /// error of this model whose function it shares.
 plant::ErrorModel read_errors(Reader& model, const JointLayout& layout);
+
+/// The models of a file that holds nothing but tables [errors.NAME].
+/// @throws InputError
+std::map<std::string, plant::ErrorModel> read_error_file(const std::string& path,
+                                                         const JointLayout& layout);
 
 /// A length (um) as a function of a linear coordinate (mm), written like a component error.
 plant::ErrorFunction read_length_function(Reader& table);

@@ -36,13 +36,21 @@ std::vector<TableLine> lines_of(const MachineSettings& machine, const TableReque
   return lines;
 }
 
-Joints reference_of(const TableRequest& request, const std::vector<TableLine>& lines) {
+Joints reference_of(const TableRequest& request, const std::vector<TableLine>& lines,
+                    const JointLayout& layout) {
   Joints Q = Joints::Zero();
   for (const TableLine& line : lines) {
     const auto given = request.axes[static_cast<std::size_t>(line.joint)].reference;
     const double usual = line.joint < kLinearJoints ? 0.5 * (line.from + line.to)
                                                     : std::clamp(0.0, line.from, line.to);
     Q[line.joint] = given.value_or(usual);
+    if (Q[line.joint] >= line.from && Q[line.joint] <= line.to) continue;
+    const double unit = unit_of(line.joint);
+    throw InputError({}, fmt::format("the reference {} = {:g} {} lies outside the travel, {:g} to "
+                                     "{:g} {}",
+                                     layout.letter_of(line.joint), Q[line.joint] / unit,
+                                     unit_name_of(line.joint), line.from / unit, line.to / unit,
+                                     unit_name_of(line.joint)));
   }
   return Q;
 }
@@ -138,8 +146,10 @@ TableExport export_tables(const MachineSettings& machine, const plant::ErrorMode
   e.request = request;
   e.machine = machine.name;
   e.lines = lines_of(machine, request);
-  e.source = {
-      machine.chain, errors, {0.0, 0.0, -request.tool_length}, reference_of(request, e.lines)};
+  e.source = {machine.chain,
+              errors,
+              {0.0, 0.0, -request.tool_length},
+              reference_of(request, e.lines, machine.chain.layout)};
   const bool csv = request.format == TableFormat::csv;
   e.tables = csv ? component_tables_of(e.source, e.lines, e.rules())
                  : tables_of(e.source, e.lines, e.rules());

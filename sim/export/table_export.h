@@ -41,8 +41,8 @@ struct TableExport {
   char letter(int joint) const { return source.chain.layout.letter_of(joint); }
 };
 
-/// @throws InputError if points are too many, an axis has no travel, or the format can hold nothing
-///         of this model
+/// @throws InputError if points are too many, an axis has no travel, the reference lies outside it,
+///         or the format can hold nothing of this model
 TableExport export_tables(const MachineSettings& machine, const plant::ErrorModel& errors,
                           const TableRequest& request);
 

@@ -12,6 +12,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/export/table_files.h"
 #include "sim/hdf5/system_error.h"
+#include "sim/read_errors.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {
@@ -22,25 +23,43 @@ namespace fs = std::filesystem;
 
 double unit_of(int joint) { return joint < kLinearJoints ? mm : deg; }
 
+// Machine and error models: a scenario's, or those of --machine and of a file of error models.
+struct Inputs {
+  sim::MachineSettings machine;
+  std::map<std::string, plant::ErrorModel> models;
+};
+
+Inputs read_inputs(const Options& options) {
+  const std::string path = options.word();
+  if (!options.has("machine")) {
+    sim::Scenario scenario = sim::read_scenario(path, options.list("set"));
+    return {std::move(scenario.machine), std::move(scenario.errors)};
+  }
+  if (options.has("set")) {
+    throw InputError({"--set"}, "changes a scenario; there is none with --machine");
+  }
+  Inputs inputs;
+  inputs.machine = sim::read_machine_file(options.get<std::string>("machine"));
+  inputs.models = sim::read_error_file(path, inputs.machine.chain.layout);
+  return inputs;
+}
+
 // The error model that --model names; without it the only one there is.
-const plant::ErrorModel& model_of(const sim::Scenario& scenario, const Options& options,
-                                  std::string& name) {
+const plant::ErrorModel& model_of(const Inputs& inputs, const Options& options, std::string& name) {
   std::vector<std::string_view> names;
-  for (const auto& [key, model] : scenario.errors) names.push_back(key);
+  for (const auto& [key, model] : inputs.models) names.push_back(key);
   if (names.empty()) {
     throw InputError({options.word()}, "has no error model; write one as [errors.NAME]");
   }
-  const std::string there_are = fmt::format("the scenario has {}", fmt::join(names, ", "));
+  const std::string there_are = fmt::format("there are {}", fmt::join(names, ", "));
   if (!options.has("model") && names.size() > 1) {
     throw InputError({"--model"}, fmt::format("is missing; {}", there_are));
   }
   name = options.has("model") ? options.get<std::string>("model") : std::string(names.front());
-  const auto found = scenario.errors.find(name);
-  if (found == scenario.errors.end()) {
-    throw InputError({"--model"}, fmt::format("no error model '{}'{}; {}", name,
-                                              did_you_mean(name, names), there_are));
-  }
-  return found->second;
+  const auto found = inputs.models.find(name);
+  if (found != inputs.models.end()) return found->second;
+  throw InputError({"--model"}, fmt::format("no error model '{}'{}; {}", name,
+                                            did_you_mean(name, names), there_are));
 }
 
 std::optional<double> number_of(std::string_view text) {
@@ -100,6 +119,27 @@ void read_axes(const Options& options, const sim::MachineSettings& machine,
   }
 }
 
+// Options that would do nothing.
+void refuse_idle_options(const Options& options, const sim::MachineSettings& machine,
+                         sim::TableFormat format) {
+  if (format == sim::TableFormat::csv) {
+    for (const char* name : {"at", "tool-length"}) {
+      if (options.has(name)) {
+        throw InputError({std::string("--") + name},
+                         "means nothing to csv, which holds the errors themselves");
+      }
+    }
+  }
+  if (format != sim::TableFormat::linuxcnc && options.has("comp-file-type")) {
+    throw InputError({"--comp-file-type"},
+                     fmt::format("means nothing to {}", sim::name_of(format)));
+  }
+  const auto joints = machine.joints();
+  if (options.has("rotary-spacing") && joints.back() < kLinearJoints) {
+    throw InputError({"--rotary-spacing"}, "the machine has no rotary axis");
+  }
+}
+
 sim::TableRequest request_of(const Options& options, const sim::MachineSettings& machine) {
   sim::TableRequest request;
   if (!options.has("format")) {
@@ -108,6 +148,7 @@ sim::TableRequest request_of(const Options& options, const sim::MachineSettings&
   }
   request.format =
       static_cast<sim::TableFormat>(choice_option(options, "format", sim::kTableFormats));
+  refuse_idle_options(options, machine, request.format);
   request.tool_length = quantity_option(options, "tool-length", sim::kLength).value_or(0.0);
   if (request.tool_length < 0.0) {
     throw InputError({"--tool-length"},
@@ -127,10 +168,12 @@ sim::TableRequest request_of(const Options& options, const sim::MachineSettings&
     }
     request.most_points = static_cast<std::size_t>(points);
   }
-  request.comp_file_type = options.get<int>("comp-file-type");
-  if (request.comp_file_type != 0 && request.comp_file_type != 1) {
-    throw InputError({"--comp-file-type"},
-                     fmt::format("{}; must be 0 or 1", request.comp_file_type));
+  if (options.has("comp-file-type")) {
+    request.comp_file_type = options.get<int>("comp-file-type");
+    if (request.comp_file_type != 0 && request.comp_file_type != 1) {
+      throw InputError({"--comp-file-type"},
+                       fmt::format("{}; must be 0 or 1", request.comp_file_type));
+    }
   }
   read_axes(options, machine, request);
   return request;
@@ -169,17 +212,21 @@ void write(const std::vector<sim::TextFile>& files, const std::string& folder, b
 int table_command(const Arguments& arguments) {
   Options options(
       "table", "SCENARIO.toml --format linuxcnc|heidenhain|siemens|csv -o FOLDER",
-      "Writes an error model of a scenario as compensation tables for a real NC: what corrects\n"
-      "each axis over its own position, with heidenhain and siemens also over that of the two\n"
-      "other linear axes. A table holds the errors on one line along its axis; what it cannot\n"
+      "Writes an error model as compensation tables for a real NC: what corrects each axis over\n"
+      "its own position, with heidenhain and siemens also over that of the two other linear axes.\n"
+      "A table holds the errors on one line along its axis, and 0 at the reference. What it "
+      "cannot\n"
       "hold is listed by its name of ISO 230-1, with what it leaves at the tip. csv holds the\n"
       "errors themselves. Every format names the document that it follows.",
       "SCENARIO.toml");
   options.add()("format", po::value<std::string>()->value_name("FORMAT"),
                 "linuxcnc, heidenhain, siemens or csv");
   options.add()("output,o", po::value<std::string>()->value_name("FOLDER"), "folder for the files");
+  options.add()("machine", po::value<std::string>()->value_name("M.toml"),
+                "machine description; the file then need not be a scenario, but holds nothing but "
+                "error models, as tables [errors.NAME]");
   options.add()("model", po::value<std::string>()->value_name("NAME"),
-                "error model of the scenario; needed if it has several");
+                "error model; needed if there are several");
   options.add()("axis,a", po::value<std::string>()->default_value("all")->value_name("X,Y"),
                 "axes over which tables run");
   options.add()("spacing", po::value<std::string>()->value_name("\"5 mm\""),
@@ -189,7 +236,7 @@ int table_command(const Arguments& arguments) {
                 "the same of rotary axes");
   options.add()("max-points", po::value<int>()->value_name("N"),
                 "points that the NC takes in one table: siemens as MD38000 and MD18342 say (200 "
-                "unless you say so), linuxcnc and heidenhain at most 256");
+                "unless you say so), linuxcnc and heidenhain at most 256, csv 10000");
   options.add()("travel", po::value<std::vector<std::string>>()->value_name("X=FROM:TO"),
                 "range of an axis in mm or deg, instead of the machine's travel");
   options.add()("at", po::value<std::vector<std::string>>()->value_name("Z=POSITION"),
@@ -197,8 +244,8 @@ int table_command(const Arguments& arguments) {
                 "the middle of travel (linear) or 0 (rotary)");
   options.add()("tool-length", po::value<std::string>()->value_name("\"110 mm\""),
                 "from the spindle nose to the tip, 0 unless given");
-  options.add()("comp-file-type", po::value<int>()->default_value(0)->value_name("0|1"),
-                "of linuxcnc: 0 positions reached, 1 trims");
+  options.add()("comp-file-type", po::value<int>()->value_name("0|1"),
+                "of linuxcnc: 0 positions reached (unless you say so), 1 trims");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario, as for servomill run");
   options.add()("force,f", "replaces files of the same names");
@@ -208,12 +255,12 @@ int table_command(const Arguments& arguments) {
     throw InputError({"servomill table"}, "needs the name of a folder: -o FOLDER");
   }
 
-  const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
-  sim::TableRequest request = request_of(options, scenario.machine);
-  const plant::ErrorModel& errors = model_of(scenario, options, request.model);
+  const Inputs inputs = read_inputs(options);
+  sim::TableRequest request = request_of(options, inputs.machine);
+  const plant::ErrorModel& errors = model_of(inputs, options, request.model);
   const sim::TableExport tables = [&] {
     try {
-      return sim::export_tables(scenario.machine, errors, request);
+      return sim::export_tables(inputs.machine, errors, request);
     } catch (const InputError& error) {  // knows what is wrong, not where
       throw InputError({options.word()}, error.faults().front().message);
     }

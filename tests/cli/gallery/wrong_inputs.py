@@ -346,4 +346,34 @@ SERVO = [
           STEP + " -o nowhere/out.h5"),
 ]
 
-WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO)
+TABLE = "servomill table scenario.toml --format siemens -o out"
+
+TABLES = [
+    typed("tables in no format, to no folder, of no model", "servomill table scenario.toml -o out",
+          "servomill table scenario.toml --format heidenhein -o out", "servomill table scenario.toml --format csv",
+          TABLE + " --model imposd", "servomill table machine.toml --format csv -o out"),
+    line("one of several error models", "[errors.imposed]", "[errors.true]\nEXX = { constant_um = 1.0 }\n[errors.imposed]",
+         commands=[TABLE]),
+    line("no error model for a table", '[errors.imposed]\nEYX = { harmonic = { amplitude_um = 150.0, period_mm = 62.0 } }', "",
+         commands=["servomill table scenario.toml --format csv -o out --set 'imposed=\"\"' --set 'case=[{name=\"nominal\"}]' --set 'quantity=[]'"]),
+    typed("tables of more points than the control takes", TABLE + " --spacing '4 mm'",
+          "servomill table scenario.toml --format heidenhain -o out --spacing '3 mm'",
+          TABLE + " --max-points 1", "servomill table scenario.toml --format heidenhain -o out --max-points 257"),
+    typed("a spacing that is none", TABLE + " --spacing 5", TABLE + " --spacing '0 mm'", TABLE + " --spacing '5 deg'",
+          TABLE + " --tool-length '-1 mm'"),
+    typed("positions of axes that are none", TABLE + " --travel X", TABLE + " --travel X=10:-10", TABLE + " --travel C=0:10",
+          TABLE + " --at X=middle", TABLE + " --at X=500", TABLE + " --axis Q"),
+    typed("tables that can hold nothing of the model", "servomill table scenario.toml --format linuxcnc -o out",
+          TABLE + " --axis Y"),
+    typed("options that mean nothing", "servomill table scenario.toml --format linuxcnc -o out --comp-file-type 2",
+          TABLE + " --comp-file-type 1", TABLE + " --rotary-spacing '1 deg'",
+          "servomill table scenario.toml --format csv -o out --at Z=10", "servomill table scenario.toml --format csv -o out --tool-length '1 mm'"),
+    typed("a file of error models that holds something else", "servomill table scenario.toml --machine machine.toml --format csv -o out",
+          "servomill table errors.toml --machine machine.toml --format csv -o out --set a=1",
+          "servomill table errors.toml --machine machine.toml --format csv -o out",
+          write={"errors.toml": "[errors.found]\nEXC = { constant_um = 1.0 }\n"}),
+    typed("tables where something stands already", TABLE + " -q", "servomill table scenario.toml --format siemens -o part.ngc",
+          write={"out/NC_CEC.INI": "precious"}, about="a file"),
+]
+
+WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO + TABLES)

@@ -1,0 +1,93 @@
+#!/usr/bin/python3
+"""servomill table as its users meet it. table.py SERVOMILL"""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SERVOMILL = os.path.abspath(sys.argv.pop(1))
+SCENARIO = os.path.join(HERE, "gallery", "scenario.toml")
+MACHINE = os.path.join(HERE, "gallery", "machine.toml")
+PATIENCE = 60  # s, for one command: far more than any takes
+
+SAID = """\
+compensation tables of error model 'imposed' on Three-axis mill
+document: Siemens, SINUMERIK 840D sl/828D Function Manual Extended Functions (03/2013), 6FC5397-1BP40-3BA1, K3 Compensations, \
+pages 237 to 268
+reference: each table holds the line along its axis through X = 0 mm, Y = 0 mm, Z = 150 mm, tool 0 mm
+tables:
+  Y over X: 161 points, 5 mm apart from -400 mm, up to 149.807 um; linear interpolation and rounding leave up to 4.788 um
+not in these tables: nothing
+tip at poses all over the travel, beside that of the reference: off by up to 150.000 um without these tables, 4.788 um with
+written: {folder}/NC_CEC.INI
+"""
+
+
+def servomill(*arguments):
+    done = subprocess.run([SERVOMILL, *arguments], capture_output=True, text=True, timeout=PATIENCE, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+def files_in(folder):
+    out = {}
+    for name in sorted(os.listdir(folder)):
+        with open(os.path.join(folder, name), encoding="utf-8") as file:
+            out[name] = file.read()
+    return out
+
+
+class Table(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.out = os.path.join(folder.name, "deep", "out")
+        self.command = ["table", SCENARIO, "--format", "siemens", "-o", self.out]
+
+    def test_says_what_the_tables_hold_and_leave(self):
+        self.assertEqual(servomill(*self.command), (0, SAID.format(folder=self.out), ""))
+
+    def test_comment_of_the_file_says_the_same(self):
+        servomill(*self.command)
+        lines = files_in(self.out)["NC_CEC.INI"].splitlines()
+        said = SAID.splitlines()[:-1]
+        self.assertEqual(lines[2:2 + len(said)], ["; " + line for line in said])
+
+    def test_replaces_files_only_by_force(self):
+        servomill(*self.command)
+        before = files_in(self.out)
+        coarse = [*self.command, "--spacing", "10 mm"]
+        self.assertEqual(servomill(*coarse), (2, "", f"{self.out}/NC_CEC.INI: error: exists; use --force to overwrite\n"))
+        self.assertEqual(files_in(self.out), before)
+        self.assertEqual(servomill(*coarse, "--force", "--quiet"), (0, "", ""))
+        self.assertNotEqual(files_in(self.out), before)
+
+    def test_takes_a_machine_and_a_file_of_error_models(self):
+        servomill(*self.command)
+        errors = os.path.join(self.folder, "errors.toml")
+        with open(errors, "w", encoding="utf-8") as file:
+            file.write("[errors.imposed]\nEYX = { harmonic = { amplitude_um = 150.0, period_mm = 62.0 } }\n")
+        other = os.path.join(self.folder, "other")
+        self.assertEqual(servomill("table", errors, "--machine", MACHINE, "--format", "siemens", "-o", other, "-q"), (0, "", ""))
+        self.assertEqual(files_in(other), files_in(self.out))
+
+    def test_every_format_writes_what_it_names(self):
+        for name, files in (("linuxcnc", ["compensation.ini", "joint_0_x.comp"]),
+                            ("heidenhain", ["CONFIG.CMA.txt", "X.COM.txt", "notes.txt"]), ("csv", ["notes.txt", "x.csv"])):
+            out = os.path.join(self.folder, name)
+            status, said, faults = servomill("table", SCENARIO, "--set", "errors.imposed.EXX={polynomial_um=[0.0,0.1]}",
+                                             "--format", name, "-o", out)
+            self.assertEqual((status, faults), (0, ""))
+            self.assertEqual(sorted(os.listdir(out)), files)
+            self.assertEqual(sorted(said.splitlines()[-1].split()[1:]), [os.path.join(out, file) for file in files])
+
+    def test_a_folder_that_cannot_be_made_is_the_systems_fault(self):
+        status, said, faults = servomill("table", SCENARIO, "--format", "csv", "-o", "/proc/none")
+        self.assertEqual((status, said), (3, ""))
+        self.assertEqual(faults, "/proc/none: cannot be made: No such file or directory\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
