@@ -53,14 +53,11 @@ CompensationTable tabulate(const TableLine& line, const Curve& error, double ste
     const double exact = error(line.position(line.entry(i)));
     table.error.push_back(std::round(exact / step) * step + 0.0);
   }
-  constexpr int kWithin = 8;  // places looked at between two points
-  for (std::size_t i = 0; i + 1 < line.points; ++i) {
-    for (int k = 0; k <= kWithin; ++k) {
-      const double entry = line.entry(i) + line.spacing * k / kWithin;
-      const double q = line.position(entry);
-      if (q < line.from || q > line.to) continue;
-      table.residual = std::max(table.residual, std::abs(table.at(entry) - error(q)));
-    }
+  constexpr double kWithin = 8.0;  // places looked at between two points
+  const double places = std::ceil((line.to - line.from) / line.spacing * kWithin - kSlack);
+  for (double n = 0.0; n <= places; ++n) {
+    const double q = std::min(line.from + n * line.spacing / kWithin, line.to);
+    table.residual = std::max(table.residual, std::abs(table.at(line.entry_of(q)) - error(q)));
   }
   return table;
 }

@@ -107,7 +107,7 @@ void add_left_over(const TableExport& e, std::vector<std::string>& out) {
   }
   out.push_back(
       "not in these tables, or only on their lines (largest size; what it alone leaves within the "
-      "travel):");
+      "travel, beside that of the reference):");
   for (const LeftOver& one : e.left) {
     std::string leaves;
     if (one.tip > kNothing) leaves = fmt::format("tip {}", size_of(false, one.tip));
@@ -121,6 +121,12 @@ void add_left_over(const TableExport& e, std::vector<std::string>& out) {
 }
 
 void add_notes(const TableExport& e, std::vector<std::string>& out) {
+  for (const CompensationTable& table : e.tables) {
+    if (!table.line.one_turn || table.line.wraps || table.component) continue;
+    out.push_back(fmt::format(
+        "note: {}: the control does not repeat the table: beyond 0 and 360 deg the end values hold",
+        title_of(e, table)));
+  }
   if (!e.rules().power_of_two) return;
   for (const TableLine& line : e.lines) {
     const double exponent = std::log2(line.spacing / kGridStep);

@@ -193,7 +193,8 @@ std::vector<TextFile> siemens_files(const TableExport& e) {
         {"AX_EEC.INI",
          "%_N_AX_EEC_INI\nCHANDATA(1)\n" + head +
              "; sign: error, actual minus nominal; a positive value moves the axis in the negative "
-             "direction\n; load with MD32700 $MA_ENC_COMP_ENABLE = 0\n" +
+             "direction (SINUMERIK 808D Function Manual, 01/2017, page 106)\n; load with MD32700 "
+             "$MA_ENC_COMP_ENABLE = 0\n" +
              encoder + "M17\n"});
   }
   if (!cross.empty()) {

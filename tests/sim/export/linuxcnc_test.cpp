@@ -4,6 +4,7 @@
 // output_to_hal in control.c), told again in the words of this test.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -154,6 +155,18 @@ TEST(Linuxcnc, TurnsARotaryAxisToWhereTheCommandSays) {
     EXPECT_LE(worst, tables.tables.front().residual + kDigits);
     EXPECT_LT(tables.tables.front().residual, 1.0 * urad);
   }
+}
+
+// Positions of an endless joint are not taken back into one turn.
+TEST(Linuxcnc, SaysThatATableIsNotRepeated) {
+  plant::ErrorModel errors;
+  errors.component("ECC"_err) = plant::harmonic(50.0 * urad, 120.0 * deg);
+  const auto lines = report(
+      export_tables(machine_of("[w C' X b Y Z t]"), errors, request_of(TableFormat::linuxcnc)));
+  const std::string note =
+      "note: C over C: the control does not repeat the table: beyond 0 and 360 deg the end values "
+      "hold";
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), note), 1);
 }
 
 // Of all errors LinuxCNC corrects only an axis over itself: the rest is named.

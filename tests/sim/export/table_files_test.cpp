@@ -51,7 +51,7 @@ TEST(TableFiles, Linuxcnc) {
 # zero: the tables are 0 at the reference; the error there stays for the work offset: X 0.500 um, Y 2.900 um, Z 0.100 um
 # tables:
 #   X over X: 3 points, 10 mm apart from 0 mm, up to 1.000 um; linear interpolation and rounding leave up to 0.000 um
-# not in these tables, or only on their lines (largest size; what it alone leaves within the travel):
+# not in these tables, or only on their lines (largest size; what it alone leaves within the travel, beside that of the reference):
 #   EYX   8.000 um; tip 6.000 um
 #   EAX   20.000 urad; tip 1.140 um, tool axis 20.000 urad
 #   EC0Y  50.000 urad; tip 0.500 um
@@ -103,7 +103,7 @@ tables:
   Z over Y: 3 points, 10 mm apart from 0 mm, up to 0.100 um; linear interpolation and rounding leave up to 0.000 um
 note: X: controls without the column AXISPOS need a spacing of 2^n x 0.0001 mm
 note: Y: controls without the column AXISPOS need a spacing of 2^n x 0.0001 mm
-not in these tables, or only on their lines (largest size; what it alone leaves within the travel):
+not in these tables, or only on their lines (largest size; what it alone leaves within the travel, beside that of the reference):
   EAX   20.000 urad; tip 0.224 um, tool axis 20.000 urad
 tip at poses all over the travel, beside that of the reference: off by up to 7.257 um without these tables, 0.651 um with
 values: error in mm or deg, positive where the axis travels too far, entered with its sign
@@ -128,11 +128,11 @@ CHANDATA(1)
 ;   Z over X: 3 points, 10 mm apart from 0 mm, up to 0.100 um; linear interpolation and rounding leave up to 0.000 um
 ;   X over Y: 3 points, 10 mm apart from 0 mm, up to 0.500 um; linear interpolation and rounding leave up to 0.000 um
 ;   Z over Y: 3 points, 10 mm apart from 0 mm, up to 0.100 um; linear interpolation and rounding leave up to 0.000 um
-; not in these tables, or only on their lines (largest size; what it alone leaves within the travel):
+; not in these tables, or only on their lines (largest size; what it alone leaves within the travel, beside that of the reference):
 ;   EAX   20.000 urad; tip 0.224 um, tool axis 20.000 urad
 ; tip at poses all over the travel, beside that of the reference: off by up to 7.257 um without these tables, 0.650 um with
 ; axes: machine axes are taken to be called X1, Y1, ...; first measuring system
-; sign: error, actual minus nominal; a positive value moves the axis in the negative direction
+; sign: error, actual minus nominal; a positive value moves the axis in the negative direction (SINUMERIK 808D Function Manual, 01/2017, page 106)
 ; load with MD32700 $MA_ENC_COMP_ENABLE = 0
 ; X1: MD38000 $MA_MM_ENC_COMP_MAX_POINTS[0,X1] >= 3
 $AA_ENC_COMP[0,0,X1]=-0.001000
@@ -156,7 +156,7 @@ CHANDATA(1)
 ;   Z over X: 3 points, 10 mm apart from 0 mm, up to 0.100 um; linear interpolation and rounding leave up to 0.000 um
 ;   X over Y: 3 points, 10 mm apart from 0 mm, up to 0.500 um; linear interpolation and rounding leave up to 0.000 um
 ;   Z over Y: 3 points, 10 mm apart from 0 mm, up to 0.100 um; linear interpolation and rounding leave up to 0.000 um
-; not in these tables, or only on their lines (largest size; what it alone leaves within the travel):
+; not in these tables, or only on their lines (largest size; what it alone leaves within the travel, beside that of the reference):
 ;   EAX   20.000 urad; tip 0.224 um, tool axis 20.000 urad
 ; tip at poses all over the travel, beside that of the reference: off by up to 7.257 um without these tables, 0.650 um with
 ; axes: machine axes are taken to be called X1, Y1, ...; first measuring system
