@@ -60,10 +60,10 @@ void FeedbackLanes::evaluate() {
 
 void FeedbackLanes::evaluate_one(Together& one) {
   const std::size_t run = first_ + one.last;
-  Eigen::Vector3d d;
-  for (int j = 0; j < kLinearJoints; ++j) d[j] = one.d_next[j][one.last];
-  axes_.displace(d, run);
-  d = one.part->evaluate(axes_.Q_meas(run), one.last);
+  Eigen::Vector3d now;
+  for (int j = 0; j < kLinearJoints; ++j) now[j] = one.d_next[j][one.last];
+  axes_.displace(now, run);
+  const Eigen::Vector3d d = one.part->evaluate(axes_.Q_meas(run), one.last);
   for (int j = 0; j < kLinearJoints; ++j) one.d_next[j][one.last] = d[j];
 }
 

@@ -85,16 +85,6 @@ std::vector<plant::FeedDriveParams> params_of(const std::vector<const MachineSet
   return params;
 }
 
-// What is known to be a whole block goes through registers.
-template <class Do>
-void each_of(std::size_t count, Do what) {
-  if (count == kLaneWidth) {
-    for (std::size_t k = 0; k < kLaneWidth; ++k) what(k);
-  } else {
-    for (std::size_t k = 0; k < count; ++k) what(k);
-  }
-}
-
 }  // namespace
 
 const ServoKernel& servo_kernel() {
@@ -129,6 +119,9 @@ ServoAxes::ServoAxes(std::vector<const MachineSettings*> machines, std::vector<i
       axes_.push_back({run, j});
     }
   }
+  assert(std::is_sorted(joints_.begin(), joints_.end()));
+  linear_joints_ = static_cast<std::size_t>(std::count_if(
+      joints_.begin(), joints_.end(), [](int joint) { return joint < kLinearJoints; }));
   if (machines_[0]->integrator == Integrator::cvode) {
     cvode_.emplace(params_, machines_[0]->nc.periods.base);
   }
@@ -233,42 +226,33 @@ void ServoAxes::settle(std::size_t l, double Q, double d) {
 }
 
 void ServoAxes::displace(const Eigen::Vector3d& displacement, std::size_t run) {
-  for (const int j : joints_) {
-    if (j < kLinearJoints) at(&ServoBlock::displacement, lane(run, j)) = displacement[j];
-  }
-}
-
-template <class What>
-void ServoAxes::each_stretch(std::size_t first, int joints, What what) const {
-  assert(first < runs());
-  const std::size_t runs_here = std::min(kLaneWidth, runs() - first);
-  for (const int j : joints_) {
-    if (j >= joints) break;
-    for (std::size_t n = 0; n < runs_here;) {
-      const std::size_t l = lane(first + n, j);
-      const std::size_t count = std::min(runs_here - n, kLaneWidth - place(l));
-      what(j, n, block(l), place(l), count);
-      n += count;
-    }
+  for (std::size_t j = 0; j < kLinearJoints; ++j) {
+    const Place& p = places_[run][j];
+    if (p.present) servos_[p.block].displacement[p.place] = displacement[static_cast<int>(j)];
   }
 }
 
 void ServoAxes::displace(const LinearJointLanes& displacement, const LaneFlags& lanes,
                          std::size_t first) {
-  each_stretch(first, kLinearJoints,
-               [&](int j, std::size_t n, std::size_t block, std::size_t place, std::size_t count) {
-                 double* to = &servos_[block].displacement[place];
-                 const double* from = &displacement[j][n];
-                 each_of(count, [&](std::size_t k) { to[k] = lanes[n + k] ? from[k] : to[k]; });
-               });
+  assert(first < runs() && first % kLaneWidth == 0);
+  if (fills_blocks()) {
+    return kernel_.displace(&servos_[block(first)], block(runs()), joints_.data(), linear_joints_,
+                            lanes, displacement);
+  }
+  each_of_eight(first, [&](std::size_t n, std::size_t j, const Place& p) {
+    if (j < kLinearJoints && lanes[n]) servos_[p.block].displacement[p.place] = displacement[j][n];
+  });
 }
 
 void ServoAxes::get_readings(JointLanes& Q_meas, std::size_t first) const {
-  each_stretch(first, kJoints,
-               [&](int j, std::size_t n, std::size_t block, std::size_t place, std::size_t count) {
-                 const double* from = &servos_[block].scale[place];
-                 each_of(count, [&](std::size_t k) { Q_meas[j][n + k] = from[k]; });
-               });
+  assert(first < runs() && first % kLaneWidth == 0);
+  if (fills_blocks()) {
+    return kernel_.get_scales(&servos_[block(first)], block(runs()), joints_.data(), joints_.size(),
+                              Q_meas);
+  }
+  each_of_eight(first, [&](std::size_t n, std::size_t j, const Place& p) {
+    Q_meas[j][n] = servos_[p.block].scale[p.place];
+  });
 }
 
 void ServoAxes::follow(const AxisSetPoint& set, std::size_t run) {

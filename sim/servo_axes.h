@@ -68,7 +68,7 @@ struct Injection {
 class ServoAxes {
  public:
   /// @param machines  one a run; must outlive this. All have the same periods and integrator
-  /// @param joints    those that take part; the others stand at zero
+  /// @param joints    those that take part, in rising order; the others stand at zero
   /// @param schedule  its steps are what `advance` will be asked for
   /// @param kept      drives prepared for other axes, and where those of these are kept
   ServoAxes(std::vector<const MachineSettings*> machines, std::vector<int> joints,
@@ -84,7 +84,7 @@ class ServoAxes {
   void settle(const Joints& Q, const Eigen::Vector3d& displacement, std::size_t run = 0);
   /// What a virtual encoder adds to the readings of the linear joints (3; m), from now on.
   void displace(const Eigen::Vector3d& displacement, std::size_t run = 0);
-  /// The same for some of eight runs side by side, from run `first` on.
+  /// The same for some of eight runs side by side, from run `first` on, a multiple of eight.
   void displace(const LinearJointLanes& displacement, const LaneFlags& lanes,
                 std::size_t first = 0);
   /// What the position loops follow, from now on.
@@ -121,8 +121,8 @@ class ServoAxes {
 
   /// What read_scales read.
   Joints Q_meas(std::size_t run = 0) const { return joints_of(&ServoBlock::scale, run); }
-  /// The same of eight runs side by side, from run `first` on. Joints that do not take part and
-  /// runs beyond the last are left as they are.
+  /// The same of eight runs side by side, from run `first` on, a multiple of eight. Joints that do
+  /// not take part and runs beyond the last are left as they are.
   void get_readings(JointLanes& Q_meas, std::size_t first = 0) const;
   /// What the position loops read last.
   Joints Q_read(std::size_t run = 0) const { return joints_of(&ServoBlock::Q_read, run); }
@@ -202,10 +202,17 @@ class ServoAxes {
   Joints drives_of(LaneArray plant::DriveBlock::*member, std::size_t run) const {
     return gathered(state_.blocks, member, run);
   }
-  // Calls what(joint, n, block, place, count) where the runs first + n and following of one of the
-  // first joints lie in one block.
+  // Blocks hold one joint of eight runs each.
+  bool fills_blocks() const { return runs() % kLaneWidth == 0; }
+  // what(n, joint, place) for the joints of the runs first + n, up to eight.
   template <class What>
-  void each_stretch(std::size_t first, int joints, What what) const;
+  void each_of_eight(std::size_t first, What what) const {
+    for (std::size_t n = 0; n < kLaneWidth && first + n < runs(); ++n) {
+      for (std::size_t j = 0; j < kJoints; ++j) {
+        if (const Place& p = places_[first + n][j]; p.present) what(n, j, p);
+      }
+    }
+  }
   double& at(LaneArray ServoBlock::*member, std::size_t lane) {
     return (servos_[block(lane)].*member)[place(lane)];
   }
@@ -231,8 +238,9 @@ class ServoAxes {
   std::optional<std::string> fault_of(std::size_t lane);
 
   std::vector<const MachineSettings*> machines_;
-  std::vector<int> joints_;
-  std::vector<Axis> axes_;  // by lane: joint by joint
+  std::vector<int> joints_;        // in rising order
+  std::size_t linear_joints_ = 0;  // of them
+  std::vector<Axis> axes_;         // by lane: joint by joint
   std::array<std::size_t, kJoints> first_lane_{};
   std::vector<std::array<Place, kJoints>> places_;  // by run
   std::vector<plant::FeedDriveParams> params_;      // by lane

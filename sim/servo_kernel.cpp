@@ -85,12 +85,28 @@ void current_loops(ServoBlock* servos, const DriveBlock* drives, DriveInputBlock
   }
 }
 
+void get_scales(const ServoBlock* servos, std::size_t stride, const int* joints, std::size_t count,
+                LaneArray* to) {
+  for (std::size_t n = 0; n < count; ++n) put(to[joints[n]], Number(servos[n * stride].scale));
+}
+
+void displace(ServoBlock* servos, std::size_t stride, const int* joints, std::size_t count,
+              const LaneFlags& lanes, const LaneArray* displacement) {
+  unsigned bits = 0;
+  for (std::size_t n = 0; n < kLaneWidth; ++n) bits |= (lanes[n] ? 1U : 0U) << n;
+  const auto mask = Number::Mask::of(bits);
+  for (std::size_t n = 0; n < count; ++n) {
+    LaneArray& at = servos[n * stride].displacement;
+    put(at, select(mask, Number(displacement[joints[n]]), Number(at)));
+  }
+}
+
 }  // namespace
 
 template <>
 ServoKernel make_servo_kernel<SERVOMILL_LEVEL>() {
-  return {&read_motors,    &read_scales,    &take_readings,
-          &position_loops, &velocity_loops, &current_loops};
+  return {&read_motors,    &read_scales,   &take_readings, &position_loops,
+          &velocity_loops, &current_loops, &get_scales,    &displace};
 }
 
 }  // namespace servomill::sim

@@ -58,6 +58,14 @@ struct ServoKernel {
   /// The command that was computed before acts from now on.
   void (*current_loops)(ServoBlock* servos, const plant::DriveBlock* drives,
                         plant::DriveInputBlock* inputs, std::size_t count);
+
+  /// The scales of eight runs, where blocks hold a joint of eight runs each: joints[n] lies in
+  /// servos[n * stride], and goes to to[joints[n]].
+  void (*get_scales)(const ServoBlock* servos, std::size_t stride, const int* joints,
+                     std::size_t count, LaneArray* to);
+  /// Likewise displaces the runs whose flags are set.
+  void (*displace)(ServoBlock* servos, std::size_t stride, const int* joints, std::size_t count,
+                   const LaneFlags& lanes, const LaneArray* displacement);
 };
 
 /// The functions for the instruction set of this machine.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "strategies/approach_kernel.h"
 #include "strategies/compensation.h"
 
 namespace servomill::strategies {
@@ -103,27 +104,25 @@ class VirtualEncoder final : public FeedbackPart {
   }
   Eigen::Vector3d evaluate(const Joints& Q_meas, std::size_t run) override {
     Eigen::Vector3d d;
-    advance(Q_meas, {}, run, d);
+    find(Q_meas, {}, run, d);
+    for (int j = 0; j < kLinearJoints; ++j) {
+      double& out = out_[j][run];
+      d[j] = out = approached(d[j], params_.max, max_change_, out);
+    }
     return d;
   }
   void evaluate(const JointLanes& Q_meas, const LaneFlags& lanes, LinearJointLanes& d) override {
-    advance(Q_meas, lanes, 0, d);
+    find(Q_meas, lanes, 0, d);
+    approach_(params_.max, max_change_, kLinearJoints, out_, d);
   }
 
  private:
   template <class Poses, class Shifts>
-  void advance(const Poses& Q_meas, const LaneFlags& lanes, std::size_t first, Shifts& d) {
+  void find(const Poses& Q_meas, const LaneFlags& lanes, std::size_t first, Shifts& d) {
     if (leads_) {
       find_ahead(Q_meas, lanes, first, d);
     } else {
       find_displacement(Q_meas, lanes, d);
-    }
-    for (int j = 0; j < kLinearJoints; ++j) {
-      double* out = out_[j].data() + first;
-      for (std::size_t k = 0; k < kLanesOf<Shifts>; ++k) {
-        out[k] += limited(limited(lane(d[j], k), params_.max) - out[k], max_change_);
-        lane(d[j], k) = out[k];
-      }
     }
   }
 
@@ -158,17 +157,13 @@ class VirtualEncoder final : public FeedbackPart {
   void find_displacement(const JointLanes& Q, const LaneFlags& lanes, LinearJointLanes& d) const {
     feedback_displacement(belief_, params_.sign, params_.iterations, Q, lanes, d);
   }
-  // Without references, so that lanes go through registers.
-  static double limited(double value, double most) {
-    const double above = value < -most ? -most : value;
-    return most < above ? most : above;
-  }
 
   const Belief& belief_;
   FeedbackParams params_;
   bool leads_;
   double max_change_;  // m per model period
   VelocityWindow velocity_;
+  Approach approach_ = approach_in_lanes();
   LinearJointLanes out_{};
 };
 
@@ -204,6 +199,12 @@ std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& bel
 }
 
 }  // namespace
+
+Approach approach_in_lanes() {
+  static const Approach kApproach =
+      at_simd_level(simd_level(), []<SimdLevel level>() { return make_approach<level>(); });
+  return kApproach;
+}
 
 Entry feedback_entry() {
   return {"feedback", "modifies the position feedback (virtual encoder)", specs(), make,

@@ -59,9 +59,9 @@ TEST(SetPointDisplacement, ConvergedIsTheNonidealInverse) {
   }
 }
 
-Eigen::Vector3d feedback_displacement(const Belief& belief, Sign sign, const Joints& Q) {
+Eigen::Vector3d converged_displacement(const Belief& belief, Sign sign, const Joints& Q) {
   Eigen::Vector3d d;
-  feedback_displacements(belief, sign, Iterations::converged, {&Q, 1}, {&d, 1});
+  feedback_displacement(belief, sign, Iterations::converged, Q, d);
   return d;
 }
 
@@ -77,7 +77,7 @@ TEST(FeedbackDisplacement, PutsTheAxesWhereTheSetPointDoes) {
       for (int j = 0; j < kLinearJoints; ++j) Q_cmd[j] = 0.15 * random();
       Joints Q_true = Q_cmd;
       for (int k = 0; k < 30; ++k) {
-        Q_true.head<3>() = Q_cmd.head<3>() - feedback_displacement(belief, sign, Q_true);
+        Q_true.head<3>() = Q_cmd.head<3>() - converged_displacement(belief, sign, Q_true);
       }
       const Eigen::Vector3d by_set_point =
           Q_cmd.head<3>() + set_point_displacement(belief, sign, Iterations::converged, Q_cmd);

@@ -1,0 +1,34 @@
+/// Limits of a virtual encoder, of eight runs at once.
+#pragma once
+
+#include <cstddef>
+
+#include "plant/vocabulary/lanes.h"
+#include "plant/vocabulary/simd.h"
+
+namespace servomill::strategies {
+
+/// value within +-most, without references: so that lanes go through registers.
+inline double limited(double value, double most) {
+  const double above = value < -most ? -most : value;
+  return most < above ? most : above;
+}
+
+/// The value that comes next: what is wanted, limited in size, approached by a limited change.
+inline double approached(double wanted, double most, double most_change, double value) {
+  return value + limited(limited(wanted, most) - value, most_change);
+}
+
+/// approached(), of `count` joints of eight runs: of what is wanted in d. The values come next to
+/// `values` and to d, with the bits of approached().
+using Approach = void (*)(double most, double most_change, std::size_t count, LaneArray* values,
+                          LaneArray* d);
+
+/// For the instruction set of this machine.
+Approach approach_in_lanes();
+
+/// That of one level.
+template <SimdLevel level>
+Approach make_approach();
+
+}  // namespace servomill::strategies
