@@ -18,6 +18,10 @@ SERVOMILL_INLINE void add(int direction, const N& q, N (&v)[3]) {
   }
 }
 
+SERVOMILL_INLINE bool is_frame(const VolumetricStep& step) {
+  return step.move >= VolumetricMove::enter_frame;
+}
+
 // The true tool, and the ideal one where it is asked for; the axis where it is asked for.
 template <class N, bool kAxis, bool kIdeal>
 struct Tools {
@@ -99,11 +103,7 @@ SERVOMILL_INLINE void go(const VolumetricProgram& program, std::size_t steps, So
       const N q = at.q(joint);
       add(step->direction, q, tools.p.v);
       if constexpr (T::kHasIdeal) add(step->direction, q, tools.p_ideal.v);
-    } else if (step->move == VolumetricMove::enter_frame) {
-      tools.enter(*step);
-    } else if (step->move == VolumetricMove::leave_frame) {
-      tools.leave(*step);
-    } else {
+    } else if (!is_frame(*step)) {
       const N c = at.cosine(joint), s = at.sine(joint);
       about(step->direction, [&](auto axis) {
         if (step->move == VolumetricMove::turn) {
@@ -113,6 +113,10 @@ SERVOMILL_INLINE void go(const VolumetricProgram& program, std::size_t steps, So
         }
         tools.ideal_turn(axis, c, s, step->centre);
       });
+    } else if (step->move == VolumetricMove::enter_frame) {
+      tools.enter(*step);
+    } else {
+      tools.leave(*step);
     }
   }
 }
@@ -143,12 +147,9 @@ SERVOMILL_INLINE void solve(const VolumetricProgram& program, Source& at, const 
     for (std::size_t n = steps; n-- > program.linear_end;) {
       const VolumetricStep& step = program.steps[n];
       if (step.move == VolumetricMove::fault) continue;
-      if (step.move == VolumetricMove::enter_frame) {
-        p = times(step.R, p);
-        continue;
-      }
-      if (step.move == VolumetricMove::leave_frame) {
-        p = transpose_times(step.R, p);
+      if (is_frame(step)) {
+        p = step.move == VolumetricMove::enter_frame ? times(step.R, p)
+                                                     : transpose_times(step.R, p);
         continue;
       }
       const N c = at.cosine(step.joint), s = -at.sine(step.joint);
