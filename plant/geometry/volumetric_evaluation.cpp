@@ -17,9 +17,9 @@ static_assert(kMachineJoints == kJoints && kErrorComponents == kErrorDirections)
 static_assert(kStraightAxes == kLinearJoints);
 static_assert(sizeof(Joints) == kMachineJoints * sizeof(double));  // poses lie without gaps
 
-VolumetricKernel kernel_of(SimdLevel level) {
-  const auto make = [](SimdLevel of) {
-    return at_simd_level(of, []<SimdLevel l>() { return make_volumetric_kernel<l>(); });
+VolumetricKernel kernel_of(SimdLevel level, bool in_frames) {
+  const auto make = [in_frames](SimdLevel of) {
+    return at_simd_level(of, [&]<SimdLevel l>() { return make_volumetric_kernel<l>(in_frames); });
   };
   VolumetricKernel kernel = make(level);
   if (level == SimdLevel::avx512) {
@@ -199,7 +199,8 @@ VolumetricFunctions PreparedFunctions::finish() {
 
 VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const ErrorModel& errors,
                                            SimdLevel level)
-    : kernel_(kernel_of(level)) {
+    : kernel_(kernel_of(level, std::any_of(chain.axes.begin(), chain.axes.end(),
+                                           [](const ChainAxis& a) { return a.is_inclined; }))) {
   for (auto a = chain.axes.rbegin(); a != chain.axes.rend(); ++a) {
     if (a->is_inclined) {
       add_inclined_steps_of(*a, errors);

@@ -90,7 +90,7 @@ SERVOMILL_INLINE void about(int direction, F f) {
 }
 
 // Source: q(joint), cosine(joint), sine(joint), fault(step, q, fault).
-template <class N, class Source, class T>
+template <bool in_frames, class N, class Source, class T>
 SERVOMILL_INLINE void go(const VolumetricProgram& program, std::size_t steps, Source& at,
                          T& tools) {
   const VolumetricStep* const end = program.steps + steps;
@@ -103,7 +103,7 @@ SERVOMILL_INLINE void go(const VolumetricProgram& program, std::size_t steps, So
       const N q = at.q(joint);
       add(step->direction, q, tools.p.v);
       if constexpr (T::kHasIdeal) add(step->direction, q, tools.p_ideal.v);
-    } else if (!is_frame(*step)) {
+    } else if (!in_frames || !is_frame(*step)) {
       const N c = at.cosine(joint), s = at.sine(joint);
       about(step->direction, [&](auto axis) {
         if (step->move == VolumetricMove::turn) {
@@ -126,28 +126,34 @@ SERVOMILL_INLINE Vector<N> at_tip(const double* p_ST) {
   return {all<N>(p_ST[0]), all<N>(p_ST[1]), all<N>(p_ST[2])};
 }
 
-enum class Wanted { tool, error, offset };
+enum class Number { tool, error, offset };
+
+// What a call computes, and for which programs.
+struct Wanted {
+  Number number;
+  bool in_frames;  // of inclined axes
+};
 
 // The first `size(wanted)` numbers of the result.
 template <Wanted wanted, class N, class Source>
 SERVOMILL_INLINE void solve(const VolumetricProgram& program, Source& at, const double* p_ST,
                             N* out) {
-  constexpr bool kAxis = wanted != Wanted::offset, kIdeal = wanted != Wanted::tool;
+  constexpr bool kAxis = wanted.number != Number::offset, kIdeal = wanted.number != Number::tool;
   Tools<N, kAxis, kIdeal> tools;
   tools.p = tools.p_ideal = at_tip<N>(p_ST);
   tools.k = tools.k_ideal = {all<N>(0.0), all<N>(0.0), all<N>(1.0)};
   const std::size_t steps =
-      wanted == Wanted::offset ? program.offset_steps : program.number_of_steps;
-  go<N>(program, steps, at, tools);
+      wanted.number == Number::offset ? program.offset_steps : program.number_of_steps;
+  go<wanted.in_frames, N>(program, steps, at, tools);
   Vector<N> p = tools.p, k = tools.k;
   if constexpr (kIdeal) p = minus(p, tools.p_ideal);
-  if constexpr (wanted == Wanted::error) k = minus(k, tools.k_ideal);
-  if constexpr (wanted == Wanted::offset) {
+  if constexpr (wanted.number == Number::error) k = minus(k, tools.k_ideal);
+  if constexpr (wanted.number == Number::offset) {
     // the difference is turned back into the frame of the linear axes
     for (std::size_t n = steps; n-- > program.linear_end;) {
       const VolumetricStep& step = program.steps[n];
       if (step.move == VolumetricMove::fault) continue;
-      if (is_frame(step)) {
+      if (wanted.in_frames && is_frame(step)) {
         p = step.move == VolumetricMove::enter_frame ? times(step.R, p)
                                                      : transpose_times(step.R, p);
         continue;
@@ -263,7 +269,7 @@ struct PosesInLanes {
 };
 
 template <Wanted wanted>
-constexpr std::size_t kNumbers = wanted == Wanted::offset ? 3 : 6;
+constexpr std::size_t kNumbers = wanted.number == Number::offset ? 3 : 6;
 
 // False where this way does not lead to the end.
 template <Way way, Wanted wanted>
@@ -314,12 +320,17 @@ void many(const VolumetricProgram& program, const EightPosesData* data, const do
   }
 }
 
+template <bool in_frames>
+constexpr VolumetricKernel kKernel = {
+    &one<Wanted{Number::tool, in_frames}>,   &one<Wanted{Number::error, in_frames}>,
+    &one<Wanted{Number::offset, in_frames}>, &many<Wanted{Number::tool, in_frames}>,
+    &many<Wanted{Number::error, in_frames}>, &many<Wanted{Number::offset, in_frames}>};
+
 }  // namespace
 
 template <>
-VolumetricKernel make_volumetric_kernel<SERVOMILL_LEVEL>() {
-  return {&one<Wanted::tool>,  &one<Wanted::error>,  &one<Wanted::offset>,
-          &many<Wanted::tool>, &many<Wanted::error>, &many<Wanted::offset>};
+VolumetricKernel make_volumetric_kernel<SERVOMILL_LEVEL>(bool in_frames) {
+  return in_frames ? kKernel<true> : kKernel<false>;
 }
 
 }  // namespace servomill::plant

@@ -112,16 +112,17 @@ struct VolumetricKernel {
   Many tools, errors, offsets;
 };
 
+/// @param in_frames  for programs that enter frames; those that do not are faster without
 template <SimdLevel level>
-VolumetricKernel make_volumetric_kernel();
+VolumetricKernel make_volumetric_kernel(bool in_frames);
 
 template <>
-VolumetricKernel make_volumetric_kernel<SimdLevel::baseline>();
+VolumetricKernel make_volumetric_kernel<SimdLevel::baseline>(bool in_frames);
 #ifdef SERVOMILL_X86
 template <>
-VolumetricKernel make_volumetric_kernel<SimdLevel::avx2>();
+VolumetricKernel make_volumetric_kernel<SimdLevel::avx2>(bool in_frames);
 template <>
-VolumetricKernel make_volumetric_kernel<SimdLevel::avx512>();
+VolumetricKernel make_volumetric_kernel<SimdLevel::avx512>(bool in_frames);
 #endif
 
 }  // namespace servomill::plant
