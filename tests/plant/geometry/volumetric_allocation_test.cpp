@@ -1,7 +1,7 @@
 /// A prepared model does not touch the heap: it is evaluated in the tick.
 #include <gtest/gtest.h>
 
-#include "plant/geometry/volumetric.h"
+#include "plant/geometry/pose_inverse.h"
 #include "tests/counting_new.h"
 #include "tests/plant/geometry/random_errors.h"
 
@@ -37,6 +37,24 @@ TEST(VolumetricModel, DoesNotAllocate) {
     EXPECT_TRUE(inverse && dp.allFinite() && first.allFinite() && offset.allFinite());
     ::operator delete(::operator new(1));  // the counter counts
     EXPECT_EQ(allocations, before + 1);
+  }
+}
+
+TEST(InverseKinematics, DoesNotAllocate) {
+  Uniform random(42);
+  const ErrorModel errors = random_errors(random, 1e-4);
+  for (const char* text : {"[w C' B' X b Y Z t]", "[w C' X b B Z t]", "[w b X Y Z t]"}) {
+    const MachineChain chain = random_inclined_chain(parse_structure(text), random);
+    const VolumetricModel model(chain, errors);
+    const InverseKinematics ideal(chain);
+    const Joints Q = random_joints(chain, random);
+    const Eigen::Vector3d p_ST(0.0, 0.0, -0.1);
+    const ToolPose P = forward(chain, Q, p_ST);
+    const std::size_t before = allocations;
+    const JointSolution solution = ideal.nearest(P, p_ST, Q);
+    const TrueJoints found = nonideal_inverse(model, ideal, P, p_ST, Q);
+    EXPECT_EQ(allocations, before) << text;
+    EXPECT_TRUE(solution.is_reached() && found.Q.allFinite()) << text;
   }
 }
 
