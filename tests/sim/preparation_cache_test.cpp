@@ -113,6 +113,8 @@ std::string prepared(const Scenario& scenario, PreparationCache* cache) {
     for (const PreparedCase& one : prepare_cases(scenario, cache)) {
       CaseInputs in = one.inputs();
       controllers::Trajectory::Cursor cursor{};
+      constexpr double kModelPeriod = 60e-6;  // s
+      const auto feedback = in.feedback ? in.feedback->feedback(kModelPeriod) : nullptr;
       all.add(in.reference.duration());
       for (int k = 0; k <= 20; ++k) {
         const auto at = in.reference.at(in.reference.duration() * k / 20.0, cursor);
@@ -121,9 +123,9 @@ std::string prepared(const Scenario& scenario, PreparationCache* cache) {
         all.add(in.truth.error(at.Q_ref, in.tips.begin()->second).dp_W);
         all.add(in.imposed->joint_offset(at.Q_ref, in.tips.rbegin()->second));
         for (const auto& part : in.set_points) all.add(part->offset(at.Q_ref));
-        if (!in.feedback) continue;
-        if (k == 0) in.feedback->settle(at.Q_ref);
-        all.add(in.feedback->evaluate(at.Q_ref));
+        if (!feedback) continue;
+        if (k == 0) feedback->settle(at.Q_ref);
+        all.add(feedback->evaluate(at.Q_ref));
       }
       all.add(in.path.length());
       all.add(in.path.piece(0).end);
