@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "plant/vocabulary/axes.h"
@@ -42,9 +43,25 @@ struct Arc {
                   // started revolutions
 };
 
-/// One canonical move. `end` is in the active work coordinate system, `end_machine` in machine
-/// coordinates: rotation, work offset and tool offset applied. For a machine whose rotary axes
-/// stand still, or without tool-centre-point control, `end_machine` holds the axis positions.
+/// What X Y Z of a move say, and where the orientation of the tool comes from.
+enum class ToolControl : std::uint8_t {
+  none,         // X Y Z are positions of the axes
+  rotary_axes,  // G43.4: tip in the workpiece; the rotary axes move linearly to their words
+  tool_axis,    // G43.5: tip in the workpiece; the tool axis moves on a great circle
+  work_plane,   // G68.2: tip in the workpiece; the rotary axes stand still
+};
+
+/// A tilted work plane in the workpiece: p_W = R p + origin.
+struct WorkPlane {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // m
+};
+
+/// One canonical move. `end` is in the active work coordinate system (of a tilted work plane if
+/// there is one), `end_machine` in machine coordinates: rotation, work offset and tool offset
+/// applied. Without tool control `end_machine` holds the axis positions. With it X Y Z of
+/// `end_machine` are the tip in the workpiece frame W, p_WT, tool offset not applied; A B C are the
+/// positions of the rotary axes at the end.
 struct Move {
   MoveKind kind = MoveKind::feed;
   int line = 0;                                              // of the original program, from 1
@@ -59,9 +76,12 @@ struct Move {
   double path_tolerance = 0.0;  // m; 0 with `continuous`: the machine's default
   double value = 0.0;           // dwell: s; spindle: rad/s
   int number = 0;
+  ToolControl tool_control = ToolControl::none;
   int direction = 0;    // spindle: 1 clockwise (M3), -1 (M4), 0 off
   int work_offset = 1;  // 1 is G54, 9 is G59.3
   int tool_offset = 0;  // H of G43; 0: none (G49)
+  Eigen::Vector3d tool_axis = Eigen::Vector3d::UnitZ();  // G43.5: k_W at the end
+  std::shared_ptr<const WorkPlane> plane;  // arcs in a tilted plane: where `arc` and `end` lie
   std::string text;
 
   // Arc length on the path of the *original* program where this move begins and ends (m). The

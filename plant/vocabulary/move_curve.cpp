@@ -14,7 +14,14 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 
 MoveCurve::MoveCurve(const AxisWords& from, const Move& move) : from_(from), to_(move.end_machine) {
   assert(is_motion(move.kind));
-  if (move.kind == MoveKind::arc) arc_ = arc_sweep(move, from.head<3>());
+  if (move.kind == MoveKind::arc && move.plane) {
+    plane_ = move.plane;
+    const Eigen::Vector3d begin = plane_->R.transpose() * (from.head<3>() - plane_->origin);
+    arc_ = ArcSweep(begin, move.end.head<3>(), move.arc.centre, move.arc.normal_axis,
+                    move.arc.turns);
+  } else if (move.kind == MoveKind::arc) {
+    arc_ = arc_sweep(move, from.head<3>());
+  }
   length_ = arc_ ? arc_->length() : (to_ - from_).head<3>().norm();
 }
 
@@ -22,16 +29,19 @@ AxisWords MoveCurve::at(double t) const {
   if (t >= 1.0) return to_;
   AxisWords p = from_ + t * (to_ - from_);
   if (arc_) p.head<3>() = arc_->point(t);
+  if (plane_) p.head<3>() = plane_->R * p.head<3>() + plane_->origin;
   return p;
 }
 
-double MoveCurve::closest(const Eigen::Vector3d& p) const {
+double MoveCurve::closest(const Eigen::Vector3d& point) const {
   if (!arc_) {
     const Eigen::Vector3d d = (to_ - from_).head<3>();
     const double dd = d.squaredNorm();
     if (dd == 0.0) return 1.0;
-    return std::clamp(d.dot(p - from_.head<3>()) / dd, 0.0, 1.0);
+    return std::clamp(d.dot(point - from_.head<3>()) / dd, 0.0, 1.0);
   }
+  const Eigen::Vector3d p =
+      plane_ ? Eigen::Vector3d(plane_->R.transpose() * (point - plane_->origin)) : point;
   // angle from the start in the sense of the arc, on the revolution that is nearest along the axis
   const ArcSweep& arc = *arc_;
   const double pitch = arc.along_end - arc.along_begin;

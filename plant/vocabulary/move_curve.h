@@ -1,7 +1,9 @@
-/// A canonical move as a curve in machine coordinates: straight in all axes, or an arc or helix.
+/// A canonical move as a curve in the coordinates of `Move::end_machine`: straight in all axes, or
+/// an arc or helix.
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 
 #include "plant/vocabulary/arc_sweep.h"
@@ -30,7 +32,8 @@ class MoveCurve {
 
  private:
   AxisWords from_ = AxisWords::Zero(), to_ = AxisWords::Zero();
-  std::optional<ArcSweep> arc_;
+  std::optional<ArcSweep> arc_;  // in the plane, if there is one
+  std::shared_ptr<const WorkPlane> plane_;
   double length_ = 0.0;
 };
 
