@@ -380,13 +380,16 @@ class Quickener {
                      std::sqrt(1.0 / (acceleration * kMargin)), std::sqrt(1.0 / speed)});
   }
 
-  // Of the control points of a quadratic.
+  // Bounds by the control points of a quadratic.
   static double largest(const Joints& from, const Joints& middle, const Joints& to) {
     const Joints control = 2.0 * middle - 0.5 * (from + to);
     return from.cwiseAbs().cwiseMax(control.cwiseAbs()).cwiseMax(to.cwiseAbs()).maxCoeff();
   }
+  // Of a quadratic itself: its vertex if that lies between.
   static double largest(double from, double middle, double to) {
-    return std::max({from, 2.0 * middle - 0.5 * (from + to), to});
+    const double control = 2.0 * middle - 0.5 * (from + to), end = std::max(from, to);
+    if (control <= end) return end;
+    return (control * control - from * to) / (2.0 * control - from - to);
   }
 
   // Bounds of |acceleration| / (margin A) and of b over h metres from where `form` and `x` are.
