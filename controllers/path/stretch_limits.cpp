@@ -28,7 +28,7 @@ Slopes largest_slopes(const CubicPiece& piece, double h) {
 }
 
 double programmed_speed(const Slopes& slopes, const FeedLimit& feed) {
-  double v = kInfinity;
+  double v = feed.path;
   if (slopes.linear > 0.0) v = std::min(v, feed.linear / slopes.linear);
   if (slopes.rotary > 0.0) v = std::min(v, feed.rotary / slopes.rotary);
   return v;

@@ -29,8 +29,8 @@ constexpr double kChordsPerWindow = 4;  // chords of an arc in the half-width of
 class Planner {
  public:
   Planner(const JointLayout& layout, const JointLimits& limits, const PathOptions& options,
-          const Joints& start)
-      : layout_(layout), options_(options) {
+          const Joints& start, const TipMotions& tip)
+      : layout_(layout), options_(options), tip_(tip) {
     assert(options.tolerance > 0.0 && options.exact_tolerance > 0.0);
     assert(options.rotary_tolerance > 0.0 && options.rotary_radius > 0.0);
     assert(options.feed_override > 0.0 && options.rapid_override > 0.0);
@@ -53,7 +53,10 @@ class Planner {
         case MoveKind::rapid:
         case MoveKind::feed:
         case MoveKind::arc:
-          add_motion(move, i);
+          if (move.tool_control == ToolControl::none)
+            add_motion(move, i);
+          else
+            add_tip_motion(move, i);
           break;
         case MoveKind::dwell:
           add_dwell(move, i);
@@ -91,6 +94,8 @@ class Planner {
     std::size_t move = 0, first = 0, last = 0;  // vertices
     FeedLimit feed;
     bool rapid = false;
+    double from = 0.0, to = 1.0;  // of the move
+    double time = 0.0;            // s, least by the feed of the tip; 0: none is given
   };
 
   Joints scaled(const Joints& Q) const { return Q.cwiseProduct(scale_); }
@@ -121,7 +126,11 @@ class Planner {
     leg.tolerance = tolerance_of(move);
     leg.feed = speed_along(leg, move);
     if (last_ && must_stop(*last_, leg)) finish_chain();
-    LegSpan span{index, vertices_.size() - 1, 0, feed_limit(move, leg), leg.rapid};
+    LegSpan span;
+    span.move = index;
+    span.first = vertices_.size() - 1;
+    span.feed = feed_limit(move, leg);
+    span.rapid = leg.rapid;
     if (arc) {
       const bool continues = last_ && last_arc_ && is_same_circle(*last_arc_, *arc, step);
       if (!continues) arc_index_ = static_cast<int>(index);
@@ -140,6 +149,75 @@ class Planner {
     last_ = leg;
     last_arc_ = arc;
     if (leg.stop_after) finish_chain();
+  }
+
+  // A move under tool control is one leg of many chords. Their inner ends lie on a curve, as the
+  // points of an arc do.
+  void add_tip_motion(const Move& move, std::size_t index) {
+    const TipMotion* motion = tip_.of(index);
+    assert(motion != nullptr);
+    const std::span<const JointChord> chords = tip_.chords_of(*motion);
+    const Leg leg = tip_leg(move, *motion, chords);
+    if (leg.length == 0.0) {
+      if (leg.stop_after) finish_chain();
+      return;
+    }
+    if (last_ && must_stop(*last_, leg)) finish_chain();
+    double from = 0.0;
+    for (const JointChord& chord : chords) {
+      const bool inner = &chord != &chords.back();
+      LegSpan span;
+      span.move = index;
+      span.first = vertices_.size() - 1;
+      span.rapid = leg.rapid;
+      span.from = from;
+      span.to = chord.fraction;
+      span.time = motion->time * (chord.fraction - from);
+      add_chord(chord, span.time, inner ? static_cast<int>(index) : -1);
+      if (skipped_) continue;
+      span.last = vertices_.size() - 1;
+      spans_.push_back(span);
+      from = chord.fraction;
+    }
+    if (from > 0.0) spans_.back().to = 1.0;
+    last_move_ = index;
+    Q_ = chords.back().end;
+    u_ = scaled(Q_);
+    words_ = layout_.words(Q_);
+    last_ = leg;
+    last_arc_.reset();
+    if (leg.stop_after) finish_chain();
+  }
+
+  void add_chord(const JointChord& chord, double time, int arc) {
+    const Joints u = scaled(chord.end);
+    const double length = (u - vertices_.back().u).norm();
+    skipped_ = length < kLeastChord;
+    if (skipped_) return;
+    const double speed = time > 0.0 ? length / time : limits_.v.norm();
+    vertices_.push_back(
+        {u, chord.tolerance_linear, chord.tolerance_rotary * options_.rotary_radius, speed, arc});
+  }
+
+  // Tangents where it begins and ends to move; length 0 if it does not.
+  Leg tip_leg(const Move& move, const TipMotion& motion, std::span<const JointChord> chords) const {
+    Leg leg;
+    leg.rapid = move.kind == MoveKind::rapid;
+    leg.stop_after = move.path_mode == PathMode::exact_stop;
+    leg.exact_corners = move.path_mode == PathMode::exact_path;
+    leg.tolerance = chords.empty() ? 0.0 : chords.front().tolerance_linear;
+    Joints at = u_;
+    for (const JointChord& chord : chords) {
+      const Joints step = scaled(chord.end) - at;
+      const double length = step.norm();
+      at += step;
+      if (length < kLeastChord) continue;
+      if (leg.length == 0.0) leg.tangent_begin = step / length;
+      leg.tangent_end = step / length;
+      leg.length += length;
+    }
+    leg.feed = motion.time > 0.0 ? leg.length / motion.time : limits_.v.norm();
+    return leg;
   }
 
   // Whether an arc goes on where another one ended, on the same circle and in the same direction.
@@ -284,7 +362,8 @@ class Planner {
       plan_fastest(chain);
       chain.duration = chain.law.duration;
       for (const LegSpan& span : spans_) {
-        chain.spans.push_back({chain.path.s[span.first], chain.path.s[span.last], span.move});
+        chain.spans.push_back(
+            {chain.path.s[span.first], chain.path.s[span.last], span.move, span.from, span.to});
       }
       t_ += chain.duration;
       out_.chains_.push_back(std::move(chain));
@@ -299,8 +378,14 @@ class Planner {
     vertices_.push_back(
         {u_, options_.tolerance, options_.rotary_tolerance, vertices_.back().speed, -1});
     const std::size_t last = vertices_.size() - 1;
-    if (spans_.empty()) spans_.push_back({last_move_, 0, last, FeedLimit{}, last_->rapid});
+    if (spans_.empty()) {
+      LegSpan span;
+      span.move = last_move_;
+      span.rapid = last_->rapid;
+      spans_.push_back(span);
+    }
     spans_.back().last = last;
+    spans_.back().to = 1.0;
   }
 
   void plan_fastest(Chain& chain) const {
@@ -321,6 +406,49 @@ class Planner {
     chain.law = quicken(std::move(chain.law), chain.path, v_top, limits_);
   }
 
+  // Speed along the path at s on span n of a move under tool control: that of its chord in the
+  // middle, and linear from there towards the middle of the next chord of the move.
+  double speed_of(std::size_t n, double s, const SmoothPath& path) const {
+    const auto middle = [&](std::size_t k) {
+      return 0.5 * (path.s[spans_[k].first] + path.s[spans_[k].last]);
+    };
+    const auto speed = [&](std::size_t k) {
+      return (path.s[spans_[k].last] - path.s[spans_[k].first]) / spans_[k].time;
+    };
+    const auto is_same = [&](std::size_t k) {
+      return k < spans_.size() && spans_[k].move == spans_[n].move;
+    };
+    const std::size_t next = s > middle(n) ? n + 1 : n - 1, other = s > middle(n) ? n - 1 : n + 1;
+    const std::size_t k = is_same(next) ? next : other;
+    if (!is_same(k)) return speed(n);
+    const double x = (s - middle(n)) / (middle(k) - middle(n));
+    const double low = std::min(speed(n), speed(k)), high = std::max(speed(n), speed(k));
+    return std::clamp(speed(n) + x * (speed(k) - speed(n)), 0.5 * low, 2.0 * high);
+  }
+
+  // The least feed of the moves that reach into a piece of the path; of the chords of one move
+  // under tool control the mean, so that their steps do not add up to a slower feed.
+  FeedLimit feed_between(double begin, double end, std::size_t k, const SmoothPath& path) const {
+    FeedLimit feed = spans_[k].feed;
+    double way = 0.0, time = 0.0;
+    for (std::size_t n = k; n < spans_.size(); ++n) {
+      const LegSpan& span = spans_[n];
+      const double first = path.s[span.first], last = path.s[span.last];
+      if (n > k && first >= end) break;
+      feed.linear = std::min(feed.linear, span.feed.linear);
+      feed.rotary = std::min(feed.rotary, span.feed.rotary);
+      if (n > k && spans_[n - 1].move != span.move) way = time = 0.0;
+      const double share = std::min(end, last) - std::max(begin, first);
+      if (span.time == 0.0 || share <= 0.0) continue;
+      way += share;
+      time += share / speed_of(n, 0.5 * (std::max(begin, first) + std::min(end, last)), path);
+      const bool is_last = n + 1 == spans_.size() || spans_[n + 1].move != span.move ||
+                           path.s[spans_[n + 1].first] >= end;
+      if (is_last) feed.path = std::min(feed.path, way / time);
+    }
+    return feed;
+  }
+
   template <class F>
   void for_each_piece(const SmoothPath& path, F&& f) const {
     JointLimits rapid = limits_;
@@ -329,12 +457,7 @@ class Planner {
     for (std::size_t i = 0; i < path.pieces.size(); ++i) {
       const CubicPiece& piece = path.pieces[i];
       while (k + 1 < spans_.size() && piece.segment >= spans_[k].last) ++k;
-      FeedLimit feed = spans_[k].feed;
-      for (std::size_t n = k + 1; n < spans_.size() && path.s[spans_[n].first] < path.end_of(i);
-           ++n) {
-        feed.linear = std::min(feed.linear, spans_[n].feed.linear);
-        feed.rotary = std::min(feed.rotary, spans_[n].feed.rotary);
-      }
+      const FeedLimit feed = feed_between(piece.s, path.end_of(i), k, path);
       f(piece, path.end_of(i) - piece.s, spans_[k].rapid ? rapid : limits_, feed);
     }
   }
@@ -352,6 +475,7 @@ class Planner {
 
   const JointLayout& layout_;
   PathOptions options_;
+  const TipMotions& tip_;
   JointLimits limits_;  // scaled
   Joints scale_;
   Trajectory out_;
@@ -369,8 +493,8 @@ class Planner {
 };
 
 Trajectory plan(std::span<const Move> moves, const JointLayout& layout, const Joints& start,
-                const JointLimits& limits, const PathOptions& options) {
-  return Planner(layout, limits, options, start).run(moves);
+                const JointLimits& limits, const PathOptions& options, const TipMotions& tip) {
+  return Planner(layout, limits, options, start, tip).run(moves);
 }
 
 Trajectory::Sample Trajectory::rest(const Joints& Q, std::size_t move, bool at_end) const {
@@ -425,7 +549,8 @@ Trajectory::Sample Trajectory::at(double t, Cursor& c) const {
   for (Joints* part : {&out.Q_ref, &out.dQ_ref, &out.ddQ_ref, &out.dddQ_ref}) {
     part->tail<kJoints - kLinearJoints>() /= rotary_radius_;
   }
-  const double f = std::clamp((s - span.s_begin) / (span.s_end - span.s_begin), 0.0, 1.0);
+  const double x = std::clamp((s - span.s_begin) / (span.s_end - span.s_begin), 0.0, 1.0);
+  const double f = span.from + x * (span.to - span.from);
   out.s = info.s_begin + f * (info.s_end - info.s_begin);
   out.line = info.line;
   out.move = span.move;

@@ -8,6 +8,7 @@
 #include "controllers/path/path_limits.h"
 #include "controllers/path/smooth_path.h"
 #include "controllers/path/time_law.h"
+#include "controllers/path/tip_motion.h"
 #include "plant/vocabulary/move.h"
 
 namespace servomill::controllers {
@@ -38,9 +39,10 @@ class Trajectory {
 
   /// A part of the motion from rest to rest, or a dwell (without path).
   struct Chain {
-    struct Span {  // one move on the path
+    struct Span {  // one move on the path, or one chord of a move under tool control
       double s_begin = 0.0, s_end = 0.0;
       std::size_t move = 0;
+      double from = 0.0, to = 1.0;  // of the move
     };
     double t = 0.0, duration = 0.0;  // s
     SmoothPath path;                 // rotary joints times the rotary radius
@@ -67,20 +69,25 @@ class Trajectory {
   std::vector<MoveInfo> moves_;
 };
 
-/// Plans the motion of a program, without tool-centre-point control: the joint targets are
-/// `layout.joints(move.end_machine)`. The motion stops at the first and last move, dwell, M0, M1,
-/// tool change, after G61.1 moves, between rapid and feed, between rotary-only and other moves, at
+/// Plans the motion of a program: the joint targets are `layout.joints(move.end_machine)` or, of
+/// moves under tool control, the chords of `tip`. The motion stops at the first and last move,
+/// dwell, M0, M1, tool change, after G61.1 moves, between rapid and feed, between rotary-only and
+/// other moves, at (moves under tool control count as such others, even where the tip stands), at
 /// reversals (sharper than 120 degrees), at the corners of G61, and at corners of G64 that a stop
 /// passes sooner than a rounding within the tolerance.
 ///
 /// Laws: on every joint |dQ| <= v, |ddQ| <= a, |dddQ| <= j; the path speed of X Y Z (of the rotary
 /// joints for rotary-only moves) never exceeds the feed; the path stays within the tolerance of the
 /// programmed one; the end of the program is reached exactly, at rest.                       (1)
+/// Under tool control the feed is that of the tip in the workpiece (of the rotation where the tip
+/// stands), chord by chord.
 ///
 /// @param moves   canonical moves; feed and arc moves have feed > 0
 /// @param start   joints before the first move (5; m, rad)
+/// @param tip     of the same moves and start
 /// @pre limits > 0 for the joints of the layout; tolerances and overrides > 0
 Trajectory plan(std::span<const Move> moves, const JointLayout& layout, const Joints& start,
-                const JointLimits& limits, const PathOptions& options = {});
+                const JointLimits& limits, const PathOptions& options = {},
+                const TipMotions& tip = {});
 
 }  // namespace servomill::controllers

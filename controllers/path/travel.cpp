@@ -12,16 +12,17 @@
 namespace servomill::controllers {
 namespace {
 
+template <class Vector>
 struct Range {
-  AxisWords low, high;
-  void include(const AxisWords& words) {
-    low = low.cwiseMin(words);
-    high = high.cwiseMax(words);
+  Vector low, high;
+  void include(const Vector& point) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
   }
 };
 
 // The quadrant points of the circle that lie on the arc.
-void include_extremes(Range& range, const Move& move, const AxisWords& from) {
+void include_extremes(Range<AxisWords>& range, const Move& move, const AxisWords& from) {
   const ArcSweep arc = arc_sweep(move, from.head<3>());
   const double quarter = std::numbers::pi / 2.0;
   const double low = std::min(arc.angle, arc.angle + arc.sweep);
@@ -34,11 +35,13 @@ void include_extremes(Range& range, const Move& move, const AxisWords& from) {
   }
 }
 
-Range range_of(const Move& move, const AxisWords& from) {
-  Range range{from, from};
+// Of a move without tool control.
+Range<Joints> range_of(const Move& move, const Joints& from, const JointLayout& layout) {
+  const AxisWords words = layout.words(from);
+  Range<AxisWords> range{words, words};
   range.include(move.end_machine);
-  if (move.kind == MoveKind::arc) include_extremes(range, move, from);
-  return range;
+  if (move.kind == MoveKind::arc) include_extremes(range, move, words);
+  return {layout.joints(range.low), layout.joints(range.high)};
 }
 
 std::string message(char name, bool rotary, double value, double limit, bool above) {
@@ -51,13 +54,21 @@ std::string message(char name, bool rotary, double value, double limit, bool abo
 
 std::vector<Fault> travel_faults(std::span<const Move> moves, const JointLayout& layout,
                                  const Joints& start, const Joints& lower, const Joints& upper,
-                                 const std::string& file) {
+                                 const std::string& file, const TipMotions& tip) {
   std::vector<Fault> faults;
-  AxisWords at = layout.words(start);
-  for (const Move& move : moves) {
+  Joints at = start;
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    const Move& move = moves[i];
     if (!is_motion(move.kind)) continue;
-    const Range range = range_of(move, at);
-    const Joints low = layout.joints(range.low), high = layout.joints(range.high);
+    Range<Joints> range{at, at};
+    if (move.tool_control == ToolControl::none) {
+      range = range_of(move, at, layout);
+      at = layout.joints(move.end_machine);
+    } else {
+      for (const JointChord& chord : tip.chords_of(*tip.of(i))) range.include(chord.end);
+      at = tip.chords_of(*tip.of(i)).back().end;
+    }
+    const auto& [low, high] = range;
     for (int k = 0; k < kJoints; ++k) {
       if (!layout.has(k)) continue;
       const bool above = high[k] > upper[k];
@@ -67,7 +78,6 @@ std::vector<Fault> travel_faults(std::span<const Move> moves, const JointLayout&
       fault.message = message(layout.letter_of(k), k >= kLinearJoints, above ? high[k] : low[k],
                               above ? upper[k] : lower[k], above);
     }
-    at = move.end_machine;
   }
   return faults;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "controllers/path/tip_motion.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/move.h"
 
@@ -14,8 +15,9 @@ namespace servomill::controllers {
 /// @param start         joints before the first move (5; m, rad)
 /// @param lower, upper  (5; m, rad), infinite for an endless axis; the bounds belong to the travel
 /// @param file          of the program, for the place of the faults
+/// @param tip           of the same moves
 std::vector<Fault> travel_faults(std::span<const Move> moves, const JointLayout& layout,
                                  const Joints& start, const Joints& lower, const Joints& upper,
-                                 const std::string& file);
+                                 const std::string& file, const TipMotions& tip = {});
 
 }  // namespace servomill::controllers

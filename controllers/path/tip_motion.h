@@ -1,0 +1,79 @@
+/// Motion of the tool centre point as chords of joint motion.
+///
+/// A move gives the tip p(t) in the workpiece and the rotary joints, linear in t or linear between
+/// the knots of a great circle (tool_centre_point.h). The linear joints follow: with J the
+/// directions of the linear axes at these angles,
+///
+///     Q(t) = (J^-1 (p(t) - p_0(rotary(t))),  rotary(t))                                    (1)
+///
+/// and chords of Q are halved until the tip of the machine, going linearly in all joints, keeps to
+/// p(t). The planner rounds the corners of the chords (smooth_path.h). A joint deviation moves the
+/// tip by at most
+///
+///     |dp| <= |dQ_linear| + a |dQ_rotary|,   a^2 = sum of squares of the arms of the tip    (2)
+///
+/// so a tolerance T of the tip leaves shares of T for chords, linear and rotary joints; the angle
+/// by which the tool axis moves is at most sqrt(2) |dQ_rotary|.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "controllers/path/path_limits.h"
+#include "controllers/path/tool_centre_point.h"
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/move.h"
+
+namespace servomill::controllers {
+
+struct JointChord {
+  Joints end = Joints::Zero();    // m, rad
+  double fraction = 0.0;          // of the move, where the chord ends
+  double tolerance_linear = 0.0;  // m, for rounding
+  double tolerance_rotary = 0.0;  // rad
+};
+
+/// One move under tool control.
+struct TipMotion {
+  std::size_t move = 0;
+  std::size_t first = 0, last = 0;  // chords
+  double time = 0.0;                // s, by the programmed feed; 0: as fast as the joints can
+};
+
+/// A move whose feed the joints cannot follow, as near a singular direction.
+struct SlowedMotion {
+  int line = 0;
+  int joint = 0;
+  double needed = 0.0, allowed = 0.0;  // m/s or rad/s: at the programmed feed, and the limit
+  double singular_angle = 0.0;         // rad, of the tool axis from a singular direction there
+};
+
+struct TipMotions {
+  std::vector<JointChord> chords;
+  std::vector<TipMotion> motions;    // in the order of the moves
+  std::vector<SlowedMotion> slowed;  // the worst place of each line
+
+  const TipMotion* of(std::size_t move) const;
+  std::span<const JointChord> chords_of(const TipMotion& motion) const {
+    return std::span(chords).subspan(motion.first, motion.last - motion.first);
+  }
+};
+
+/// @param moves   of a program; those without tool control are only followed
+/// @param tips    p_ST (3; m) by number of tool offset
+/// @param start   joints before the first move (5; m, rad)
+/// @param limits  speeds of which `slowed` tells
+/// @param file    of the program, for faults
+/// @throws InputError with every move that the machine cannot do
+TipMotions tip_motions(std::span<const Move> moves, const ToolCentrePoint& machine,
+                       const std::map<int, Eigen::Vector3d>& tips, const Joints& start,
+                       const JointLimits& limits, const PathOptions& options,
+                       const std::string& file);
+
+/// "C would have to turn ..." for the report of a run.
+std::string to_string(const SlowedMotion& slowed, const JointLayout& layout);
+
+}  // namespace servomill::controllers
