@@ -100,6 +100,22 @@ std::string arc_fields(const Move& move) {
                      array({m[0] / mm, m[1] / mm, m[2] / mm}), move.arc.turns);
 }
 
+// What X Y Z of "mend" are: nothing is said if they are positions of the axes.
+std::string control_fields(const Move& move) {
+  const Eigen::Vector3d& k = move.tool_axis;
+  switch (move.tool_control) {
+    case ToolControl::none:
+      return {};
+    case ToolControl::rotary_axes:
+      return R"(,"control":"G43.4")";
+    case ToolControl::tool_axis:
+      return fmt::format(R"(,"control":"G43.5","axis":{})", array({k.x(), k.y(), k.z()}));
+    case ToolControl::work_plane:
+      return R"(,"control":"G68.2")";
+  }
+  return {};
+}
+
 std::string own_fields(const Move& move) {
   switch (move.kind) {
     case MoveKind::rapid:
@@ -133,6 +149,7 @@ std::string canon_json(const Move& move) {
   std::string text = fmt::format(R"({{"t":"{}","line":{})", kind_name(move), move.line);
   if (is_motion(move.kind)) {
     text += fmt::format(R"(,"end":{},"mend":{})", words(move.end), words(move.end_machine));
+    text += control_fields(move);
   }
   return text + own_fields(move) + '}';
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -21,6 +22,8 @@ namespace {
 
 constexpr double kIntegerTol = 1e-4;     // as LinuxCNC, for words that must be integers
 constexpr double kTurnsTol = 1e-3;       // as LinuxCNC, for P of an arc
+constexpr double kUnitTol = 1e-4;        // of a tool axis with four decimals
+constexpr double kLeastVector = 1e-6;    // length of a tool axis; below it is zero
 constexpr double kSlowestInverse = 0.1;  // mm, inch or deg per minute; as LinuxCNC
 
 // Axis words of a group of letters, as they stand in parameters: mm and degrees.
@@ -138,6 +141,8 @@ class Interpreter::Machine {
     return std::exchange(out_, {});
   }
 
+  const std::vector<Fault>& warnings() const { return warnings_; }
+
  private:
   // ---- setup
   void set_initial(const std::string& name, double value);
@@ -171,7 +176,7 @@ class Interpreter::Machine {
 
   // ---- steps of a block, in the order of execution
   using Step = void (Machine::*)();
-  static const std::array<Step, 20> kSteps;
+  static const std::array<Step, 21> kSteps;
   void messages();
   void feed_mode();
   void feed();
@@ -187,7 +192,9 @@ class Interpreter::Machine {
   void cutter_compensation() {}
   void tool_length();
   void set_table_offset(bool is_added);
+  ToolControl tool_control_of(int code) const;
   void work_system();
+  void work_plane();
   void path_control();
   void distance();
   void non_modal();
@@ -207,13 +214,27 @@ class Interpreter::Machine {
   void store_shift();
   const ToolEntry& tool_named(char letter, int number) const;
 
+  // tool-centre-point control and tilted planes
+  std::string rotary_not_at_zero(const AxisWords& machine) const;
+  AxisWords machine_now(int column) const;
+  void stand_at(const AxisWords& machine, int column);
+  void orient_tool();  // G53.1
+  void refuse_while_tip_is_controlled() const;
+  void refuse_rotary_words() const;
+  bool has_vector() const {
+    return state_.tool_control == ToolControl::tool_axis &&
+           (request_.has('I') || request_.has('J') || request_.has('K'));
+  }
+  Eigen::Vector3d programmed_axis();
+  double turn_towards(const Eigen::Vector3d& k, AxisWords& end) const;
+
   void straight();
   void arc();
   ArcCentre arc_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end, bool clockwise);
   int arc_turns(bool clockwise) const;
   AxisWords programmed_end() const;
   AxisWords machine_end() const;
-  double move_feed(const AxisWords& end, double length) const;
+  double move_feed(const AxisWords& end, double length, double angle) const;
   void require_feed() const;
 
   // ---- output
@@ -240,9 +261,10 @@ class Interpreter::Machine {
   std::vector<Move> out_;
   std::size_t given_ = 0;
   std::vector<std::pair<int, double>> new_numbers_;
+  std::vector<Fault> warnings_;
 };
 
-const std::array<Interpreter::Machine::Step, 20> Interpreter::Machine::kSteps = {
+const std::array<Interpreter::Machine::Step, 21> Interpreter::Machine::kSteps = {
     &Machine::messages,
     &Machine::feed_mode,
     &Machine::feed,
@@ -258,6 +280,7 @@ const std::array<Interpreter::Machine::Step, 20> Interpreter::Machine::kSteps = 
     &Machine::cutter_compensation,
     &Machine::tool_length,
     &Machine::work_system,
+    &Machine::work_plane,
     &Machine::path_control,
     &Machine::distance,
     &Machine::non_modal,
@@ -335,7 +358,8 @@ bool Interpreter::Machine::read_block() {
 }
 
 void Interpreter::Machine::run_block() {
-  request_ = resolve(block_, parameters_, state_.motion, file_);
+  const bool has_vectors = state_.tool_control == ToolControl::tool_axis;
+  request_ = resolve(block_, parameters_, state_.motion, has_vectors, file_);
   assign_parameters();
   for (const Step step : kSteps) (this->*step)();
 }
@@ -492,7 +516,8 @@ void Interpreter::Machine::units() {
 void Interpreter::Machine::tool_length() {
   const int code = request().code(Group::g_tool_length);
   if (code < 0) return;
-  const AxisWords machine = state_.to_account(state_.position);
+  const int column = request().of(Group::g_tool_length).column;
+  const AxisWords machine = machine_now(column);
   if (code == 490) {
     state_.set_tool_offset(AxisWords::Zero());
     state_.tool_offset_number = 0;
@@ -506,7 +531,26 @@ void Interpreter::Machine::tool_length() {
   } else {
     set_table_offset(code == 432);
   }
-  state_.position = state_.from_account(machine);
+  const ToolControl before = std::exchange(state_.tool_control, tool_control_of(code));
+  if (before != state_.tool_control) state_.tool_axis.setZero();
+  if (state_.plane && state_.tool_offset_number == kOtherToolOffset) {
+    fail(column, fmt::format("{} in a tilted work plane; use G43 H", code_name('G', code)));
+  }
+  stand_at(machine, column);
+}
+
+// What the codes of the group of G43 leave in force.
+ToolControl Interpreter::Machine::tool_control_of(int code) const {
+  if (code != 434 && code != kVectorControl) return ToolControl::none;
+  const int column = request().of(Group::g_tool_length).column;
+  if (setup_.machine && setup_.machine->number_of_rotary_axes() == 0) {
+    fail(column, fmt::format("{}: the machine has no rotary axis", code_name('G', code)));
+  }
+  if (code == 434) return ToolControl::rotary_axes;
+  if (!setup_.machine) {
+    fail(column, "G43.5: where the rotary axes go depends on the machine, and none is given");
+  }
+  return ToolControl::tool_axis;
 }
 
 // G43 and G43.2
@@ -539,6 +583,182 @@ void Interpreter::Machine::work_system() {
   if (system != state_.work_system) load_work_system(system);
 }
 
+// ------------------------------------------------- tool-centre-point control and tilted planes
+
+// Where no machine is known, tip and axes differ by the tool if nothing is turned.
+std::string Interpreter::Machine::rotary_not_at_zero(const AxisWords& machine) const {
+  for (int i = kLinearJoints; i < kAxisWords; ++i) {
+    if (machine[i] == 0.0) continue;
+    return fmt::format(
+        "{} stands at {:g} deg: where the tip is depends on the machine, and none "
+        "is given",
+        letter(axis_at(i)), machine[i] / deg);
+  }
+  return {};
+}
+
+// Positions of the axes, also while the tip is controlled.
+AxisWords Interpreter::Machine::machine_now(int column) const {
+  const AxisWords account = state_.to_account(state_.position);
+  if (!state_.controls_tip()) return account;
+  if (setup_.machine) {
+    const auto machine = setup_.machine->machine_words(account, state_.p_ST());
+    if (!machine) fail(column, "the linear axes cannot bring the tip to where it is now");
+    return *machine;
+  }
+  const std::string why = rotary_not_at_zero(account);
+  if (!why.empty()) fail(column, why);
+  AxisWords machine = account;
+  machine.head<3>() -= state_.p_ST();
+  return machine;
+}
+
+void Interpreter::Machine::stand_at(const AxisWords& machine, int column) {
+  if (!state_.controls_tip()) {
+    state_.position = state_.from_account(machine);
+    return;
+  }
+  AxisWords tip = machine;
+  if (setup_.machine) {
+    tip = setup_.machine->tip_words(machine, state_.p_ST());
+  } else {
+    const std::string why = rotary_not_at_zero(machine);
+    if (!why.empty()) fail(column, why);
+    tip.head<3>() += state_.p_ST();
+  }
+  state_.position = state_.from_account(tip);
+}
+
+void Interpreter::Machine::work_plane() {
+  const int code = request().code(Group::g_work_plane);
+  if (code < 0) return;
+  const int column = request().of(Group::g_work_plane).column;
+  if (code == 690) {
+    if (!state_.plane) return;
+    const AxisWords machine = machine_now(column);
+    state_.plane.reset();
+    stand_at(machine, column);
+    return;
+  }
+  if (state_.plane) fail(column, "G68.2 in a tilted work plane; G69 first");
+  if (state_.tool_offset_number == kOtherToolOffset) {
+    fail(column, "G68.2 with a tool offset of G43.1 or G43.2; use G43 H");
+  }
+  refuse_rotary_words();
+  const AxisWords machine = machine_now(column);
+  WorkPlane plane;
+  for (int i = 0; i < kLinearJoints; ++i) {
+    if (has_axis(i)) plane.origin[i] = axis_word(i);
+  }
+  const auto turn = [&](char letter, const Eigen::Vector3d& about) {
+    return Eigen::AngleAxisd(request()[letter] * deg, about).toRotationMatrix();
+  };
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
+  plane.R = turn('I', z) * turn('J', x) * turn('K', z);
+  state_.plane = std::make_shared<const WorkPlane>(plane);
+  stand_at(machine, column);
+}
+
+void Interpreter::Machine::orient_tool() {
+  const int column = request().of(Group::g_non_modal).column;
+  if (!state_.plane) fail(column, "G53.1 without a tilted work plane; G68.2 first");
+  if (request().motion.code != nullptr) {
+    fail(request().motion.column, "G53.1 must stand without motion in its block");
+  }
+  if (!setup_.machine) {
+    fail(column, "G53.1: where the rotary axes go depends on the machine, and none is given");
+  }
+  if (setup_.machine->number_of_rotary_axes() == 0) {
+    fail(column, "G53.1: the machine has no rotary axis");
+  }
+  const AxisWords machine = machine_now(column);
+  const JointLayout& layout = setup_.machine->chain().layout;
+  const auto found = setup_.machine->point(state_.direction_in_workpiece(Eigen::Vector3d::UnitZ()),
+                                           layout.joints(machine));
+  if (!found.fault.empty()) fail(column, fmt::format("G53.1: {}", found.fault));
+  AxisWords turned = machine;
+  const AxisWords words = layout.words(found.Q);
+  for (int i = kLinearJoints; i < kAxisWords; ++i) {
+    if (layout.joint_of(axis_at(i))) turned[i] = words[i];
+  }
+  stand_at(turned, column);
+  if (state_.tool_control == ToolControl::tool_axis) {
+    state_.tool_axis = setup_.machine->tool_axis(found.Q);
+  }
+  Move& move = emit(MoveKind::rapid);
+  move.tool_control = ToolControl::none;
+  move.end_machine = turned;
+}
+
+// Codes whose words, or whose account of the position, are those of the axes.
+void Interpreter::Machine::refuse_while_tip_is_controlled() const {
+  const Request::Chosen& chosen = request().of(Group::g_non_modal);
+  if (chosen.code == nullptr) return;
+  const int code = chosen.code->tenths;
+  if (code == 40 || code == 531) return;
+  const bool speaks_of_axes =
+      code == 530 || code == 280 || code == 281 || code == 300 || code == 301;
+  if (state_.plane) {
+    fail(chosen.column, fmt::format("{} in a tilted work plane; G69 first", code_name('G', code)));
+  }
+  if (state_.tool_control != ToolControl::none && speaks_of_axes) {
+    fail(chosen.column,
+         fmt::format("{} under tool-centre-point control; G49 first", code_name('G', code)));
+  }
+}
+
+void Interpreter::Machine::refuse_rotary_words() const {
+  const bool has_vectors = state_.tool_control == ToolControl::tool_axis;
+  for (int i = kLinearJoints; i < kAxisWords; ++i) {
+    if (!has_axis(i)) continue;
+    const char name = letter(axis_at(i));
+    if (has_vectors) {
+      fail_at(name, fmt::format("{} word under G43.5; I J K give the tool axis", name));
+    }
+    if (state_.plane && state_.tool_control == ToolControl::none) {
+      fail_at(name, fmt::format("{} word in a tilted work plane; G53.1 turns the tool, G43.4 moves "
+                                "rotary axes",
+                                name));
+    }
+    if (request().code(Group::g_work_plane) == 682) {
+      fail_at(name, fmt::format("{} word with G68.2; its angles are I J K", name));
+    }
+  }
+}
+
+// The tool axis of a block under G43.5, in W.
+Eigen::Vector3d Interpreter::Machine::programmed_axis() {
+  if (!has_vector()) {
+    if (state_.tool_axis.isZero(0.0)) {
+      fail(request().motion.column, "G43.5 without I J K in its first move");
+    }
+    return state_.tool_axis;
+  }
+  const Eigen::Vector3d given(request()['I'], request()['J'], request()['K']);
+  const char first = request().has('I') ? 'I' : request().has('J') ? 'J' : 'K';
+  const double length = given.norm();
+  if (!(length > kLeastVector)) fail_at(first, "the tool axis I J K has length zero");
+  if (std::abs(length - 1.0) > kUnitTol) {
+    warnings_.push_back(
+        {{file_, lines_.number(), request().word(first).column},
+         fmt::format("the tool axis I J K has length {:.6g}; taken as a unit vector", length)});
+  }
+  return (state_.direction_in_workpiece(given) / length).normalized();
+}
+
+// Puts the rotary words of `end` to where the tool axis is k. Returns the angle of the turn, rad.
+double Interpreter::Machine::turn_towards(const Eigen::Vector3d& k, AxisWords& end) const {
+  const JointLayout& layout = setup_.machine->chain().layout;
+  const AxisWords now = state_.to_machine(state_.position);
+  const AxisTurn turn = setup_.machine->great_circle(layout.joints(now), k);
+  if (!turn.fault.empty()) fail(request().motion.column, turn.fault);
+  const AxisWords words = layout.words(turn.knots.back().Q);
+  for (int i = kLinearJoints; i < kAxisWords; ++i) {
+    if (layout.joint_of(axis_at(i))) end[i] = state_.position[i] + (words[i] - now[i]);
+  }
+  return turn.angle;
+}
+
 void Interpreter::Machine::path_control() {
   const int code = request().code(Group::g_path_control);
   if (code < 0) return;
@@ -564,6 +784,7 @@ void Interpreter::Machine::distance() {
 // -------------------------------------------------------------------- G10 G28 G30 G52 G53 G92
 
 void Interpreter::Machine::non_modal() {
+  if (state_.controls_tip()) refuse_while_tip_is_controlled();
   switch (request().code(Group::g_non_modal)) {
     case 100:
       return set_offsets();
@@ -584,6 +805,8 @@ void Interpreter::Machine::non_modal() {
       return drop_shift(false);
     case 923:
       return restore_shift();
+    case 531:
+      return orient_tool();
     default:
       return;  // none, G4 (done), G53 (part of the motion)
   }
@@ -719,6 +942,7 @@ void Interpreter::Machine::motion() {
     if (code != 0 && code != 10) fail(column, "G53 needs G0 or G1");
     if (state_.is_incremental) fail(column, "G53 with G91; machine coordinates are absolute");
   }
+  if (code >= 0 && state_.controls_tip()) refuse_rotary_words();
   if (code == 0 || code == 10) straight();
   if (code == 20 || code == 30) arc();
 }
@@ -758,25 +982,35 @@ void Interpreter::Machine::require_feed() const {
 }
 
 // @param length  of the XYZ path, m
-double Interpreter::Machine::move_feed(const AxisWords& end, double length) const {
-  const bool is_linear_move = end.head<3>() != state_.position.head<3>() || length > 0.0;
+// @param angle   of a rotation, rad
+double Interpreter::Machine::move_feed(const AxisWords& end, double length, double angle) const {
+  const bool is_linear_move = state_.controls_tip()
+                                  ? length > kStandingTip
+                                  : end.head<3>() != state_.position.head<3>() || length > 0.0;
   if (state_.feed_mode == FeedMode::units_per_minute) {
     return is_linear_move ? state_.feed_linear : state_.feed_rotary;
   }
   const double rate = request()['F'] / minute;
   if (is_linear_move) return std::max(rate * length, kSlowestInverse * state_.unit / minute);
-  const double angle = (end - state_.position).tail<3>().norm();
   return std::max(rate * angle, kSlowestInverse * deg / minute);
 }
 
 void Interpreter::Machine::straight() {
   const bool is_rapid = request().motion_code() == 0;
   if (!is_rapid) require_feed();
-  if (!has_any_axis()) return;
-  const AxisWords end = programmed_end();
+  if (!has_any_axis() && !has_vector()) return;
+  AxisWords end = programmed_end();
   const double length = (end - state_.position).head<3>().norm();
+  double angle = (end - state_.position).tail<3>().norm();
+  const bool has_tool_axis = state_.tool_control == ToolControl::tool_axis;
+  if (has_tool_axis) {
+    const Eigen::Vector3d k = programmed_axis();
+    angle = turn_towards(k, end);
+    state_.tool_axis = k;
+  }
   move_to(is_rapid ? MoveKind::rapid : MoveKind::feed, end, length,
-          is_rapid ? 0.0 : move_feed(end, length));
+          is_rapid ? 0.0 : move_feed(end, length, angle));
+  if (has_tool_axis) out_.back().tool_axis = state_.tool_axis;
 }
 
 int Interpreter::Machine::arc_turns(bool clockwise) const {
@@ -827,6 +1061,11 @@ ArcCentre Interpreter::Machine::arc_centre(const Eigen::Vector2d& start, const E
 
 void Interpreter::Machine::arc() {
   require_feed();
+  if (state_.tool_control == ToolControl::tool_axis) {
+    fail(request().motion.column,
+         fmt::format("{} under G43.5, where I J K are the tool axis; use G1 or G43.4",
+                     code_name('G', request().motion_code())));
+  }
   const bool clockwise = request().motion_code() == 20;
   const int turns = arc_turns(clockwise);
   const int n = state_.normal_axis;
@@ -845,8 +1084,12 @@ void Interpreter::Machine::arc() {
   centre[n] = end[n];
   const double length =
       ArcSweep(state_.position.head<3>(), end.head<3>(), centre.head<3>(), n, turns).length();
-  move_to(MoveKind::arc, end, length, move_feed(end, length));
+  const double angle = (end - state_.position).tail<3>().norm();
+  move_to(MoveKind::arc, end, length, move_feed(end, length, angle));
   out_.back().arc = {n, centre.head<3>(), turns};
+  if (state_.plane) {
+    out_.back().plane = std::make_shared<const WorkPlane>(state_.plane_in_workpiece());
+  }
   out_.back().centre_machine = state_.to_machine(centre).head<3>();
 }
 
@@ -883,6 +1126,10 @@ Move& Interpreter::Machine::emit(MoveKind kind) {
   move.work_offset = state_.work_system;
   move.tool_offset = state_.tool_offset_number;
   move.s_begin = move.s_end = state_.s;
+  move.tool_control = state_.tool_control;
+  if (state_.plane && move.tool_control == ToolControl::none) {
+    move.tool_control = ToolControl::work_plane;
+  }
   return move;
 }
 
@@ -938,6 +1185,7 @@ Interpreter& Interpreter::operator=(Interpreter&&) noexcept = default;
 
 std::optional<Move> Interpreter::next() { return machine_->next(); }
 std::vector<Move> Interpreter::rest() { return machine_->rest(); }
+const std::vector<Fault>& Interpreter::warnings() const { return machine_->warnings(); }
 
 std::vector<Move> interpret(std::string text, std::string file, ProgramSetup setup) {
   return Interpreter(std::move(text), std::move(file), std::move(setup)).rest();

@@ -3,9 +3,24 @@
 /// Meaning and order of execution are those of LinuxCNC 2.9: within a block, whatever the order of
 /// its words, (1) messages, (2) G93 G94, (3) F, in the unit in force before the block, (4) S,
 /// (5) T, (6) M6, (7) M3 M4 M5, (8) M7 M8 M9, (9) M48 M49, (10) G4, (11) plane, (12) unit,
-/// (13) cutter compensation, (14) tool length, (15) work system, (16) path control, (17) distance
-/// modes, (18) G10 G28 G30 G52 G92, (19) motion, (20) M0 M1 M2 M30. Parameters set in a block take
-/// effect after all its words are read. A block with an error changes nothing.
+/// (13) cutter compensation, (14) tool length and tool-centre-point control, (15) work system,
+/// (16) tilted work plane, (17) path control, (18) distance modes, (19) G10 G28 G30 G52 G53.1 G92,
+/// (20) motion, (21) M0 M1 M2 M30. Parameters set in a block take effect after all its words are
+/// read. A block with an error changes nothing.
+///
+/// Additions to LinuxCNC, in the manner of Fanuc's 30i series:
+///   G43.4 H    tool-centre-point control: X Y Z are the tip in the workpiece, which turns with the
+///              table; rotary axes go linearly to their words. Group of G43, ended by its others.
+///   G43.5 H    the same; I J K of G0 and G1 are the tool axis, from the tip to the spindle, in the
+///              coordinates of the program. It turns on a great circle. A block without I J K keeps
+///              it. Words of rotary axes and arcs are errors.
+///   G68.2 X Y Z I J K   tilted work plane: origin in work coordinates and Euler angles (degrees)
+///              about Z, the new X, the new Z: R = Rz(I) Rx(J) Rz(K). What is left out is 0.
+///   G53.1      turns the rotary axes at rapid so that the tool stands along Z of that plane, the
+///              nearest of the solutions within the travel; the linear axes stand still.
+///   G69        ends the tilted work plane.
+/// While one of them controls the tip, the origin is that of the work system as it lies with all
+/// rotary axes at zero, and turns with the workpiece. Switching them on or off moves nothing.
 ///
 /// Different from LinuxCNC on purpose: M6 leaves the position as it
 /// is; M48 M49 do nothing, since no operator turns the override; all messages of a block are given,
@@ -21,6 +36,7 @@
 #include <vector>
 
 #include "controllers/gcode/tool_table.h"
+#include "controllers/path/tool_centre_point.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/move.h"
@@ -38,6 +54,9 @@ struct ProgramSetup {
   int tool = 0;                         // in the spindle at the start; 0: none
   AxisWords start = AxisWords::Zero();  // machine coordinates before the first block; m, rad
   bool block_delete = false;            // leave out the lines that start with '/'
+  /// The machine, for tool-centre-point control and tilted planes. Without it a program may use
+  /// G43.4 and G68.2 as long as its rotary axes are at zero where they are switched on and off.
+  std::shared_ptr<const ToolCentrePoint> machine;
 
   static std::array<AxisWords, 9> zero_offsets();
 };
@@ -60,6 +79,9 @@ class Interpreter {
   /// All moves that are left.
   /// @throws InputError at a block with an error; the moves before it are lost
   std::vector<Move> rest();
+
+  /// What was put right in the blocks so far: tool axes that were not of unit length.
+  const std::vector<Fault>& warnings() const;
 
  private:
   class Machine;

@@ -11,6 +11,7 @@ namespace {
 using enum Group;
 
 // Sorted by code. Source of groups and words: LinuxCNC 2.9, G-code reference and "Modal Groups".
+// LinuxCNC has no G43.4, G43.5, G53.1, G68.2, G69: as Fanuc's 30i series has them.
 constexpr auto kGCodes = std::to_array<Code>({
     {0, g_motion, true, "", true},
     {10, g_motion, true, "", true},
@@ -50,9 +51,12 @@ constexpr auto kGCodes = std::to_array<Code>({
     {430, g_tool_length, true, "H"},
     {431, g_tool_length, true, "", true},
     {432, g_tool_length, true, "H"},
+    {434, g_tool_length, true, "H"},
+    {435, g_tool_length, true, "H"},
     {490, g_tool_length, true, ""},
     {520, g_non_modal, true, "", true},
     {530, g_non_modal, true, ""},
+    {531, g_non_modal, true, ""},
     {540, g_work_system, true, ""},
     {550, g_work_system, true, ""},
     {560, g_work_system, true, ""},
@@ -65,6 +69,8 @@ constexpr auto kGCodes = std::to_array<Code>({
     {610, g_path_control, true, ""},
     {611, g_path_control, true, ""},
     {640, g_path_control, true, "PQ"},
+    {682, g_work_plane, true, "IJK", true},
+    {690, g_work_plane, true, ""},
     {700, g_non_modal, false, ""},
     {710, g_non_modal, false, ""},
     {720, g_non_modal, false, ""},

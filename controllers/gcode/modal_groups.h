@@ -24,6 +24,7 @@ enum class Group : std::uint8_t {
   g_work_system,
   g_path_control,
   g_spindle_mode,
+  g_work_plane,  // not in LinuxCNC: 16 in Fanuc's manuals
   m_input_output,
   m_stop,
   m_tool,

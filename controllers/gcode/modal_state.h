@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/move.h"
@@ -20,6 +21,11 @@ inline constexpr int kMist = 1, kFlood = 2;  // bits of `Move::number` of a cool
 /// LinuxCNC keeps its own account of the position with a tool offset whose number it does not
 /// convert when G20 or G21 follows. That account is kept here as well (`tool_account`), for it
 /// decides where G53, G28 and moves behind a change of tool offset end.
+///
+/// While the tip is controlled (tool-centre-point control or a tilted work plane) machine
+/// coordinates are tip words: X Y Z of the tip in the workpiece. The tool offset is left out of
+/// them, and so it is of the account:
+/// tip = R (plane (position) + shift) + work_offset.
 struct ModalState {
   AxisWords position = AxisWords::Zero();  // in work coordinates
   AxisWords shift = AxisWords::Zero();     // G92, G52
@@ -30,6 +36,10 @@ struct ModalState {
   double sin_rotation = 0.0;
   int work_system = 1;
   int tool_offset_number = 0;
+
+  ToolControl tool_control = ToolControl::none;         // by G43.4 and G43.5
+  Eigen::Vector3d tool_axis = Eigen::Vector3d::Zero();  // k_W of G43.5; 0: none given yet
+  std::shared_ptr<const WorkPlane> plane;               // of G68.2, in work coordinates
 
   int motion = 800;     // ten times the code; 800: none
   int normal_axis = 2;  // of the plane of arcs
@@ -53,6 +63,15 @@ struct ModalState {
   void set_rotation(double angle);
   void set_tool_offset(const AxisWords& offset);
   void set_unit(double new_unit);
+  /// Whether X Y Z are the tip in the workpiece.
+  bool controls_tip() const { return tool_control != ToolControl::none || plane != nullptr; }
+  /// Tip in the spindle nose, m.
+  Eigen::Vector3d p_ST() const { return -tool_offset.head<3>(); }
+  /// Where the tilted work plane, or work coordinates without one, lie in the workpiece.
+  WorkPlane plane_in_workpiece() const;
+  /// Direction in W of one that the program gives.
+  Eigen::Vector3d direction_in_workpiece(const Eigen::Vector3d& v) const;
+
   AxisWords rotated(const AxisWords& v) const;
   AxisWords unrotated(const AxisWords& v) const;
 

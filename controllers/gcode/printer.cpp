@@ -242,6 +242,10 @@ class Printer {
   }
 
   void print_motion(const Move& move) {
+    if (move.tool_control != ToolControl::none) {
+      throw InputError({{}, move.line, 0},
+                       "tool-centre-point control and tilted work planes cannot be printed");
+    }
     print_modes(move);
     const Steps steps = steps_of(move.end);
     const bool is_arc = move.kind == MoveKind::arc && !vanishes(move, steps);

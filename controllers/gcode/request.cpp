@@ -53,26 +53,39 @@ void choose(const Context& context, Request& request, char letter, const Code& c
   chosen = {&code, column};
 }
 
-// Column of the first axis word, or 0.
-int first_axis_word(const Request& request) {
+constexpr std::string_view kVectorLetters = "IJK";
+
+// Column of the first axis word, or 0. The words of a tool axis are such words, too.
+int first_axis_word(const Request& request, bool has_vectors) {
   int first = 0;
-  for (const Axis axis : kAllAxes) {
-    const int column = request.word(letter(axis)).column;
+  const auto look = [&](char letter) {
+    const int column = request.word(letter).column;
     if (column > 0 && (first == 0 || column < first)) first = column;
+  };
+  for (const Axis axis : kAllAxes) look(letter(axis));
+  if (has_vectors) {
+    for (const char letter : kVectorLetters) look(letter);
   }
   return first;
 }
 
+// Does the block leave, or put, G43.5 in force?
+bool has_vectors_after(const Request& request, bool before) {
+  const int tool_length = request.code(Group::g_tool_length);
+  return tool_length < 0 ? before : tool_length == kVectorControl;
+}
+
 // The code other than a motion that takes the axis words: G10, G28, G92, G43.1 ...
 Request::Chosen axis_taker(const Request& request) {
-  for (const Group group : {Group::g_non_modal, Group::g_tool_length}) {
+  for (const Group group : {Group::g_non_modal, Group::g_tool_length, Group::g_work_plane}) {
     const Request::Chosen& chosen = request.of(group);
     if (chosen.code != nullptr && chosen.code->uses_axes) return chosen;
   }
   return {};
 }
 
-Request::Chosen choose_motion(const Context& context, const Request& request, int modal_motion) {
+Request::Chosen choose_motion(const Context& context, const Request& request, int modal_motion,
+                              bool has_vectors) {
   const Request::Chosen programmed = request.of(Group::g_motion);
   const Request::Chosen taker = axis_taker(request);
   const bool cancel = programmed.code != nullptr && programmed.code->tenths == kNoMotion;
@@ -84,7 +97,7 @@ Request::Chosen choose_motion(const Context& context, const Request& request, in
     }
     return {};
   }
-  const int axis_column = first_axis_word(request);
+  const int axis_column = first_axis_word(request, has_vectors);
   if (cancel && axis_column > 0) context.fail(axis_column, "axis words with G80");
   if (cancel) return {};
   if (programmed.code != nullptr || axis_column == 0) return programmed;
@@ -107,10 +120,16 @@ std::string users_of(char letter) {
   return names;
 }
 
-void check_claims(const Context& context, const Request& request) {
+bool is_straight(const Request& request) {
+  return request.motion_code() == 0 || request.motion_code() == 10;
+}
+
+void check_claims(const Context& context, const Request& request, bool has_vectors) {
   for (const char letter : kClaimedLetters) {
     if (!request.has(letter)) continue;
     bool claimed = claims(request.motion, letter);
+    claimed = claimed || (has_vectors && is_straight(request) &&
+                          kVectorLetters.find(letter) != std::string_view::npos);
     for (const Request::Chosen& chosen : request.codes) claimed = claimed || claims(chosen, letter);
     if (claimed) continue;
     const std::string users = users_of(letter);
@@ -133,7 +152,7 @@ void add_code(const Context& context, Request& request, const Word& word, double
 }  // namespace
 
 Request resolve(const Block& block, const Parameters& parameters, int modal_motion,
-                const std::string& file) {
+                bool has_vectors, const std::string& file) {
   const Context context{file, block.line};
   Request request;
   request.line = block.line;
@@ -146,8 +165,9 @@ Request resolve(const Block& block, const Parameters& parameters, int modal_moti
       request.words[static_cast<std::size_t>(word.letter - 'A')] = {value, word.column};
     }
   }
-  request.motion = choose_motion(context, request, modal_motion);
-  check_claims(context, request);
+  has_vectors = has_vectors_after(request, has_vectors);
+  request.motion = choose_motion(context, request, modal_motion, has_vectors);
+  check_claims(context, request, has_vectors);
   return request;
 }
 

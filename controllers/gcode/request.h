@@ -37,13 +37,15 @@ struct Request {
   int motion_code() const { return motion.code == nullptr ? -1 : motion.code->tenths; }
 };
 
-inline constexpr int kNoMotion = 800;  // G80
+inline constexpr int kNoMotion = 800;       // G80
+inline constexpr int kVectorControl = 435;  // G43.5
 
 /// @param modal_motion  ten times the motion code in force
+/// @param has_vectors   whether I J K of G0 and G1 give the tool axis (G43.5 in force)
 /// @throws InputError for an unknown or unsupported code, two codes of a group, axis words that no
 /// code or more than one code claims, and words that belong to no code of the block
 Request resolve(const Block& block, const Parameters& parameters, int modal_motion,
-                const std::string& file);
+                bool has_vectors, const std::string& file);
 
 /// The part of `resolve` that needs no run: codes that are plain numbers.
 void check_codes(const Block& block, const std::string& file);

@@ -77,7 +77,7 @@ TEST(ErrorGallery, WordsAndCodes) {
       {"o100 sub", "1:1: error: O-words (subroutines, loops, conditions) are not supported yet"},
       {"G0 N5", "1:4: error: N is only allowed at the start of a block"},
       {"N-5 G0", "1:1: error: N must be followed by an unsigned number"},
-      {"G0 X1 H3", "1:7: error: H word without a code that uses it (G43, G43.2)"},
+      {"G0 X1 H3", "1:7: error: H word without a code that uses it (G43, G43.2, G43.4, G43.5)"},
       {"G0 X1 P3", "1:7: error: P word without a code that uses it (G2, G3, G4, G10, G64)"},
       {"G40 D3", "1:5: error: no supported code uses the D word"},
       {"M0 M3 M7 M48 M6", "1:14: error: more than 4 M codes in one block"},
