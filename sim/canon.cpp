@@ -30,6 +30,9 @@ controllers::ProgramSetup setup_of(const ProgramInputs& inputs) {
     setup.tools = controllers::ToolTable::parse(read_file(inputs.tool_table, {}, "tool table"),
                                                 inputs.tool_table);
   }
+  if (!inputs.machine.empty()) {
+    setup.machine = tool_centre_point(read_machine_file(inputs.machine));
+  }
   for (const std::string& parameter : inputs.parameters) {
     const std::size_t equals = parameter.find('=');
     const double value =
@@ -44,11 +47,12 @@ controllers::ProgramSetup setup_of(const ProgramInputs& inputs) {
 
 }  // namespace
 
-void canon(const std::string& program_file, const ProgramInputs& inputs,
-           const std::function<void(const std::string&)>& line) {
+std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& inputs,
+                         const std::function<void(const std::string&)>& line) {
   controllers::Interpreter interpreter(read_file(program_file, {}, "program"), program_file,
                                        setup_of(inputs));
   while (const auto move = interpreter.next()) line(controllers::canon_json(*move));
+  return interpreter.warnings();
 }
 
 std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,

@@ -13,12 +13,14 @@ namespace servomill::sim {
 struct ProgramInputs {
   std::string tool_table;               // file in LinuxCNC's format, or empty
   std::vector<std::string> parameters;  // "#101=1394"
+  std::string machine = {};             // file of the machine that runs it, or empty
 };
 
 /// Hands every canonical move of a program to `line`, as one JSON object (no newline).
+/// @return what the interpreter put right
 /// @throws InputError
-void canon(const std::string& program_file, const ProgramInputs& inputs,
-           const std::function<void(const std::string&)>& line);
+std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& inputs,
+                         const std::function<void(const std::string&)>& line);
 
 /// All faults of a file: scenario or machine (.toml) or program (anything else).
 /// @param changes     what --set says, for scenarios

@@ -58,20 +58,44 @@ void add(MemoKey& key, const controllers::FilterChain& filters) {
 
 }  // namespace
 
-InterpretedProgram::InterpretedProgram(std::vector<Move> moves_in, const AxisWords& start,
-                                       const controllers::ToolTable& tools)
-    : moves(std::move(moves_in)), tips{{0, Eigen::Vector3d::Zero()}}, path(moves, start) {
+namespace {
+
+std::map<int, Eigen::Vector3d> tips_of(const std::vector<Move>& moves,
+                                       const controllers::ToolTable& tools) {
+  std::map<int, Eigen::Vector3d> tips = {{0, Eigen::Vector3d::Zero()}};
   for (const Move& move : moves) {
     if (const auto* tool = tools.find(move.tool_offset)) {
       tips[move.tool_offset] = -tool->offset.head<3>();
     }
   }
+  return tips;
+}
+
+bool controls_tip(const Move& move) {
+  return is_motion(move.kind) && move.tool_control != ToolControl::none;
+}
+
+}  // namespace
+
+const Move* InterpretedProgram::first_tip_move() const {
+  const auto found = std::find_if(moves.begin(), moves.end(), controls_tip);
+  return found == moves.end() ? nullptr : &*found;
+}
+
+InterpretedProgram::InterpretedProgram(std::vector<Move> moves_in, std::vector<Fault> warnings_in,
+                                       const controllers::ProgramSetup& setup)
+    : moves(std::move(moves_in)),
+      warnings(std::move(warnings_in)),
+      tips(tips_of(moves, setup.tools)),
+      path(moves, setup.start, setup.machine, tips) {
+  const AxisWords& start = setup.start;
   // the tip of the first tool that the program works with: the one that a strategy believes in
   const auto works = [](const Move& move) { return is_motion(move.kind) && move.tool_offset != 0; };
   const auto first = std::find_if(moves.begin(), moves.end(), works);
   if (first != moves.end()) first_tip = tips.at(first->tool_offset);
   for (const Axis axis : kAllAxes) {
     const auto leaves = [&](const Move& move) {
+      if (is_linear(axis) && controls_tip(move)) return false;  // those follow the tip
       return is_motion(move.kind) && move.end_machine[index_of(axis)] != start[index_of(axis)];
     };
     const auto leaving = std::find_if(moves.begin(), moves.end(), leaves);
@@ -120,7 +144,7 @@ void add(MemoKey& key, const plant::ErrorModel& errors) {
 
 void add(MemoKey& key, const controllers::ProgramSetup& setup) {
   const auto& [parameters, work_offset, work_rotation, work_system, tools, tool, start,
-               block_delete] = setup;
+               block_delete, machine] = setup;
   key.add(parameters.size());
   for (const auto& [name, value] : parameters) {
     key.add(name);
@@ -133,6 +157,12 @@ void add(MemoKey& key, const controllers::ProgramSetup& setup) {
   key.add(tool);
   key.add(start);
   key.add(block_delete);
+  key.add(machine != nullptr);
+  if (machine == nullptr) return;
+  add(key, machine->chain());
+  key.add(machine->inverse().settings().lower);
+  key.add(machine->inverse().settings().upper);
+  key.add(machine->axis_tolerance());
 }
 
 void add(MemoKey& key, const controllers::JointLimits& limits) {

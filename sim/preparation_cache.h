@@ -24,11 +24,15 @@ using SharedMoves = std::shared_ptr<const std::vector<Move>>;
 
 /// A program as the NC of a case reads it, before any strategy.
 struct InterpretedProgram {
-  /// @param start  where the machine stands before the first block (6; m, rad)
-  InterpretedProgram(std::vector<Move> moves, const AxisWords& start,
-                     const controllers::ToolTable& tools);
+  /// @param setup  with which the moves were read
+  InterpretedProgram(std::vector<Move> moves, std::vector<Fault> warnings,
+                     const controllers::ProgramSetup& setup);
+
+  /// The first move that controls the tip; nullptr: none does.
+  const Move* first_tip_move() const;
 
   std::vector<Move> moves;
+  std::vector<Fault> warnings;
   std::map<int, Eigen::Vector3d> tips;                  // p_ST (m) by tool offset number
   Eigen::Vector3d first_tip = Eigen::Vector3d::Zero();  // m, of the first tool that works
   ProgramPath path;
@@ -48,6 +52,7 @@ struct PlannedMotion {
   SharedMoves moves;
   controllers::Trajectory trajectory;
   double blocks = 0.0;  // of motion
+  std::vector<controllers::SlowedMotion> slowed;
 };
 
 /// Sections of a planned program as circular tests see them, by name.

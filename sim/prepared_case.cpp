@@ -29,6 +29,7 @@ controllers::ProgramSetup setup_of(const Scenario& scenario, const CaseSpec& spe
   setup.work_offset[0] = scenario.program.work_offset + spec.work_offset;
   setup.tools = scenario.program.tools;
   setup.start = machine_start(scenario, spec);
+  setup.machine = tool_centre_point(scenario.machine_of(spec));
   return setup;
 }
 
@@ -79,6 +80,17 @@ Place place_in(const StrategySpec& spec, const std::string& complaint) {
     place = at;
   }
   return place;
+}
+
+// Strategies displace axes; these moves are not of the axes.
+void refuse_tip_moves(const StrategySpec& spec, const InterpretedProgram& program,
+                      const std::string& file, const std::string& case_name) {
+  const Move* move = program.first_tip_move();
+  if (move == nullptr) return;
+  throw InputError(spec.place,
+                   fmt::format("case {}: strategy {}: cannot rewrite moves under tool-centre-point "
+                               "control or in a tilted work plane ({}:{})",
+                               case_name, spec.entry->name, file, move->line));
 }
 
 // A displaced scale moves nothing where the motor closes the position loop.
@@ -238,7 +250,9 @@ class Preparation {
     key.add(scenario_.program.text);
     add(key, setup);
     return cache_.programs.get(key, [&] {
-      return InterpretedProgram(read_program(scenario_, spec_), setup.start, setup.tools);
+      std::vector<Fault> warnings;
+      std::vector<Move> moves = read_program(scenario_, spec_, &warnings);
+      return InterpretedProgram(std::move(moves), std::move(warnings), setup);
     });
   }
 
@@ -298,28 +312,40 @@ class Preparation {
     });
   }
 
-  SharedMotion motion(const SharedMoves& moves) const {
+  // What the linear axes do for the tip.
+  controllers::TipMotions tip_motions(const std::vector<Move>& moves,
+                                      const InterpretedProgram& program,
+                                      const controllers::JointLimits& limits,
+                                      const controllers::PathOptions& options) const {
+    if (program.first_tip_move() == nullptr) return {};
+    return controllers::tip_motions(moves, *tool_centre_point(machine_), program.tips, start_,
+                                    limits, options, scenario_.program.file);
+  }
+
+  SharedMotion motion(const SharedMoves& moves, const InterpretedProgram& program) const {
     const controllers::JointLimits limits = {machine_.nc.v_max, machine_.nc.a_max,
                                              machine_.nc.j_max};
     const controllers::PathOptions options = path_options(scenario_, machine_);
     MemoKey key;
     key.add_shared(moves.get());
     add(key, machine_.chain.layout);
+    if (program.first_tip_move() != nullptr) add(key, machine_.chain);
     key.add(start_);
     key.add(machine_.nc.lower);
     key.add(machine_.nc.upper);
     add(key, limits);
     add(key, options);
     return cache_.motions.get(key, [&] {
+      controllers::TipMotions tip = tip_motions(*moves, program, limits, options);
       auto faults =
           controllers::travel_faults(*moves, machine_.chain.layout, start_, machine_.nc.lower,
-                                     machine_.nc.upper, scenario_.program.file);
+                                     machine_.nc.upper, scenario_.program.file, tip);
       if (!faults.empty()) throw InputError(std::move(faults));
       const auto blocks = std::count_if(moves->begin(), moves->end(),
                                         [](const Move& move) { return is_motion(move.kind); });
       return PlannedMotion{
-          moves, controllers::plan(*moves, machine_.chain.layout, start_, limits, options),
-          static_cast<double>(blocks)};
+          moves, controllers::plan(*moves, machine_.chain.layout, start_, limits, options, tip),
+          static_cast<double>(blocks), std::move(tip.slowed)};
     });
   }
 
@@ -362,12 +388,13 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
     refuse_unread_scale(strategy, parts.machine(), spec.name);
     parts.strategies.push_back(prepare.strategy(strategy, parts.program->first_tip));
     if (!parts.strategies.back()->rewrites()) continue;
+    refuse_tip_moves(strategy, *parts.program, scenario.program.file, spec.name);
     parts.rewritten = prepare.rewritten(moves, parts.strategies.back());
     moves = {parts.rewritten, &parts.rewritten->moves};
   }
 
   // what the machine can do
-  parts.motion = prepare.motion(moves);
+  parts.motion = prepare.motion(moves, *parts.program);
   refuse_endless(scenario, parts.motion->trajectory.duration());
   parts.truth = prepare.model(scenario.truth);
   if (!scenario.imposed.empty()) parts.imposed = prepare.model(scenario.imposed);
@@ -409,6 +436,13 @@ CaseOutput PreparedCase::output(CaseResult result) const {
   out.duration = p.motion->trajectory.duration();
   out.blocks = p.motion->blocks;
   out.sections = sections();
+  for (const Fault& warning : p.program->warnings) {
+    out.notes.push_back(fmt::format("{}: warning: {}", to_string(warning.place), warning.message));
+  }
+  for (const auto& slowed : p.motion->slowed) {
+    out.notes.push_back(fmt::format("{}:{}: warning: {}", p.scenario.program.file, slowed.line,
+                                    to_string(slowed, p.machine().chain.layout)));
+  }
   return out;
 }
 
@@ -445,8 +479,7 @@ std::map<std::string, std::vector<Eigen::Vector3d>> PreparedCase::nominal_positi
     const ProgramPath::Piece& at = path.piece(piece);
     std::vector<Eigen::Vector3d>* out = of_section[static_cast<std::size_t>(at.section)];
     if (at.rapid || out == nullptr) continue;
-    Joints Q_prog = machine.chain.layout.joints(path.at(piece, now.s));
-    Q_prog.tail<kJoints - kLinearJoints>() = now.Q_ref.tail<kJoints - kLinearJoints>();
+    const Joints Q_prog = path.joints(piece, now.s, machine.chain.layout, now.Q_ref);
     out->push_back(plant::forward(machine.chain, Q_prog, p.program->tips.at(at.tool_offset)).p_WT);
   }
   return positions;
@@ -478,10 +511,24 @@ CaseData CaseOutput::data() const {
   return {name, &result.servo, sections, duration, blocks, result.outcome.finished};
 }
 
-std::vector<Move> read_program(const Scenario& scenario, const CaseSpec& spec) {
+std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(
+    const MachineSettings& machine) {
+  return std::make_shared<const controllers::ToolCentrePoint>(
+      machine.chain, machine.nc.lower, machine.nc.upper,
+      controllers::kGreatCircleShare * machine.nc.rotary_tolerance);
+}
+
+std::vector<Move> read_program(const Scenario& scenario, const CaseSpec& spec,
+                               std::vector<Fault>* warnings) {
   const ProgramSpec& program = scenario.program;
   try {
-    return controllers::interpret(program.text, program.file, setup_of(scenario, spec));
+    controllers::Interpreter interpreter(program.text, program.file, setup_of(scenario, spec));
+    std::vector<Move> moves = interpreter.rest();
+    if (warnings != nullptr) {
+      warnings->insert(warnings->end(), interpreter.warnings().begin(),
+                       interpreter.warnings().end());
+    }
+    return moves;
   } catch (const InputError&) {  // stopped at the first fault; the user wants all of them
     auto faults = controllers::check_program(program.text, program.file, setup_of(scenario, spec));
     if (faults.empty()) throw;

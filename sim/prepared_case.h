@@ -23,6 +23,7 @@ struct CaseOutput {
   std::string program;    // the rewritten program; empty: the original one ran
   double duration = 0.0;  // s, of the program that the NC ran
   double blocks = 0.0;
+  std::vector<std::string> notes;  // what the NC put right or could not do as programmed
   std::vector<std::string> sections;
   CaseData data() const;
 };
@@ -71,6 +72,12 @@ std::vector<PreparedCase> prepare_cases(const Scenario& scenario,
                                         PreparationCache* cache = nullptr);
 
 /// Interprets the program of a case as its machine would (work offset, tools, parameters).
-std::vector<Move> read_program(const Scenario& scenario, const CaseSpec& spec);
+/// @param warnings  what the NC put right is added; may be nullptr
+std::vector<Move> read_program(const Scenario& scenario, const CaseSpec& spec,
+                               std::vector<Fault>* warnings = nullptr);
+
+/// What the NC of a machine knows for tool-centre-point control.
+std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(
+    const MachineSettings& machine);
 
 }  // namespace servomill::sim

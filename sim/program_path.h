@@ -2,22 +2,31 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "controllers/path/tool_centre_point.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/move.h"
 #include "plant/vocabulary/move_curve.h"
 
 namespace servomill::sim {
 
-/// The motion of the original program in machine coordinates, by arc length s (m).
+/// The motion of the original program in machine coordinates, by arc length s (m). Where the
+/// program controls the tip, that is the tip in the workpiece, and s the length of its way.
 class ProgramPath {
  public:
   /// @param moves  canonical moves with s_begin, s_end
   /// @param start  where the machine stands before the first (6; m, rad)
-  ProgramPath(std::span<const Move> moves, const AxisWords& start);
+  /// @param machine, tips  for moves under tool control: the ideal machine, and p_ST (3; m) by
+  /// number
+  ///               of tool offset
+  ProgramPath(std::span<const Move> moves, const AxisWords& start,
+              std::shared_ptr<const controllers::ToolCentrePoint> machine = nullptr,
+              const std::map<int, Eigen::Vector3d>& tips = {});
 
   struct Piece {
     MoveCurve curve;
@@ -26,7 +35,9 @@ class ProgramPath {
     int line = 0;
     int tool_offset = 0;
     bool rapid = false;
-    int section = 0;  // index into sections()
+    int section = 0;                                 // index into sections()
+    bool is_tip = false;                             // X Y Z are those of the tip in the workpiece
+    Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();  // m, then
   };
 
   /// Index of the piece that holds s; `near` is where to look first (the piece found last).
@@ -38,15 +49,23 @@ class ProgramPath {
   /// Programmed position at arc length s within that piece (6; m, rad).
   AxisWords at(std::size_t index, double s) const;
 
+  /// Joints of the ideal machine at the programmed place (5; m, rad). Rotary axes turn at standing
+  /// s, too, and nobody displaces them: theirs are those of the reference.
+  Joints joints(std::size_t index, double s, const JointLayout& layout, const Joints& Q_ref) const;
+
   double length() const { return pieces_.empty() ? 0.0 : pieces_.back().s_end; }
 
-  /// Distance (m) of the point p (3; m, machine coordinates) to the path near the given piece.
+  /// Distance (m) of the point p (3; m, in the coordinates of the piece) to the path near the given
+  /// piece, as far as it has such coordinates.
   double distance(const Eigen::Vector3d& p, std::size_t index) const;
 
   /// Names of the program's sections: a comment (MSG, name) begins one; the first is "".
   const std::vector<std::string>& sections() const { return sections_; }
 
  private:
+  AxisWords begin_of(const Piece& piece, const Piece* before, AxisWords at) const;
+
+  std::shared_ptr<const controllers::ToolCentrePoint> machine_;
   std::vector<Piece> pieces_;
   std::vector<std::string> sections_ = {""};
 };

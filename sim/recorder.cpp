@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -207,11 +208,8 @@ std::size_t Recorder::Rows::find_places(const std::vector<Snapshot>& block, std:
     const ProgramPath::Piece& piece = path_.piece(piece_);
     if (n == first) tool = piece.tool_offset;
     if (piece.tool_offset != tool) return n;
-    // Rotary axes turn at standing s, too, and nobody displaces them: theirs is the reference.
-    Joints Q_prog = machine_.chain.layout.joints(path_.at(piece_, now.s));
-    Q_prog.tail<kJoints - kLinearJoints>() = now.Q_ref.tail<kJoints - kLinearJoints>();
     pieces_.push_back(piece_);
-    Q_prog_.push_back(Q_prog);
+    Q_prog_.push_back(path_.joints(piece_, now.s, machine_.chain.layout, now.Q_ref));
     Q_true_.push_back(now.Q_true);
   }
   return block.size();
@@ -233,10 +231,14 @@ void Recorder::Rows::find_poses() {
 void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to) {
   const ProgramPath::Piece& piece = path_.piece(pieces_[place]);
   const ToolPose &nominal = nominal_[place], &actual = actual_[place];
-  const auto Q_equal =
-      plant::inverse_fixed_rotary(machine_.chain, actual.p_WT, Q_prog_[place], p_ST_);
-  const double contour_error = Q_equal ? path_.distance(Q_equal->head<3>(), pieces_[place])
-                                       : (actual.p_WT - nominal.p_WT).norm();
+  const auto place_on_path = [&]() -> std::optional<Eigen::Vector3d> {
+    if (piece.is_tip) return actual.p_WT;
+    const auto Q = plant::inverse_fixed_rotary(machine_.chain, actual.p_WT, Q_prog_[place], p_ST_);
+    if (!Q) return std::nullopt;
+    return Q->head<3>();
+  }();
+  const double contour_error = place_on_path ? path_.distance(*place_on_path, pieces_[place])
+                                             : (actual.p_WT - nominal.p_WT).norm();
 
   RowWriter row(to);
   row.put(now.time);
