@@ -20,11 +20,14 @@ int check_command(const Arguments& arguments) {
                 "tool table for the programs, in LinuxCNC's format, mm");
   options.add()("parameter", po::value<std::vector<std::string>>()->value_name("#N=NUMBER"),
                 "sets a parameter before the program runs, such as '#101=1394'");
+  options.add()("machine", po::value<std::string>()->value_name("M.toml"),
+                "machine that runs the programs, for tool-centre-point control");
   options.add()("quiet,q", "prints nothing but faults");
   if (!options.parse(arguments)) return kDone;
   if (options.words().empty()) throw InputError({"servomill check"}, "needs a FILE; see --help");
-  const sim::ProgramInputs inputs = {options.has("tools") ? options.get<std::string>("tools") : "",
-                                     options.list("parameter")};
+  const sim::ProgramInputs inputs = {
+      options.has("tools") ? options.get<std::string>("tools") : "", options.list("parameter"),
+      options.has("machine") ? options.get<std::string>("machine") : ""};
   std::size_t faults = 0;
   for (const std::string& path : options.words()) {
     const auto found = sim::check_file(path, options.list("set"), inputs);

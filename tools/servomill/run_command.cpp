@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <set>
+#include <string>
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/hdf5/system_error.h"
@@ -13,6 +15,16 @@ namespace servomill::tools {
 namespace {
 
 namespace po = boost::program_options;
+
+// What the NC put right or could not do as programmed, once for all cases.
+void print_notes(const sim::RunOutput& output) {
+  std::set<std::string> said;
+  for (const sim::CaseOutput& one : output.cases) {
+    for (const std::string& note : one.notes) {
+      if (said.insert(note).second) fmt::print(stderr, "{}\n", note);
+    }
+  }
+}
 
 void print_outcomes(const sim::RunOutput& output) {
   for (const sim::CaseOutput& one : output.cases) {
@@ -98,6 +110,7 @@ int run_command(const Arguments& arguments) {
   if (json) {
     for (const auto& row : output.comparison) fmt::print("{}\n", sim::to_json(row));
   } else if (!quiet) {
+    print_notes(output);
     fmt::print("{}\n\n", scenario.title);
     print_outcomes(output);
     fmt::print("\n{}\nwritten to {}\n", sim::format_table(output.comparison), path);
