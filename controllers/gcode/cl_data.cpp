@@ -1,0 +1,570 @@
+#include "controllers/gcode/cl_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "controllers/gcode/modal_state.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr double kNoDirection = 1e-9;  // a shorter tool axis is taken as zero
+constexpr double kRevolution = 2.0 * std::numbers::pi;
+constexpr std::size_t kMostFaults = 100;  // a file of another kind has one a line
+
+char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+// A text and where each of its characters stood.
+struct Spot {
+  int line = 0, column = 0;
+};
+struct PlacedText {
+  std::string text;
+  std::vector<Spot> spots;  // one for each character
+
+  void add(char c, int line, int column) {
+    text += c;
+    spots.push_back({line, column});
+  }
+  void clear() {
+    text.clear();
+    spots.clear();
+  }
+  PlacedText trimmed(std::size_t from, std::size_t to) const {
+    while (from < to && is_blank(text[from])) ++from;
+    while (to > from && is_blank(text[to - 1])) --to;
+    const auto a = static_cast<std::ptrdiff_t>(from), b = static_cast<std::ptrdiff_t>(to);
+    PlacedText out{text.substr(from, to - from), {spots.begin() + a, spots.begin() + b}};
+    // an empty part stands where it would begin
+    if (out.spots.empty() && !spots.empty()) {
+      out.spots.push_back(spots[std::min(from, spots.size() - 1)]);
+    }
+    return out;
+  }
+  Spot spot() const { return spots.empty() ? Spot{} : spots.front(); }
+};
+
+std::vector<PlacedText> split(const PlacedText& whole, std::size_t from, char at) {
+  std::vector<PlacedText> parts;
+  while (true) {
+    const std::size_t end = std::min(whole.text.find(at, from), whole.text.size());
+    parts.push_back(whole.trimmed(from, end));
+    if (end == whole.text.size()) return parts;
+    from = end + 1;
+  }
+}
+
+std::string in_capitals(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), upper);
+  return text;
+}
+
+std::optional<double> number_in(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double x = 0.0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), x);
+  if (text.empty() || status != std::errc() || end != text.data() + text.size()) return {};
+  return std::isfinite(x) ? std::optional(x) : std::nullopt;
+}
+
+// What both forms share: the result, and everything that is said about the file.
+class ClReader {
+ public:
+  explicit ClReader(const std::string& file) : file_(file) {}
+
+ protected:
+  Place place(Spot spot) const { return {file_, spot.line, spot.column}; }
+  [[noreturn]] void fail(Spot spot, std::string message) const {
+    throw InputError(place(spot), std::move(message));
+  }
+  void warn(Spot spot, std::string message) {
+    out_.warnings.push_back({place(spot), std::move(message)});
+  }
+
+  double number(const PlacedText& word) const {
+    if (const auto x = number_in(word.text)) return *x;
+    if (word.text.empty()) fail(word.spot(), "a number is missing");
+    fail(word.spot(), fmt::format("'{}' is not a number", word.text));
+  }
+
+  Eigen::Vector3d unit_axis(const Eigen::Vector3d& k, Spot spot) {
+    const double length = k.norm();
+    if (!(length > kNoDirection)) {
+      fail(spot, fmt::format("tool axis ({:g}, {:g}, {:g}) has no direction", k[0], k[1], k[2]));
+    }
+    if (!std::isfinite(length)) fail(spot, "tool axis is too long");
+    if (std::abs(length - 1.0) > kAxisLengthTolerance) {
+      warn(spot, fmt::format("tool axis has length {:.6g}; taken as a unit vector", length));
+    }
+    return k / length;
+  }
+
+  // Runs what may refuse a statement; the reading goes on behind it.
+  template <class Read>
+  void guarded(Read read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      faults_.insert(faults_.end(), error.faults().begin(), error.faults().end());
+    }
+  }
+
+  ClData finish() {
+    if (faults_.empty() && out_.locations() == 0) {
+      faults_.push_back({{file_}, "holds no cutter location"});
+    }
+    if (!faults_.empty()) throw InputError(std::move(faults_));
+    std::stable_sort(
+        out_.warnings.begin(), out_.warnings.end(), [](const Warning& a, const Warning& b) {
+          return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+        });
+    return std::move(out_);
+  }
+
+  const std::string& file_;
+  ClData out_;
+  std::vector<Fault> faults_;
+};
+
+// ---- APT ----
+
+class AptReader : ClReader {
+ public:
+  explicit AptReader(const std::string& file) : ClReader(file) {}
+
+  ClData read(std::string_view text) {
+    PlacedText statement;
+    int line = 0;
+    while (!text.empty() && faults_.size() < kMostFaults) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      const bool goes_on = add_line(text.substr(0, end), ++line, statement);
+      text.remove_prefix(std::min(end + 1, text.size()));
+      if (goes_on && !text.empty()) continue;
+      if (goes_on) {
+        guarded([&] { fail({line, 0}, "the last line ends with '$', but none follows"); });
+      }
+      guarded([&] { run(statement.trimmed(0, statement.text.size())); });
+      statement.clear();
+    }
+    for (const auto& [word, skipped] : skipped_) {
+      const int more = skipped.times - 1;
+      warn(skipped.first, fmt::format("{} is skipped{}", word,
+                                      more == 0   ? ""
+                                      : more == 1 ? ", here and once more"
+                                                  : fmt::format(", here and {} more times", more)));
+    }
+    return finish();
+  }
+
+ private:
+  using Words = std::vector<PlacedText>;
+  struct Major {
+    std::string_view name;
+    void (AptReader::*run)(Spot at, const Words& words);
+  };
+  struct Skipped {
+    Spot first;
+    int times = 0;
+  };
+
+  // Adds a line without its comment; true if the statement goes on in the next one.
+  bool add_line(std::string_view text, int line, PlacedText& statement) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      const char c = text[i];
+      const int column = static_cast<int>(i) + 1;
+      if (static_cast<unsigned char>(c) < 0x20 && !is_blank(c)) {
+        guarded([&] {
+          fail({line, column}, fmt::format("byte 0x{:02X} is not allowed", static_cast<int>(c)));
+        });
+        statement.clear();
+        return false;
+      }
+      if (c == '$') return text.substr(i, 2) != "$$";
+      statement.add(c, line, column);
+    }
+    return false;
+  }
+
+  // Words of APT are the same in upper and lower case; messages show them as written.
+  static bool is(const PlacedText& word, std::string_view name) {
+    return in_capitals(word.text) == name;
+  }
+
+  void run(const PlacedText& statement) {
+    if (statement.text.empty()) return;
+    const Spot at = statement.spot();
+    if (ended_) {
+      if (!warned_of_end_) warn(at, "what stands behind FINI is not read");
+      warned_of_end_ = true;
+      return;
+    }
+    if (takes_text(statement, at)) return;
+    const std::size_t slash = std::min(statement.text.find('/'), statement.text.size());
+    const std::string name = in_capitals(statement.trimmed(0, slash).text);
+    Words words;
+    if (slash < statement.text.size()) words = split(statement, slash + 1, ',');
+    if (name.empty()) fail(at, "a word is missing before '/'");
+    const auto major = std::find_if(kMajors.begin(), kMajors.end(),
+                                    [&](const Major& one) { return one.name == name; });
+    if (major != kMajors.end()) {
+      (this->*major->run)(at, words);
+    } else {
+      unknown(at, name);
+    }
+  }
+
+  // PARTNO and PPRINT are followed by free text.
+  bool takes_text(const PlacedText& statement, Spot at) {
+    for (const std::string_view name : {"PARTNO", "PPRINT"}) {
+      if (!in_capitals(statement.text.substr(0, name.size())).starts_with(name)) continue;
+      const std::string_view behind = std::string_view(statement.text).substr(name.size());
+      if (!behind.empty() && !is_blank(behind.front()) && behind.front() != '/') continue;
+      const std::string text =
+          statement.trimmed(name.size() + (behind.starts_with('/') ? 1 : 0), statement.text.size())
+              .text;
+      if (name == "PARTNO") {
+        out_.part = text;
+      } else {
+        add(MoveKind::message, at).text = text;
+      }
+      return true;
+    }
+    return false;
+  }
+
+  void unknown(Spot at, const std::string& name) {
+    static constexpr std::array<std::string_view, 16> kChangeTheWay = {
+        "CIRCLE", "COPY",   "CUTCOM", "CYCLE",  "GODLTA", "INDEX", "MODE",   "MSYS",
+        "OFSTNO", "ORIGIN", "ROTABL", "ROTATE", "ROTHED", "TMARK", "TRACUT", "TRANS"};
+    static constexpr std::array<std::string_view, 10> kDescribe = {
+        "CUTTER", "END-OF-PATH", "FROM",   "INTOL",     "MACHIN",
+        "OUTTOL", "PAINT",       "TLDATA", "TOOL PATH", "TOLER"};
+    if (std::find(kChangeTheWay.begin(), kChangeTheWay.end(), name) != kChangeTheWay.end()) {
+      fail(at, fmt::format("{} changes where the tool goes and is not supported; write the "
+                           "locations out as GOTO",
+                           name));
+    }
+    const bool describes = std::find(kDescribe.begin(), kDescribe.end(), name) != kDescribe.end();
+    // what follows a word without '/' is no part of it
+    const std::string letters =
+        name.substr(0, name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ"));
+    const std::string_view near = describes ? "" : nearest_known(letters);
+    if (near == letters && !letters.empty()) {
+      fail(at, fmt::format("{} must be followed by '/' or the end of the line", letters));
+    }
+    if (!near.empty()) fail(at, fmt::format("unknown word '{}'; did you mean '{}'?", name, near));
+    Skipped& skipped = skipped_[name];
+    if (skipped.times++ == 0) skipped.first = at;
+  }
+
+  // The known word that one looks like, or is.
+  static std::string_view nearest_known(const std::string& word) {
+    static constexpr auto kKnown = [] {
+      std::array<std::string_view, kMajors.size() + 2> names{"PARTNO", "PPRINT"};
+      for (std::size_t i = 0; i < kMajors.size(); ++i) names[i + 2] = kMajors[i].name;
+      return names;
+    }();
+    return nearest_name(word, kKnown);
+  }
+
+  ClRecord& add(MoveKind kind, Spot at) {
+    ClRecord& record = out_.records.emplace_back();
+    record.kind = kind;
+    record.line = at.line;
+    return record;
+  }
+
+  void need(Spot at, bool right, std::string_view rule) const {
+    if (!right) fail(at, std::string(rule));
+  }
+
+  void unknown_minor(std::string_view major, const PlacedText& word) {
+    warn(word.spot(), fmt::format("'{}' of {} is skipped", word.text, major));
+  }
+
+  void go_to(Spot at, const Words& words) {
+    need(at, words.size() == 3 || words.size() == 6, "GOTO needs x,y,z or x,y,z,i,j,k");
+    std::array<double, 6> values{};
+    for (std::size_t i = 0; i < words.size(); ++i) values[i] = number(words[i]);
+    if (words.size() == 6) axis_ = unit_axis({values[3], values[4], values[5]}, words[3].spot());
+    const double feed = rapid_ ? 0.0 : feed_at(at);
+    ClRecord& record = add(rapid_ ? MoveKind::rapid : MoveKind::feed, at);
+    record.P.p_WT = unit_ * Eigen::Vector3d(values[0], values[1], values[2]);
+    record.P.k_W = axis_;
+    record.feed = feed;
+    rapid_ = false;
+  }
+
+  double feed_at(Spot at) const {
+    if (!per_revolution_) return feed_;
+    need(at, spindle_ > 0.0, "a feed per revolution needs the speed of the spindle (SPINDL)");
+    return feed_ * spindle_;
+  }
+
+  void feed_rate(Spot at, const Words& words) {
+    struct Unit {
+      std::string_view name;
+      double length;  // m
+      bool per_revolution;
+    };
+    static constexpr std::array<Unit, 6> kUnits = {{{"MMPM", mm, false},
+                                                    {"IPM", inch, false},
+                                                    {"MMPR", mm, true},
+                                                    {"IPR", inch, true},
+                                                    {"PERMIN", 0.0, false},
+                                                    {"PERREV", 0.0, true}}};
+    std::optional<double> value;
+    Unit unit{"", unit_, false};
+    for (const PlacedText& word : words) {
+      const auto known = std::find_if(kUnits.begin(), kUnits.end(),
+                                      [&](const Unit& one) { return is(word, one.name); });
+      if (known != kUnits.end()) {
+        unit = *known;
+        if (unit.length == 0.0) unit.length = unit_;
+      } else if (!value) {
+        value = number(word);
+        need(word.spot(), *value > 0.0, "a feed must be > 0");
+      } else {
+        std::array<std::string_view, kUnits.size()> names;
+        std::transform(kUnits.begin(), kUnits.end(), names.begin(),
+                       [](const Unit& one) { return one.name; });
+        fail(word.spot(), fmt::format("unknown unit '{}' of FEDRAT; there are: {}", word.text,
+                                      fmt::join(names, ", ")));
+      }
+    }
+    need(at, value.has_value(), "FEDRAT needs a number");
+    per_revolution_ = unit.per_revolution;
+    feed_ = *value * unit.length / (per_revolution_ ? kRevolution : minute);
+  }
+
+  void rapid(Spot at, const Words& words) {
+    need(at, words.empty(), "RAPID takes no words");
+    rapid_ = true;
+  }
+
+  void units(Spot at, const Words& words) {
+    const std::string name = words.size() == 1 ? in_capitals(words[0].text) : "";
+    if (name == "MM") {
+      unit_ = mm;
+    } else if (name == "INCH" || name == "INCHES") {
+      unit_ = inch;
+    } else {
+      fail(at, "UNITS needs MM or INCH");
+    }
+  }
+
+  void spindle(Spot at, const Words& words) {
+    need(at, !words.empty(), "SPINDL needs a speed, ON or OFF");
+    int direction = direction_;
+    for (const PlacedText& word : words) {
+      if (is(word, "OFF")) {
+        direction = 0;
+      } else if (is(word, "CLW") || is(word, "CCLW")) {
+        direction = is(word, "CLW") ? 1 : -1;
+        direction_ = direction;
+      } else if (is(word, "SFM") || is(word, "SMM")) {
+        fail(word.spot(), "a cutting speed (SFM, SMM) is not supported; give the speed in RPM");
+      } else if (const auto value = number_in(word.text)) {
+        need(word.spot(), *value > 0.0, "the speed of the spindle must be > 0");
+        spindle_ = *value * rpm;
+      } else if (!is(word, "ON") && !is(word, "RPM")) {
+        unknown_minor("SPINDL", word);
+      }
+    }
+    need(at, direction == 0 || spindle_ > 0.0, "SPINDL needs a speed");
+    ClRecord& record = add(MoveKind::spindle, at);
+    record.value = spindle_;
+    record.direction = direction;
+  }
+
+  void coolant(Spot at, const Words& words) {
+    need(at, !words.empty(), "COOLNT needs ON, FLOOD, MIST or OFF");
+    for (const PlacedText& word : words) {
+      int number = 0;
+      if (is(word, "ON") || is(word, "FLOOD")) {
+        number = kFlood;
+      } else if (is(word, "MIST")) {
+        number = kMist;
+      } else if (!is(word, "OFF")) {
+        unknown_minor("COOLNT", word);
+        continue;
+      }
+      add(MoveKind::coolant, at).number = number;
+    }
+  }
+
+  void load_tool(Spot at, const Words& words) {
+    constexpr double kMostTools = 99999.0;
+    need(at, !words.empty(), "LOADTL needs the number of a tool");
+    const double tool = number(words[0]);
+    need(words[0].spot(), tool == std::floor(tool) && tool >= 1.0 && tool <= kMostTools,
+         "the number of a tool must be an integer >= 1 and <= 99999");
+    for (std::size_t i = 1; i < words.size(); ++i) unknown_minor("LOADTL", words[i]);
+    add(MoveKind::tool, at).number = static_cast<int>(tool);
+  }
+
+  void delay(Spot at, const Words& words) {
+    need(at, words.size() == 1, "DELAY needs a time in seconds");
+    const double time = number(words[0]);
+    need(words[0].spot(), time >= 0.0, "DELAY must be >= 0");
+    add(MoveKind::dwell, at).value = time;
+  }
+
+  void stop(Spot at, const Words&) { add(MoveKind::stop, at).number = 0; }
+  void optional_stop(Spot at, const Words&) { add(MoveKind::stop, at).number = 1; }
+  void end(Spot, const Words&) { ended_ = true; }
+
+  // whether GOTO has an axis is seen from its numbers
+  void multi_axis(Spot, const Words&) {}
+
+  static constexpr std::array<Major, 12> kMajors = {{
+      {"COOLNT", &AptReader::coolant},
+      {"DELAY", &AptReader::delay},
+      {"FEDRAT", &AptReader::feed_rate},
+      {"FINI", &AptReader::end},
+      {"GOTO", &AptReader::go_to},
+      {"LOADTL", &AptReader::load_tool},
+      {"MULTAX", &AptReader::multi_axis},
+      {"OPSTOP", &AptReader::optional_stop},
+      {"RAPID", &AptReader::rapid},
+      {"SPINDL", &AptReader::spindle},
+      {"STOP", &AptReader::stop},
+      {"UNITS", &AptReader::units},
+  }};
+
+  double unit_ = mm;  // m
+  Eigen::Vector3d axis_ = Eigen::Vector3d::UnitZ();
+  double feed_ = 0.0;  // m/s, or m/rad of the spindle
+  bool per_revolution_ = false;
+  bool rapid_ = false;
+  double spindle_ = 0.0;  // rad/s
+  int direction_ = 1;
+  bool ended_ = false, warned_of_end_ = false;
+  std::map<std::string, Skipped> skipped_;
+};
+
+// ---- CSV ----
+
+class CsvReader : ClReader {
+ public:
+  explicit CsvReader(const std::string& file) : ClReader(file) {}
+
+  ClData read(std::string_view text) {
+    int line = 0;
+    bool has_header = false;
+    while (!text.empty() && faults_.size() < kMostFaults) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      PlacedText whole;
+      int column = 0;
+      ++line;
+      for (const char c : text.substr(0, end)) whole.add(c, line, ++column);
+      text.remove_prefix(std::min(end + 1, text.size()));
+      whole = whole.trimmed(0, whole.text.size());
+      if (whole.text.empty() || whole.text.front() == '#') continue;
+      const auto cells = split(whole, 0, ',');
+      if (has_header) {
+        guarded([&] { location(cells, {line, 1}); });
+        continue;
+      }
+      guarded([&] { header(cells, {line, 1}); });
+      if (!faults_.empty()) break;
+      has_header = true;
+    }
+    return finish();
+  }
+
+ private:
+  struct Column {
+    std::string_view name;
+    std::size_t value;  // place among x y z i j k feed
+    double unit;
+  };
+  static constexpr std::size_t kFeed = 6, kValues = 7;
+  static constexpr std::array<Column, 14> kColumns = {{{"x", 0, mm},
+                                                       {"y", 1, mm},
+                                                       {"z", 2, mm},
+                                                       {"x_mm", 0, mm},
+                                                       {"y_mm", 1, mm},
+                                                       {"z_mm", 2, mm},
+                                                       {"x_in", 0, inch},
+                                                       {"y_in", 1, inch},
+                                                       {"z_in", 2, inch},
+                                                       {"i", 3, 1.0},
+                                                       {"j", 4, 1.0},
+                                                       {"k", 5, 1.0},
+                                                       {"feed", kFeed, mm_per_min},
+                                                       {"feed_mm_per_min", kFeed, mm_per_min}}};
+
+  void header(const std::vector<PlacedText>& cells, Spot at) {
+    static constexpr std::array<std::string_view, kValues> kNames = {"x", "y", "z",   "i",
+                                                                     "j", "k", "feed"};
+    std::array<bool, kValues> seen{};
+    for (const PlacedText& cell : cells) {
+      const auto known = std::find_if(kColumns.begin(), kColumns.end(),
+                                      [&](const Column& one) { return one.name == cell.text; });
+      if (known == kColumns.end()) {
+        fail(cell.spot(),
+             fmt::format("unknown column '{}'; there are: x, y, z (also x_mm, x_in), i, j, k, feed",
+                         cell.text));
+      }
+      if (seen[known->value]) {
+        fail(cell.spot(), fmt::format("column {} a second time", kNames[known->value]));
+      }
+      seen[known->value] = true;
+      columns_.push_back(*known);
+    }
+    for (std::size_t i = 0; i < kFeed; ++i) {
+      if (!seen[i]) fail(at, fmt::format("the header lacks the column {}", kNames[i]));
+    }
+  }
+
+  void location(const std::vector<PlacedText>& cells, Spot at) {
+    if (cells.size() != columns_.size()) {
+      fail(at, fmt::format("{} values; the header names {}", cells.size(), columns_.size()));
+    }
+    std::array<double, kValues> values{};
+    Spot axis, feed;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      values[columns_[c].value] = number(cells[c]) * columns_[c].unit;
+      if (columns_[c].value == 3) axis = cells[c].spot();
+      if (columns_[c].value == kFeed) feed = cells[c].spot();
+    }
+    if (feed.line > 0 && !(values[kFeed] > 0.0)) fail(feed, "a feed must be > 0");
+    ClRecord record;
+    record.line = at.line;
+    record.P.p_WT = {values[0], values[1], values[2]};
+    record.P.k_W = unit_axis({values[3], values[4], values[5]}, axis);
+    record.feed = values[kFeed];
+    out_.records.push_back(record);
+  }
+
+  std::vector<Column> columns_;
+};
+
+}  // namespace
+
+std::string to_string(const Warning& warning) {
+  return fmt::format("{}: warning: {}", to_string(warning.place), warning.message);
+}
+
+std::size_t ClData::locations() const {
+  return static_cast<std::size_t>(
+      std::count_if(records.begin(), records.end(),
+                    [](const ClRecord& record) { return is_motion(record.kind); }));
+}
+
+ClData read_cl_data(std::string_view text, const std::string& file) {
+  return in_capitals(file).ends_with(".CSV") ? CsvReader(file).read(text)
+                                             : AptReader(file).read(text);
+}
+
+}  // namespace servomill::controllers
