@@ -1,0 +1,126 @@
+#include "plant/kinematics/nonlinear_error.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace servomill::plant {
+namespace {
+
+ToolPose pose_of(const CutterLocation& location) { return {location.P, location.U.normalized()}; }
+
+std::optional<Joints> posted(const InverseKinematics& inverse, const Eigen::Vector3d& p_ST,
+                             const CutterLocation& location, const Joints& Q_near) {
+  const JointSolution solution = inverse.nearest(pose_of(location), p_ST, Q_near);
+  if (!solution.is_reached()) return {};
+  return solution.Q;
+}
+
+// The last point of an even division may fall on the end.
+constexpr double kSameLength = 1e-9;  // share of a spacing
+
+}  // namespace
+
+double shape_at(ErrorShape shape, double t) {
+  return shape == ErrorShape::harmonic ? std::sin(std::numbers::pi * t) : 4.0 * t * (1.0 - t);
+}
+
+std::optional<PostedSegment> PostedSegment::post(const InverseKinematics& inverse,
+                                                 const Eigen::Vector3d& p_ST,
+                                                 const CutterLocation& from,
+                                                 const CutterLocation& to, const Joints& Q_near) {
+  const auto Q_0 = posted(inverse, p_ST, from, Q_near);
+  if (!Q_0) return {};
+  const auto Q_1 = posted(inverse, p_ST, to, *Q_0);
+  if (!Q_1) return {};
+  PostedSegment segment(inverse, p_ST, *Q_0, *Q_1);
+  segment.from_ = from;
+  segment.to_ = to;
+  return segment;
+}
+
+PostedSegment::PostedSegment(const InverseKinematics& inverse, const Eigen::Vector3d& p_ST,
+                             const Joints& Q_0, const Joints& Q_1)
+    : inverse_(&inverse), p_ST_(p_ST), Q_0_(Q_0), Q_1_(Q_1) {
+  const auto located = [&](const Joints& Q) {
+    const ToolPose P = forward(inverse.chain(), Q, p_ST);
+    return CutterLocation{P.p_WT, P.k_W};
+  };
+  from_ = located(Q_0);
+  to_ = located(Q_1);
+}
+
+CutterLocation PostedSegment::at(double t) const {
+  return {from_.P + t * (to_.P - from_.P), from_.U + t * (to_.U - from_.U)};
+}
+
+std::optional<Joints> PostedSegment::joints(NonlinearError definition, double t) const {
+  if (definition == NonlinearError::joint_interpolation) return linear(t);
+  const CutterLocation location = at(t);
+  if (location.U.norm() == 0.0) return {};
+  return posted(*inverse_, p_ST_, location, linear(t));
+}
+
+std::optional<Eigen::Vector3d> PostedSegment::error(NonlinearError definition, double t) const {
+  const auto Q = joints(definition, t);
+  if (!Q) return {};
+  if (definition == NonlinearError::joint_interpolation) {
+    return forward(inverse_->chain(), *Q, p_ST_).p_WT - at(t).P;
+  }
+  return (*Q - linear(t)).head<3>();
+}
+
+std::optional<Joints> PostedSegment::compensated(NonlinearError definition, ErrorShape shape,
+                                                 const Eigen::Vector3d& amplitude, double t) const {
+  auto Q = joints(definition, t);
+  if (!Q) return {};
+  const Eigen::Vector3d eps = amplitude * shape_at(shape, t);
+  if (definition == NonlinearError::posted_location) {
+    Q->head<3>() -= eps;
+    return Q;
+  }
+  const Eigen::Vector3d tip = forward(inverse_->chain(), *Q, p_ST_).p_WT;
+  return inverse_fixed_rotary(inverse_->chain(), tip - eps, *Q, p_ST_);
+}
+
+std::optional<std::vector<PathPoint>> PostedSegment::compensated_points(NonlinearError definition,
+                                                                        ErrorShape shape,
+                                                                        double tolerance,
+                                                                        double spacing) const {
+  assert(spacing > 0.0);
+  const auto amplitude = error(definition, 0.5);
+  if (!amplitude) return {};
+  std::vector<PathPoint> points;
+  if (amplitude->norm() > tolerance) {
+    const double intervals = std::max(length(), 2.0 * amplitude->norm()) / spacing;
+    for (double n = 1.0; n < intervals - kSameLength; n += 1.0) {
+      const double t = n / intervals;
+      const auto Q = compensated(definition, shape, *amplitude, t);
+      if (!Q) return {};
+      points.push_back({t, *Q});
+    }
+  }
+  points.push_back({1.0, Q_1_});
+  return points;
+}
+
+std::optional<NonlinearPeaks> nonlinear_peaks(const PostedSegment& segment,
+                                              NonlinearError definition, int intervals) {
+  const auto a = segment.error(definition, 0.5);
+  if (!a) return {};
+  NonlinearPeaks peaks;
+  peaks.middle = a->norm();
+  for (int n = 0; n <= intervals; ++n) {
+    const double t = static_cast<double>(n) / intervals;
+    const auto e = segment.error(definition, t);
+    if (!e) return {};
+    const auto left = [&](ErrorShape shape) { return (*e - *a * shape_at(shape, t)).norm(); };
+    peaks.error = std::max(peaks.error, e->norm());
+    peaks.harmonic = std::max(peaks.harmonic, left(ErrorShape::harmonic));
+    peaks.parabolic = std::max(peaks.parabolic, left(ErrorShape::parabolic));
+  }
+  return peaks;
+}
+
+}  // namespace servomill::plant
