@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "controllers/gcode/canon_json.h"
+#include "controllers/gcode/cl_data.h"
 #include "controllers/gcode/interpreter.h"
 #include "sim/config/document.h"
 #include "sim/read_file.h"
@@ -22,6 +23,10 @@ void check_toml(const std::string& path, const std::vector<std::string>& changes
   const Scenario scenario = read_scenario(path, changes);
   check_scenario(scenario);
   if (!scenario.sweep.empty()) Sweep(path, changes).check();
+}
+
+bool holds_cutter_locations(std::string_view path) {
+  return path.ends_with(".cls") || path.ends_with(".apt") || path.ends_with(".csv");
 }
 
 controllers::ProgramSetup setup_of(const ProgramInputs& inputs) {
@@ -60,6 +65,10 @@ std::vector<Fault> check_file(const std::string& path, const std::vector<std::st
   try {
     if (path.ends_with(".toml")) {
       check_toml(path, changes);
+      return {};
+    }
+    if (holds_cutter_locations(path)) {
+      controllers::read_cl_data(read_file(path, {}, "cutter location file"), path);
       return {};
     }
     return controllers::check_program(read_file(path, {}, "program"), path, setup_of(inputs));

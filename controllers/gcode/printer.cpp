@@ -160,10 +160,15 @@ class Printer {
       throw InputError({{}, move.line, 0},
                        "a tool offset of G43.1 or G43.2 cannot be printed; use G43 H");
     }
-    change(tool_, move.tool_offset == 0 ? "G49" : fmt::format("G43 H{}", move.tool_offset), true);
+    change(tool_, tool_code(move.tool_offset), true);
     change(path_, path_code(move), false);
     const bool is_inverse = move.feed_mode == FeedMode::inverse_time;
     if (change(feed_mode_, is_inverse ? "G93" : "G94", false)) F_.clear();
+  }
+
+  std::string tool_code(int offset) const {
+    if (options_.tip_control) return fmt::format("G43.4 H{}", offset);
+    return offset == 0 ? "G49" : fmt::format("G43 H{}", offset);
   }
 
   bool change(std::string& now, const std::string& wanted, bool moves_origin) {

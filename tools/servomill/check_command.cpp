@@ -10,8 +10,9 @@ int check_command(const Arguments& arguments) {
   namespace po = boost::program_options;
   Options options(
       "check", "FILE... [--set KEY=VALUE]... [--tools TABLE]",
-      "Checks scenarios and machines (.toml) and programs (all others) and prints every "
-      "fault with file:line:column. Scenarios are prepared as for a run, up to the first "
+      "Checks scenarios and machines (.toml), cutter locations (.cls, .apt, .csv) and programs "
+      "(all others) and prints every fault with file:line:column. Scenarios are prepared as for a "
+      "run, up to the first "
       "tick, at every point of their sweep.",
       "FILE");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),

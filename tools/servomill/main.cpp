@@ -20,7 +20,7 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 11> kCommands = {{
+constexpr std::array<Command, 12> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
@@ -33,9 +33,12 @@ constexpr std::array<Command, 11> kCommands = {{
     {"tune", "SCENARIO.toml --axis Y|all", "gains of an axis for given margins", tune_command},
     {"table", "SCENARIO.toml --format FORMAT -o FOLDER", "writes compensation tables for a real NC",
      table_command},
-    {"check", "FILE...", "checks scenarios, machines and programs", check_command},
+    {"check", "FILE...", "checks scenarios, machines, cutter locations and programs",
+     check_command},
     {"canon", "PROGRAM", "prints the canonical moves of a program, one JSON object a line",
      canon_command},
+    {"post", "PART.cls --machine M.toml [-o OUT.ngc]", "posts cutter locations to G-code",
+     post_command},
     {"list", "strategies|machines|scenarios|quantities", "prints what there is", list_command},
 }};
 

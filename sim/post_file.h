@@ -1,0 +1,36 @@
+/// Cutter locations in a file to a program in a file.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "controllers/gcode/post_processor.h"
+
+namespace servomill::sim {
+
+struct PostRequest {
+  std::string cl_file, machine_file;
+  std::vector<std::string> changes;  // "KEY=VALUE": of the machine
+  std::string tool_table;            // of LinuxCNC's format; empty: none
+  double tool_length = 0.0;          // m, of every tool; without a table
+  std::string start;  // "A=10,C=90" in mm and deg: options.start; empty: all axes at zero
+  controllers::PostOptions options;  // tools and start are filled in
+};
+
+struct PostedFile {
+  std::string program;
+  std::vector<controllers::Warning> warnings;
+  std::size_t locations = 0, inserted = 0;
+};
+
+/// @throws InputError as the reader of the machine, of the tool table, of the locations and the
+/// post-processor do
+PostedFile post_file(PostRequest request);
+
+/// Writes a text where no file is, or in place of one with `force`; the file is there with all of
+/// its text or not at all.
+/// @throws InputError if it exists, SystemError if it cannot be written
+void write_text_file(const std::string& path, std::string_view text, bool force);
+
+}  // namespace servomill::sim
