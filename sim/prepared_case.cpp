@@ -307,7 +307,7 @@ class Preparation {
     add(key, scenario_.machine.chain.layout);
     return cache_.rewritten.get(key, [&] {
       RewrittenProgram out{moves, strategy, {}, {}};
-      out.moves = through_text(strategy->rewrite(*moves), scenario_, spec_, out.text);
+      out.moves = through_text(rewrite(*strategy, *moves), scenario_, spec_, out.text);
       return out;
     });
   }
@@ -320,6 +320,18 @@ class Preparation {
     if (program.first_tip_move() == nullptr) return {};
     return controllers::tip_motions(moves, *tool_centre_point(machine_), program.tips, start_,
                                     limits, options, scenario_.program.file);
+  }
+
+  // A strategy knows the line that it cannot rewrite, not the file.
+  std::vector<Move> rewrite(const strategies::Strategy& strategy,
+                            const std::vector<Move>& moves) const {
+    try {
+      return strategy.rewrite(moves);
+    } catch (const InputError& error) {
+      const Fault& fault = error.faults().front();
+      throw InputError({scenario_.program.file, fault.place.line, 0},
+                       fmt::format("case {}: {}", spec_.name, fault.message));
+    }
   }
 
   SharedMotion motion(const SharedMoves& moves, const InterpretedProgram& program) const {

@@ -386,7 +386,7 @@ class ScenarioReader {
     StrategySpec strategy;
     strategy.entry = strategies::find(names[index]);
     strategy.place = table.place("type");
-    if (strategy.entry->name != "none") {
+    if (strategy.entry->reads_errors) {
       strategy.sign = table.choice_or("sign", 1, kSigns) == 0 ? strategies::Sign::generate
                                                               : strategies::Sign::correct;
       strategy.model = table.text("model");

@@ -9,6 +9,10 @@ std::unique_ptr<Strategy> make(const Parameters&, Sign, const Belief&) {
 
 }  // namespace
 
-Entry none_entry() { return {"none", "leaves everything as it is", {}, make}; }
+Entry none_entry() {
+  Entry entry = {"none", "leaves everything as it is", {}, make};
+  entry.reads_errors = false;
+  return entry;
+}
 
 }  // namespace servomill::strategies

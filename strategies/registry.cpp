@@ -2,17 +2,21 @@
 
 #include <array>
 
+#include "strategies/exact.h"
 #include "strategies/feedback.h"
 #include "strategies/gcode.h"
+#include "strategies/harmonic.h"
 #include "strategies/none.h"
+#include "strategies/parabolic.h"
 #include "strategies/table.h"
 
 namespace servomill::strategies {
 namespace {
 
-const std::array<Entry, 4>& table_of_entries() {
-  static const std::array<Entry, 4> kEntries = {feedback_entry(), gcode_entry(), none_entry(),
-                                                table_entry()};
+const std::array<Entry, 7>& table_of_entries() {
+  static const std::array<Entry, 7> kEntries = {
+      exact_entry(), feedback_entry(),  gcode_entry(), harmonic_entry(),
+      none_entry(),  parabolic_entry(), table_entry()};
   return kEntries;
 }
 

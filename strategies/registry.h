@@ -18,6 +18,7 @@ struct Entry {
   /// @throws InputError without a place when the parameters contradict the belief
   std::unique_ptr<Strategy> (*make)(const Parameters&, Sign, const Belief&);
   bool reads_gains = false;  ///< false: Belief::Kv is NaN, so that nothing depends on it
+  bool reads_errors = true;  ///< false: knows no geometric errors, and takes neither model nor sign
 };
 
 /// All strategies, sorted by name.

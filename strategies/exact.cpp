@@ -1,0 +1,77 @@
+#include "strategies/exact.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "strategies/straightening.h"
+
+namespace servomill::strategies {
+namespace {
+
+const std::array<ParameterSpec, 2>& specs() {
+  static const std::array<ParameterSpec, 2> kSpecs = {{
+      {.name = "tolerance_um",
+       .help = "by which the tip may leave the chord",
+       .unit = "um",
+       .default_text = "0.1",
+       .min = 1e-3},
+      {.name = "axis_tolerance_urad",
+       .help = "by which the tool axis may leave its great circle",
+       .unit = "urad",
+       .default_text = "100",
+       .min = 1e-2},
+  }};
+  return kSpecs;
+}
+
+// Joints that differ by less are the same.
+constexpr double kSameJoints = 1e-9;  // m, rad
+
+class ExactStrategy final : public Strategy {
+ public:
+  ExactStrategy(const Belief& belief, const plant::ToolTolerance& tolerance)
+      : belief_(belief), tolerance_(tolerance), inverse_(nominal_inverse(belief)) {}
+
+  bool rewrites() const override { return true; }
+
+  std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
+    return with_points(moves, belief_, [&](const Joints& Q_0, const Joints& Q_1) {
+      const ToolPose P_0 = plant::forward(inverse_.chain(), Q_0, belief_.p_ST);
+      const ToolPose P_1 = plant::forward(inverse_.chain(), Q_1, belief_.p_ST);
+      if (plant::angle_between(P_0.k_W, P_1.k_W) >= plant::kRoundTurn) {
+        throw InputError(Place{}, "the tool axis turns round: no way of turning is the shortest");
+      }
+      plant::LinearisedPath way = plant::linearise(
+          inverse_, belief_.p_ST, plant::StraightToolPath(P_0, P_1), Q_0, tolerance_);
+      // the axes of the program may turn more than straight motion needs
+      if (!way.is_complete || (way.points.back().Q - Q_1).norm() > kSameJoints) {
+        throw InputError(Place{},
+                         fmt::format("no straight way of the tool goes from these positions of the "
+                                     "axes to those; it ends after {:.1f} %",
+                                     100.0 * (way.is_complete ? 1.0 : way.t)));
+      }
+      return std::move(way.points);
+    });
+  }
+
+ private:
+  Belief belief_;
+  plant::ToolTolerance tolerance_;
+  plant::InverseKinematics inverse_;
+};
+
+std::unique_ptr<Strategy> make(const Parameters& p, Sign, const Belief& belief) {
+  return std::make_unique<ExactStrategy>(
+      belief, plant::ToolTolerance{p.number("tolerance_um"), p.number("axis_tolerance_urad")});
+}
+
+}  // namespace
+
+Entry exact_entry() {
+  Entry entry = {"exact", "straightens lines with rotary axes to a tolerance", specs(), make};
+  entry.reads_errors = false;
+  return entry;
+}
+
+}  // namespace servomill::strategies

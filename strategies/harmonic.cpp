@@ -1,0 +1,21 @@
+#include "strategies/harmonic.h"
+
+#include "strategies/straightening.h"
+
+namespace servomill::strategies {
+namespace {
+
+std::unique_ptr<Strategy> make(const Parameters& p, Sign, const Belief& belief) {
+  return make_error_model(plant::ErrorShape::harmonic, p, belief);
+}
+
+}  // namespace
+
+Entry harmonic_entry() {
+  Entry entry = {"harmonic", "straightens lines with rotary axes by the model a sin(pi t)",
+                 error_model_specs(), make};
+  entry.reads_errors = false;
+  return entry;
+}
+
+}  // namespace servomill::strategies

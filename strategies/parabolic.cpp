@@ -1,0 +1,21 @@
+#include "strategies/parabolic.h"
+
+#include "strategies/straightening.h"
+
+namespace servomill::strategies {
+namespace {
+
+std::unique_ptr<Strategy> make(const Parameters& p, Sign, const Belief& belief) {
+  return make_error_model(plant::ErrorShape::parabolic, p, belief);
+}
+
+}  // namespace
+
+Entry parabolic_entry() {
+  Entry entry = {"parabolic", "straightens lines with rotary axes by the model 4 a t (1 - t)",
+                 error_model_specs(), make};
+  entry.reads_errors = false;
+  return entry;
+}
+
+}  // namespace servomill::strategies
