@@ -21,7 +21,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUmPerMm = 1000.0;
 constexpr double kMsPerS = 1000.0;
 
-constexpr std::array<QuantityInfo, 18> kQuantities = {{
+constexpr std::array<QuantityInfo, 19> kQuantities = {{
     {"imposed_curve_residual", "um",
      "trajectory (scale) minus that of the base case minus the imposed displacement, at equal s",
      true, "XYZ", true, true, true},
@@ -38,6 +38,9 @@ constexpr std::array<QuantityInfo, 18> kQuantities = {{
      true, "XYZ", true, false, false},
     {"contour_error", "um", "distance of the true tool centre point to the nominal path", false, "",
      true, false, false},
+    {"tool_difference", "um",
+     "distance of the true tool centre point from that of the base case, at equal s", false, "",
+     true, true, false},
     {"cycle_time", "s", "duration of the program that the NC runs", false, "", false, false, false},
     {"blocks", "1", "motion blocks of the program that the NC runs", false, "", false, false,
      false},
@@ -125,6 +128,23 @@ std::vector<double> trajectory_difference(const CaseData& one, const CaseData& b
   return out;
 }
 
+// |p_WT(case) - p_WT(base)| at equal s, um
+std::vector<double> tool_difference(const CaseData& one, const CaseData& base,
+                                    const std::vector<std::size_t>& rows) {
+  if (base.servo->rows() == 0) return {};
+  const std::size_t s = *one.servo->column("s");
+  std::vector<double> out(rows.size(), 0.0);
+  for (const char axis : std::string_view("XYZ")) {
+    const std::size_t column = *one.servo->column("tool_position_true", axis);
+    AlongPath there(*base.servo, *base.servo->column("tool_position_true", axis));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double off = one.servo->at(rows[i], column) - there.at(one.servo->at(rows[i], s));
+      out[i] = std::hypot(out[i], off * kUmPerMm);
+    }
+  }
+  return out;
+}
+
 std::vector<double> column_of(const CaseData& one, std::string_view name, char label,
                               const std::vector<std::size_t>& rows) {
   const auto column = one.servo->column(name, label);
@@ -178,6 +198,9 @@ double evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* ba
     return statistic_of(spec.statistic, column_of(one, "contour_error", '\0', rows));
   }
   assert(base != nullptr);
+  if (spec.name == "tool_difference") {
+    return statistic_of(spec.statistic, tool_difference(one, *base, rows));
+  }
   std::vector<double> difference = trajectory_difference(one, *base, spec.axis, rows);
   if (spec.name == "trajectory_difference") return statistic_of(spec.statistic, difference);
 

@@ -21,10 +21,11 @@ import numpy as np
 from PIL import Image
 
 import plot as program
-from figures import circular, lag, notches, results, straightness, style, sweeps, volumetric
+from figures import circular, lag, nonlinear, notches, results, straightness, style, sweeps, volumetric
 
 SERVOMILL = ""
 AGREE = 1e-7        # um; `compare` prints nine digits of up to 100 um
+AT_OTHER_PLACES = 5e-3  # um; between samples 1 um apart, about corners between locations
 SMALLEST_PNG = 5000  # bytes; empty axes of these sizes stay below
 
 
@@ -250,7 +251,9 @@ class Drawing(WithFiles):
         self.assertEqual(done.stderr.splitlines(), [
             "figure12: not drawn, no error functions of Z",
             "figure14: not drawn, no case named generated",
-            "figure15: not drawn, no case named generated"])
+            "figure15: not drawn, no case named generated",
+            *(f"li_{n}: not drawn, needs a case without strategy and one with the strategy exact"
+              for n in ("3_2", "3_3", "4_1"))])
         self.assertEqual(sorted(done.stdout.split()), sorted(str(p) for p in self.out.iterdir()))
         for path in self.out.iterdir():
             self.assertGreater(path.stat().st_size, SMALLEST_PNG, path)
@@ -268,6 +271,21 @@ class Drawing(WithFiles):
         self.assertEqual(len(self.drawn()), 3)
         for path in self.out.iterdir():
             self.assertGreater(path.stat().st_size, SMALLEST_PNG, path)
+
+    def test_nonlinear_errors_are_drawn_and_agree_with_compare(self):
+        path = self.out / "table32.h5"
+        servomill("run", HERE.parents[1] / "scenarios" / "li2024" / "table32.toml", "-o", path)
+        rows = [json.loads(line) for line in servomill("compare", path, "--json").splitlines()]
+        with results.open_result(path) as run:
+            segments = nonlinear.Segments(run)
+            for row in rows:
+                if row["quantity"] == "tool_difference":
+                    error = np.linalg.norm(segments.tip_error(run.cases[row["case"]]), axis=1).max()
+                    self.assertAlmostEqual(error, row["value"], delta=AT_OTHER_PLACES)
+        done = plot(path, "-o", self.out, "--figures", "li_3_2,li_3_3,li_4_1")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        for one in done.stdout.split():
+            self.assertGreater(pathlib.Path(one).stat().st_size, SMALLEST_PNG, one)
 
     def test_a_sweep_gives_lag_against_feed_in_every_format_reproducibly(self):
         for folder, formats in (("first", "png,svg,pdf"), ("again", "png,svg")):
@@ -381,7 +399,8 @@ class Drawing(WithFiles):
         done = subprocess.run([PLOT, "--list"], capture_output=True, text=True)
         self.assertEqual([line.split()[0] for line in done.stdout.splitlines()],
                          ["figure6", "figure9", "figure10", "figure11", "figure12", "figure14",
-                          "figure15", "lag", "curves", "maps", "samples", "circular", "reversals", "deviations", "position", "velocity",
+                          "figure15", "lag", "curves", "maps", "samples", "circular", "reversals", "li_3_2", "li_3_3", "li_4_1",
+                          "deviations", "position", "velocity",
                           "compliance", "step"])
 
 

@@ -2,7 +2,7 @@
 import dataclasses
 from typing import Callable
 
-from figures import (bode, circular, deviations, error_functions, lag, notches, step, straightness,
+from figures import (bode, circular, deviations, error_functions, lag, nonlinear, notches, step, straightness,
                      sweeps, volumetric)
 
 
@@ -35,6 +35,11 @@ FIGURES = (
     Figure("samples", "sweep", "quantities over sampled parameters and how they are distributed", sweeps.draw_samples),
     Figure("circular", "run", "circular test: radial deviation as a ball bar shows it", circular.draw),
     Figure("reversals", "run", "circular test: where the axes reverse", circular.draw_reversals),
+    Figure("li_3_2", "run", "one segment: how the nonlinear error of rotary axes is distributed",
+           nonlinear.draw_distribution),
+    Figure("li_3_3", "run", "one segment: way in the machine, error before and after", nonlinear.draw_segment),
+    Figure("li_4_1", "run", "several segments: way in the machine, enlarged, errors along it",
+           nonlinear.draw_way),
     Figure("deviations", "run", "following error, tool deviation and contour error over time",
            deviations.draw),
     Figure("position", "bode", "position loop over frequency: open, closed, with feed-forward",

@@ -346,6 +346,40 @@ SERVO = [
           STEP + " -o nowhere/out.h5"),
 ]
 
+POST_IT = "servomill post part.cls --machine machine.toml -o out.ngc"
+RIGHT = "FEDRAT/600\nRAPID\nGOTO/0,0,10\nGOTO/0,0,0\n"
+
+POST = [
+    typed("cutter locations that cannot be read", POST_IT,
+          write={"part.cls": "UNITS/CM\nFEDRAT/0\nFEDRAT/10,MPM\nGOTO/1,2\nGOTO/1,2,3,0,0,0\nGOTO/1,2,three\nGTO/1,2,3\n"
+                             "CIRCLE/0,0,0,0,0,1,5\nSPINDL/ON\nLOADTL/1.5\nGOTO/1,2,$"}),
+    typed("cutter locations to be checked", "servomill check part.cls part.csv",
+          write={"part.cls": "GOTO/1,2,3,0,0,0\n", "part.csv": "x,y,z,i,j,k\n1,2,3,0,0\n"}),
+    typed("no cutter locations", POST_IT, write={"part.cls": "PARTNO empty\nFINI\n"}),
+    typed("a CSV table without a column", POST_IT.replace("cls", "csv"), write={"part.csv": "x,y,z,i,j\n"}),
+    typed("a CSV table with wrong lines", POST_IT.replace("cls", "csv"),
+          write={"part.csv": "x,y,z,i,j,k\n1,2,3,0,0\n1,2,3,0,0,0\n1,2,3,0,0,up\n"}),
+    typed("odd cutter locations, which are posted all the same", POST_IT + " -q --force",
+          write={"part.cls": "MACHIN/ANY\nPAINT/PATH\nCOOLNT/THRU\nPAINT/PATH\nGOTO/0,0,10,0,0,1.1\nFINI\nGOTO/1,1,1\n",
+                 "out.ngc": "(old)\n"}),
+    typed("more odd tool axes than one wants to read of", POST_IT + " -q",
+          write={"part.cls": "FEDRAT/600\n" + "GOTO/0,0,10,0,0,1.1\n" * 23}, about="23 tool axes of length 1.1"),
+    typed("a tool axis and a place that the machine does not have", POST_IT,
+          write={"part.cls": RIGHT + "GOTO/0,0,0,0,1,1\nGOTO/9999,0,0,0,0,1\n"}),
+    typed("no feed", POST_IT, write={"part.cls": "GOTO/0,0,10\nGOTO/0,0,0\n"}),
+    typed("a tool that the table lacks", POST_IT + " --tools tools.tbl", write={"part.cls": "LOADTL/7\n" + RIGHT,
+                                                                              "tools.tbl": "T1 P1 Z100\n"}),
+    typed("a program that is there already", "servomill post part.cls --machine machine.toml", POST_IT.replace("out.ngc", "''"),
+          POST_IT.replace("out.ngc", "."), POST_IT.replace("out.ngc", "nowhere/out.ngc"), write={"part.cls": RIGHT}),
+    typed("options of post that cannot be", "servomill post part.cls", "servomill post", POST_IT + " --tcp --classical",
+          POST_IT + " --tools a.tbl --tool-length 100", POST_IT + " --tolerance 0", POST_IT + " --axis-tolerance nan",
+          POST_IT + " --part-zero 1,2", POST_IT + " --part-zero 1,2,x", POST_IT + " --start Q=1", POST_IT + " --start A=10",
+          POST_IT + " --start X=ten", POST_IT + " --work-system 60", POST_IT + " --feed -1", POST_IT + " --tool 0",
+          POST_IT + " --set structure=3", POST_IT + " --set axis.X.lead=3", write={"part.cls": RIGHT}),
+    typed("the machine of post", POST_IT.replace("machine.toml", "machin.toml"), POST_IT.replace("machine.toml", "part.ngc"),
+          POST_IT.replace("machine.toml", "scenario.toml"), write={"part.cls": RIGHT}),
+]
+
 TABLE = "servomill table scenario.toml --format siemens -o out"
 
 TABLES = [
@@ -376,4 +410,4 @@ TABLES = [
           write={"out/NC_CEC.INI": "precious"}, about="a file"),
 ]
 
-WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO + TABLES)
+WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO + POST + TABLES)
