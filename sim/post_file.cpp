@@ -2,18 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <memory>
 #include <set>
 
 #include "controllers/gcode/printer.h"
 #include "plant/vocabulary/units.h"
 #include "sim/config/document.h"
-#include "sim/hdf5/system_error.h"
 #include "sim/read_file.h"
 #include "sim/read_machine.h"
 #include "sim/sweep/design.h"
@@ -117,16 +112,6 @@ std::string header(const PostRequest& request, const controllers::PostOptions& o
   return text;
 }
 
-void write_all(const std::string& path, std::string_view text) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "wb"),
-                                                             &std::fclose);
-  if (file == nullptr) throw SystemError(path, "cannot be written", std::strerror(errno));
-  if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() ||
-      std::fflush(file.get()) != 0) {
-    throw SystemError(path, "cannot be written", std::strerror(errno));
-  }
-}
-
 }  // namespace
 
 PostedFile post_file(PostRequest request) {
@@ -155,25 +140,6 @@ PostedFile post_file(PostRequest request) {
   out.locations = data.locations();
   out.inserted = posted.inserted;
   return out;
-}
-
-void write_text_file(const std::string& path, std::string_view text, bool force) {
-  std::error_code ignored;
-  if (path.empty()) throw InputError({"--output"}, "the name of the file is empty");
-  if (fs::is_directory(path, ignored)) throw InputError({path}, "is a folder; name a file");
-  if (!force && fs::exists(path, ignored)) {
-    throw InputError({path}, "exists; use --force to overwrite");
-  }
-  const std::string partial = path + ".partial";
-  try {
-    write_all(partial, text);
-  } catch (...) {
-    fs::remove(partial, ignored);
-    throw;
-  }
-  std::error_code failed;
-  fs::rename(partial, path, failed);
-  if (failed) throw SystemError(path, "cannot be written", failed.message());
 }
 
 }  // namespace servomill::sim

@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "plant/vocabulary/units.h"
-#include "sim/hdf5/system_error.h"
 #include "sim/read_file.h"
 #include "sim/run.h"
 #include "sim/scenario.h"
@@ -90,34 +89,6 @@ TEST(PostFile, HeaderSaysWhatTheNcMustKnow) {
       "(tool 1: length 110 mm)\n"
       "G21 G90 G91.1 G94 G17 G40 G80\nT1 M6\nG55\nG43 H1\nG64 P0.0025\nG0 X"))
       << program.substr(0, 400);
-}
-
-TEST(WriteTextFile, NeverOverwritesUnlessForced) {
-  const std::string path = testing::TempDir() + "post_file_test.ngc";
-  fs::remove(path);
-  write_text_file(path, "one", false);
-  try {
-    write_text_file(path, "two", false);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()), path + ": error: exists; use --force to overwrite");
-  }
-  EXPECT_EQ(read_file(path, {}, "program"), "one");
-  write_text_file(path, "two", true);
-  EXPECT_EQ(read_file(path, {}, "program"), "two");
-  EXPECT_FALSE(fs::exists(path + ".partial"));
-  fs::remove(path);
-}
-
-TEST(WriteTextFile, SaysWhyItFails) {
-  const std::string path = testing::TempDir() + "no_such_folder/p.ngc";
-  try {
-    write_text_file(path, "one", false);
-    FAIL();
-  } catch (const SystemError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              path + ".partial: cannot be written: No such file or directory");
-  }
 }
 
 }  // namespace

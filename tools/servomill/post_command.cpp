@@ -8,6 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/post_file.h"
 #include "sim/sweep/design.h"
+#include "sim/write_file.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {

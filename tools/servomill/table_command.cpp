@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 
@@ -13,6 +11,7 @@
 #include "sim/export/table_files.h"
 #include "sim/hdf5/system_error.h"
 #include "sim/read_errors.h"
+#include "sim/write_file.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {
@@ -195,15 +194,7 @@ void write(const std::vector<sim::TextFile>& files, const std::string& folder, b
   fs::create_directories(folder, error);
   if (error) throw sim::SystemError(folder, "cannot be made", error.message());
   for (const sim::TextFile& file : files) {
-    const std::string path = (fs::path(folder) / file.name).string(), partial = path + ".partial";
-    std::FILE* out = std::fopen(partial.c_str(), "wb");
-    if (out == nullptr) throw sim::SystemError(path, "cannot be made", std::strerror(errno));
-    const bool put = std::fwrite(file.text.data(), 1, file.text.size(), out) == file.text.size();
-    const bool closed = std::fclose(out) == 0;
-    if (put && closed && std::rename(partial.c_str(), path.c_str()) == 0) continue;
-    const int reason = errno;
-    std::remove(partial.c_str());
-    throw sim::SystemError(path, "cannot be written", std::strerror(reason));
+    sim::write_text_file((fs::path(folder) / file.name).string(), file.text, force);
   }
 }
 
