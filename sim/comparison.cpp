@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -10,6 +11,7 @@
 #include <limits>
 #include <optional>
 
+#include "plant/vocabulary/units.h"
 #include "sim/case_samples.h"
 #include "sim/circular_quantities.h"
 #include "sim/scenario.h"
@@ -21,7 +23,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUmPerMm = 1000.0;
 constexpr double kMsPerS = 1000.0;
 
-constexpr std::array<QuantityInfo, 19> kQuantities = {{
+constexpr std::array<QuantityInfo, 21> kQuantities = {{
     {"imposed_curve_residual", "um",
      "trajectory (scale) minus that of the base case minus the imposed displacement, at equal s",
      true, "XYZ", true, true, true},
@@ -36,6 +38,11 @@ constexpr std::array<QuantityInfo, 19> kQuantities = {{
      false, false},
     {"tool_deviation", "um", "true minus nominal tool centre point at equal s, in the workpiece",
      true, "XYZ", true, false, false},
+    {"tool_tip_deviation", "um",
+     "distance of the true from the nominal tool centre point at equal s", false, "", true, false,
+     false},
+    {"tool_axis_deviation", "urad", "angle between the true and the nominal tool axis at equal s",
+     false, "", true, false, false},
     {"contour_error", "um", "distance of the true tool centre point to the nominal path", false, "",
      true, false, false},
     {"tool_difference", "um",
@@ -155,6 +162,29 @@ std::vector<double> column_of(const CaseData& one, std::string_view name, char l
   return out;
 }
 
+Eigen::Vector3d vector_at(const CaseData& one, std::size_t row, std::size_t first) {
+  return {one.servo->at(row, first), one.servo->at(row, first + 1), one.servo->at(row, first + 2)};
+}
+
+std::vector<double> tool_tip_deviation(const CaseData& one, const std::vector<std::size_t>& rows) {
+  const std::size_t first = *one.servo->column("tool_deviation", 'X');
+  std::vector<double> out;
+  for (const std::size_t row : rows) out.push_back(vector_at(one, row, first).norm());
+  return out;
+}
+
+// urad
+std::vector<double> tool_axis_deviation(const CaseData& one, const std::vector<std::size_t>& rows) {
+  const std::size_t nominal = *one.servo->column("tool_axis_nominal", 'I');
+  const std::size_t actual = *one.servo->column("tool_axis_true", 'I');
+  std::vector<double> out;
+  for (const std::size_t row : rows) {
+    const Eigen::Vector3d n = vector_at(one, row, nominal), a = vector_at(one, row, actual);
+    out.push_back(std::atan2(n.cross(a).norm(), n.dot(a)) / urad);
+  }
+  return out;
+}
+
 // tau with residual = -tau d(imposed)/dt in the least-squares sense, ms
 double response_time(const CaseData& one, char axis, const std::vector<std::size_t>& rows,
                      const std::vector<double>& residual) {
@@ -193,6 +223,12 @@ double evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* ba
   }
   if (spec.name == "tool_deviation") {
     return statistic_of(spec.statistic, column_of(one, "tool_deviation", spec.axis, rows));
+  }
+  if (spec.name == "tool_tip_deviation") {
+    return statistic_of(spec.statistic, tool_tip_deviation(one, rows));
+  }
+  if (spec.name == "tool_axis_deviation") {
+    return statistic_of(spec.statistic, tool_axis_deviation(one, rows));
   }
   if (spec.name == "contour_error") {
     return statistic_of(spec.statistic, column_of(one, "contour_error", '\0', rows));

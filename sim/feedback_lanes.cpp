@@ -34,10 +34,10 @@ FeedbackLanes::Together& FeedbackLanes::of(std::size_t run) {
   return *found;
 }
 
-Eigen::Vector3d FeedbackLanes::settle(std::size_t run, const Joints& Q_meas) {
+Joints FeedbackLanes::settle(std::size_t run, const Joints& Q_meas) {
   Together& together = of(run);
-  const Eigen::Vector3d d = together.part->settle(Q_meas, run - first_);
-  for (int j = 0; j < kLinearJoints; ++j) together.d_next[j][run - first_] = d[j];
+  const Joints d = together.part->settle(Q_meas, run - first_);
+  for (int j = 0; j < kJoints; ++j) together.d_next[j][run - first_] = d[j];
   return d;
 }
 
@@ -51,7 +51,7 @@ void FeedbackLanes::evaluate() {
       evaluate_one(together);
       continue;
     }
-    axes_.displace(together.d_next, together.lanes, first_);
+    axes_.displace(together.d_next, together.lanes, together.strategy->displaces_rotary(), first_);
     if (!are_read) axes_.get_readings(Q_meas_, first_);
     are_read = true;
     together.part->evaluate(Q_meas_, together.lanes, together.d_next);
@@ -60,11 +60,11 @@ void FeedbackLanes::evaluate() {
 
 void FeedbackLanes::evaluate_one(Together& one) {
   const std::size_t run = first_ + one.last;
-  Eigen::Vector3d now;
-  for (int j = 0; j < kLinearJoints; ++j) now[j] = one.d_next[j][one.last];
+  Joints now;
+  for (int j = 0; j < kJoints; ++j) now[j] = one.d_next[j][one.last];
   axes_.displace(now, run);
-  const Eigen::Vector3d d = one.part->evaluate(axes_.Q_meas(run), one.last);
-  for (int j = 0; j < kLinearJoints; ++j) one.d_next[j][one.last] = d[j];
+  const Joints d = one.part->evaluate(axes_.Q_meas(run), one.last);
+  for (int j = 0; j < kJoints; ++j) one.d_next[j][one.last] = d[j];
 }
 
 }  // namespace servomill::sim

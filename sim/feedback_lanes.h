@@ -20,11 +20,11 @@ class FeedbackLanes {
   /// @param first  run in the first lane
   FeedbackLanes(ServoAxes& axes, std::size_t first) : axes_(axes), first_(first) {}
 
-  /// A run has the feedback of a strategy from now on, and displacements of 0 (3; m).
+  /// A run has the feedback of a strategy from now on, and displacements of 0 (5; m, rad).
   /// @param model_period  s, of all runs
   void add(std::size_t run, const strategies::Strategy& strategy, double model_period);
-  /// Settles at standstill in Q_meas; d for X, Y, Z (3; m).
-  Eigen::Vector3d settle(std::size_t run, const Joints& Q_meas);
+  /// Settles at standstill in Q_meas; d of all joints (5; m, rad).
+  Joints settle(std::size_t run, const Joints& Q_meas);
   /// The run goes on no longer.
   void drop(std::size_t run);
   /// To be called once a model period, after ServoAxes::read_scales.
@@ -36,7 +36,7 @@ class FeedbackLanes {
     std::unique_ptr<strategies::FeedbackPart> part;
     LaneFlags lanes = {};
     std::size_t count = 0, last = 0;  // of the lanes in use
-    LinearJointLanes d_next = {};     // acts one model period later
+    JointLanes d_next = {};           // acts one model period later
   };
   Together& of(std::size_t run);
   void use(Together& together, std::size_t lane, bool used);

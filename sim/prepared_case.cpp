@@ -94,12 +94,13 @@ void refuse_tip_moves(const StrategySpec& spec, const InterpretedProgram& progra
 }
 
 // A displaced scale moves nothing where the motor closes the position loop.
-void refuse_unread_scale(const StrategySpec& spec, const MachineSettings& machine,
-                         const std::string& case_name) {
-  if (spec.entry->name != "feedback") return;
+void refuse_unread_scale(const StrategySpec& spec, const strategies::Strategy& strategy,
+                         const MachineSettings& machine, const std::string& case_name) {
+  if (!strategy.displaces_feedback()) return;
   for (const int j : machine.joints()) {
     const auto& feedback = machine.nc.functions[static_cast<std::size_t>(j)].position_feedback;
-    if (j >= kLinearJoints || feedback.kind != controllers::PositionFeedback::motor) continue;
+    if (j >= kLinearJoints && !strategy.displaces_rotary()) continue;
+    if (feedback.kind != controllers::PositionFeedback::motor) continue;
     throw InputError(
         spec.place, fmt::format("case {}: strategy feedback: displaces the scale of axis {}, whose "
                                 "position loop reads the motor (position_feedback = \"motor\")",
@@ -269,7 +270,8 @@ class Preparation {
       return spec.entry->reads_gains ? machine_.nc.cascade[j].Kv
                                      : std::numeric_limits<double>::quiet_NaN();
     };
-    const Eigen::Vector3d Kv = {gain(0), gain(1), gain(2)};
+    Joints Kv;
+    Kv << gain(0), gain(1), gain(2), gain(3), gain(4);
     MemoKey key;
     add(key, spec);
     add(key, machine_.chain);
@@ -397,8 +399,8 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   // the strategies, each of which may rewrite what the one before left
   SharedMoves moves(parts.program, &parts.program->moves);
   for (const StrategySpec& strategy : spec.strategies) {
-    refuse_unread_scale(strategy, parts.machine(), spec.name);
     parts.strategies.push_back(prepare.strategy(strategy, parts.program->first_tip));
+    refuse_unread_scale(strategy, *parts.strategies.back(), parts.machine(), spec.name);
     if (!parts.strategies.back()->rewrites()) continue;
     refuse_tip_moves(strategy, *parts.program, scenario.program.file, spec.name);
     parts.rewritten = prepare.rewritten(moves, parts.strategies.back());
@@ -435,6 +437,7 @@ CaseInputs PreparedCase::inputs() const {
   for (const auto& strategy : p.strategies) {
     if (auto part = strategy->set_point()) inputs.set_points.push_back(std::move(part));
     if (strategy->displaces_feedback()) inputs.feedback = strategy.get();
+    if (strategy->rewrites()) inputs.program_displaces_rotary |= strategy->displaces_rotary();
   }
   return inputs;
 }

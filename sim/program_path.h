@@ -50,7 +50,7 @@ class ProgramPath {
   AxisWords at(std::size_t index, double s) const;
 
   /// Joints of the ideal machine at the programmed place (5; m, rad). Rotary axes turn at standing
-  /// s, too, and nobody displaces them: theirs are those of the reference.
+  /// s, too: theirs are those of Q_ref.
   Joints joints(std::size_t index, double s, const JointLayout& layout, const Joints& Q_ref) const;
 
   double length() const { return pieces_.empty() ? 0.0 : pieces_.back().s_end; }

@@ -144,8 +144,14 @@ class Recorder::Rows {
  public:
   Rows(const MachineSettings& machine, const plant::VolumetricModel& truth,
        const plant::VolumetricModel* imposed, const ProgramPath& path,
-       const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format)
-      : machine_(machine), truth_(truth), imposed_(imposed), path_(path), tips_(tips) {
+       const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
+       bool rotary_displaced)
+      : machine_(machine),
+        truth_(truth),
+        imposed_(imposed),
+        path_(path),
+        tips_(tips),
+        rotary_displaced_(rotary_displaced) {
     for (int joint = 0; joint < kJoints; ++joint) {
       if (!machine.chain.layout.has(joint)) continue;
       (joint < kLinearJoints ? linear_ : rotary_).push_back(joint);
@@ -183,6 +189,7 @@ class Recorder::Rows {
   const plant::VolumetricModel* imposed_;
   const ProgramPath& path_;
   const std::map<int, Eigen::Vector3d>& tips_;
+  const bool rotary_displaced_;
   const plant::VolumetricModel ideal_{machine_.chain, {}};
   std::vector<int> linear_, rotary_;  // joints that the machine has
   std::size_t piece_ = 0;
@@ -208,8 +215,13 @@ std::size_t Recorder::Rows::find_places(const std::vector<Snapshot>& block, std:
     const ProgramPath::Piece& piece = path_.piece(piece_);
     if (n == first) tool = piece.tool_offset;
     if (piece.tool_offset != tool) return n;
+    // A rewritten program may turn rotary axes elsewhere, too.
+    Joints Q_rotary = now.Q_ref;
+    if (rotary_displaced_ && piece.s_end != piece.s_begin) {
+      Q_rotary = machine_.chain.layout.joints(path_.at(piece_, now.s));
+    }
     pieces_.push_back(piece_);
-    Q_prog_.push_back(path_.joints(piece_, now.s, machine_.chain.layout, now.Q_ref));
+    Q_prog_.push_back(path_.joints(piece_, now.s, machine_.chain.layout, Q_rotary));
     Q_true_.push_back(now.Q_true);
   }
   return block.size();
@@ -274,8 +286,9 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
 
 Recorder::Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
                    const plant::VolumetricModel* imposed, const ProgramPath& path,
-                   const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format)
-    : rows_(std::make_unique<Rows>(machine, truth, imposed, path, tips, format)) {
+                   const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
+                   bool rotary_displaced)
+    : rows_(std::make_unique<Rows>(machine, truth, imposed, path, tips, format, rotary_displaced)) {
   filling_.reserve(kBlockRows);
 }
 

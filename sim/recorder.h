@@ -34,9 +34,12 @@ class Recorder {
  public:
   /// All arguments must outlive it.
   /// @param imposed  model whose displacement at the programmed position is recorded; may be null
+  /// @param rotary_displaced  the program that runs turns rotary axes elsewhere than `path` does:
+  ///                          they are compared at equal s, too, where that moves
   Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
            const plant::VolumetricModel* imposed, const ProgramPath& path,
-           const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format = {});
+           const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format = {},
+           bool rotary_displaced = false);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

@@ -171,10 +171,10 @@ void ServoAxes::describe(std::size_t l) {
   if (functions.friction.compensates()) with_friction_.push_back(l);
 }
 
-void ServoAxes::settle(const Joints& Q, const Eigen::Vector3d& displacement, std::size_t run) {
+void ServoAxes::settle(const Joints& Q, const Joints& displacement, std::size_t run) {
   assert(!on_the_way_);
   displace(displacement, run);
-  for (const int j : joints_) settle(lane(run, j), Q[j], j < kLinearJoints ? displacement[j] : 0.0);
+  for (const int j : joints_) settle(lane(run, j), Q[j], displacement[j]);
 }
 
 void ServoAxes::settle(std::size_t l, double Q, double d) {
@@ -225,22 +225,24 @@ void ServoAxes::settle(std::size_t l, double Q, double d) {
       controllers::standing_at(functions.supervision, {Q_read, 0.0, Q_read, y_motor, y_scale});
 }
 
-void ServoAxes::displace(const Eigen::Vector3d& displacement, std::size_t run) {
-  for (std::size_t j = 0; j < kLinearJoints; ++j) {
+void ServoAxes::displace(const Joints& displacement, std::size_t run) {
+  for (std::size_t j = 0; j < kJoints; ++j) {
     const Place& p = places_[run][j];
     if (p.present) servos_[p.block].displacement[p.place] = displacement[static_cast<int>(j)];
   }
 }
 
-void ServoAxes::displace(const LinearJointLanes& displacement, const LaneFlags& lanes,
+void ServoAxes::displace(const JointLanes& displacement, const LaneFlags& lanes, bool rotary,
                          std::size_t first) {
   assert(first < runs() && first % kLaneWidth == 0);
   if (fills_blocks()) {
-    return kernel_.displace(&servos_[block(first)], block(runs()), joints_.data(), linear_joints_,
-                            lanes, displacement);
+    return kernel_.displace(&servos_[block(first)], block(runs()), joints_.data(),
+                            rotary ? joints_.size() : linear_joints_, lanes, displacement);
   }
   each_of_eight(first, [&](std::size_t n, std::size_t j, const Place& p) {
-    if (j < kLinearJoints && lanes[n]) servos_[p.block].displacement[p.place] = displacement[j][n];
+    if ((rotary || j < kLinearJoints) && lanes[n]) {
+      servos_[p.block].displacement[p.place] = displacement[j][n];
+    }
   });
 }
 

@@ -81,11 +81,12 @@ class ServoAxes {
 
   /// Has stood for long where the loops hold Q, which the NC reads as Q + displacement: there, or
   /// below it by what the load needs where no loop has an integral part.
-  void settle(const Joints& Q, const Eigen::Vector3d& displacement, std::size_t run = 0);
-  /// What a virtual encoder adds to the readings of the linear joints (3; m), from now on.
-  void displace(const Eigen::Vector3d& displacement, std::size_t run = 0);
+  void settle(const Joints& Q, const Joints& displacement, std::size_t run = 0);
+  /// What a virtual encoder adds to the readings (5; m, rad), from now on.
+  void displace(const Joints& displacement, std::size_t run = 0);
   /// The same for some of eight runs side by side, from run `first` on, a multiple of eight.
-  void displace(const LinearJointLanes& displacement, const LaneFlags& lanes,
+  /// @param rotary  false: only the linear joints
+  void displace(const JointLanes& displacement, const LaneFlags& lanes, bool rotary,
                 std::size_t first = 0);
   /// What the position loops follow, from now on.
   void follow(const AxisSetPoint& set, std::size_t run = 0);

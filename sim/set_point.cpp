@@ -3,15 +3,6 @@
 #include <utility>
 
 namespace servomill::sim {
-namespace {
-
-Joints in_linear_joints(const Eigen::Vector3d& offset) {
-  Joints Q = Joints::Zero();
-  Q.head<3>() = offset;
-  return Q;
-}
-
-}  // namespace
 
 SetPoint::SetPoint(const NcSettings& nc, const controllers::Trajectory& reference,
                    std::vector<std::unique_ptr<strategies::SetPointPart>> parts)
@@ -26,19 +17,18 @@ SetPoint::SetPoint(const NcSettings& nc, const controllers::Trajectory& referenc
         nc.filter.triangle ? controllers::FilterShape::triangle : controllers::FilterShape::mean,
         static_cast<int>(nc.filter.length), standing);
   };
-  Eigen::Vector3d before = Eigen::Vector3d::Zero();
+  Joints before = Joints::Zero();
   for (const Correction& correction : corrections_) {
     if (correction.in_nc.entry() == EntryPoint::before_filter) {
       before += correction.part->offset(reference.start());
     }
   }
   const Joints zero = Joints::Zero();
-  filters_.emplace(Filters{filter(reference.start()), filter(zero), filter(zero),
-                           filter(in_linear_joints(before))});
+  filters_.emplace(Filters{filter(reference.start()), filter(zero), filter(zero), filter(before)});
   delay_ = filters_->Q.delay() * Tp_;
 }
 
-Eigen::Vector3d& SetPoint::Offsets::of(EntryPoint entry) {
+Joints& SetPoint::Offsets::of(EntryPoint entry) {
   switch (entry) {
     case EntryPoint::before_filter:
       return before_filter;
@@ -56,9 +46,9 @@ const AxisSetPoint& SetPoint::settle() {
   fed_forward_.setZero();
   fed_forward_rate_.setZero();
   for (Correction& correction : corrections_) {
-    const Eigen::Vector3d offset = correction.part->offset(Q);
+    const Joints offset = correction.part->offset(Q);
     correction.in_nc.settle(offset);
-    out_.Q_cmd.head<3>() += offset;
+    out_.Q_cmd += offset;
     if (correction.in_nc.entry() != EntryPoint::position_command) fed_forward_ += offset;
   }
   return out_;
@@ -76,9 +66,9 @@ const AxisSetPoint& SetPoint::advance(const controllers::Trajectory::Sample& sam
 
   Offsets offsets = corrections_at(sample.Q_ref);
   if (filters_) {
-    offsets.before_filter = filters_->offset(in_linear_joints(offsets.before_filter)).head<3>();
+    offsets.before_filter = filters_->offset(offsets.before_filter);
   }
-  out_.Q_cmd.head<3>() += offsets.position_command;
+  out_.Q_cmd += offsets.position_command;
   feed_forward(offsets.before_filter + offsets.feed_forward);
   return out_;
 }
@@ -89,20 +79,19 @@ SetPoint::Offsets SetPoint::corrections_at(const Joints& Q_ref) {
     // behind the filter, a table is looked up where the axis is sent, not where the program is
     const bool before = correction.in_nc.entry() == EntryPoint::before_filter;
     const Joints& Q = before ? Q_ref : out_.Q_ref;
-    const Eigen::Vector3d value = correction.in_nc.wants_value()
-                                      ? correction.part->offset(Q)
-                                      : Eigen::Vector3d(Eigen::Vector3d::Zero());
+    const Joints value =
+        correction.in_nc.wants_value() ? correction.part->offset(Q) : Joints(Joints::Zero());
     offsets.of(correction.in_nc.entry()) += correction.in_nc.advance(value);
   }
   return offsets;
 }
 
 // A correction has no analytic derivative: the NC differentiates it over a position period.
-void SetPoint::feed_forward(const Eigen::Vector3d& offset) {
-  const Eigen::Vector3d rate = (offset - fed_forward_) / Tp_;
-  out_.Q_cmd.head<3>() += offset;
-  out_.dQ_ff.head<3>() += rate;
-  out_.ddQ_ff.head<3>() += (rate - fed_forward_rate_) / Tp_;
+void SetPoint::feed_forward(const Joints& offset) {
+  const Joints rate = (offset - fed_forward_) / Tp_;
+  out_.Q_cmd += offset;
+  out_.dQ_ff += rate;
+  out_.ddQ_ff += (rate - fed_forward_rate_) / Tp_;
   fed_forward_ = offset;
   fed_forward_rate_ = rate;
 }

@@ -36,14 +36,14 @@ class SetPoint {
   struct Filters {  // one for each signal that passes
     controllers::NominalFilter Q, dQ, ddQ, offset;
   };
-  struct Offsets {  // of the linear joints (3; m), by where they enter
-    Eigen::Vector3d before_filter = Eigen::Vector3d::Zero();
-    Eigen::Vector3d position_command = Eigen::Vector3d::Zero();
-    Eigen::Vector3d feed_forward = Eigen::Vector3d::Zero();
-    Eigen::Vector3d& of(EntryPoint entry);
+  struct Offsets {  // of all joints (5; m, rad), by where they enter
+    Joints before_filter = Joints::Zero();
+    Joints position_command = Joints::Zero();
+    Joints feed_forward = Joints::Zero();
+    Joints& of(EntryPoint entry);
   };
   Offsets corrections_at(const Joints& Q_ref);
-  void feed_forward(const Eigen::Vector3d& offset);
+  void feed_forward(const Joints& offset);
 
   const controllers::Trajectory& reference_;
   std::vector<Correction> corrections_;
@@ -51,8 +51,8 @@ class SetPoint {
   double delay_ = 0.0;
   std::optional<Filters> filters_;
   AxisSetPoint out_;
-  Eigen::Vector3d fed_forward_ = Eigen::Vector3d::Zero();  // corrections, one period ago
-  Eigen::Vector3d fed_forward_rate_ = Eigen::Vector3d::Zero();
+  Joints fed_forward_ = Joints::Zero();  // corrections, one period ago
+  Joints fed_forward_rate_ = Joints::Zero();
 };
 
 }  // namespace servomill::sim

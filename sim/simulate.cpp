@@ -129,7 +129,8 @@ class CaseRun {
         set_point_(nc_, in.reference, std::move(in.set_points)),
         reference_(references.of(in.reference, 0.0)),
         recorded_(references.of(in.reference, set_point_.delay())),
-        recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format),
+        recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format,
+                  in.program_displaces_rotary),
         last_ticks_(in.machine.joints()) {
     end_ =
         static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
@@ -197,13 +198,12 @@ class CaseRun {
   void settle() {
     set_ = set_point_.settle();
     Joints Q = set_.Q_cmd;
-    Eigen::Vector3d d = Eigen::Vector3d::Zero();
+    Joints d = Joints::Zero();
     if (in_.feedback) {
       feedback_.add(run_, *in_.feedback, model_period_of(in_));
       for (int n = 0; n < 50; ++n) {  // Q + d(Q) = Q_cmd, a contraction by the slope of the errors
         d = feedback_.settle(run_, Q);
-        Q = set_.Q_cmd;
-        Q.head<3>() -= d;
+        Q = set_.Q_cmd - d;
       }
     }
     axes_.settle(Q, d, run_);
@@ -329,7 +329,8 @@ class IdealRun {
         periods_(in.machine.nc.periods),
         set_point_(in.machine.nc, in.reference, std::move(in.set_points)),
         feedback_(in.feedback ? in.feedback->feedback(model_period_of(in)) : nullptr),
-        recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format) {}
+        recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format,
+                  in.program_displaces_rotary) {}
 
   CaseResult run(const StopFlag& stop, std::atomic<float>& progress) {
     CaseResult result;
@@ -358,7 +359,9 @@ class IdealRun {
     now.Q_ref = set.Q_ref;
     now.Q_cmd = now.Q_read = now.Q_true = set.Q_cmd;
     for (int k = 0; feedback_ && k < 50; ++k) {  // Q_true + d(Q_true) = Q_cmd
-      now.Q_true.head<3>() = set.Q_cmd.head<3>() - feedback_->settle(now.Q_true);
+      const Joints before = now.Q_true;
+      now.Q_true = set.Q_cmd - feedback_->settle(before);
+      if (now.Q_true == before) break;
     }
     now.Q_meas = now.Q_true;
     now.dQ_true = set.dQ_ff;

@@ -46,6 +46,7 @@ struct CaseInputs {
   Tick record_period = 100;
   double settle_time = 0.1;  // s, recorded after the program's end
   RecordFormat format = {};
+  bool program_displaces_rotary = false;  // the NC runs another program than `path` also there
 };
 
 /// How a case ended. A machine that stops is an outcome, not an exception.

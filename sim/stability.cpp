@@ -40,7 +40,7 @@ double spectral_radius(const MachineSettings& machine, int joint, Tick reading_d
   // one column for each state that is 1 at the beginning
   Eigen::MatrixXd monodromy(states, states);
   for (int column = 0; column < states; ++column) {
-    axes.settle(Joints::Zero(), Eigen::Vector3d::Zero());
+    axes.settle(Joints::Zero(), Joints::Zero());
     axes.follow({});
     int k = 0;
     axes.each_state(joint, [&](double& x) { x = k++ == column ? 1.0 : 0.0; });

@@ -9,6 +9,7 @@ namespace servomill::strategies {
 namespace {
 
 constexpr std::array<std::string_view, 2> kWords = {"1", "converged"};
+constexpr std::array<std::string_view, 2> kAxesWords = {"linear", "all"};
 constexpr double kConverged = 1e-13;  // m
 constexpr int kMaxIterations = 50;    // contraction by |E'|, of the order of 1e-2
 constexpr LaneFlags kOne = {true};
@@ -76,6 +77,25 @@ const ParameterSpec kIterationsSpec = {
     .default_text = "1",
     .is_number = false,
     .words = kWords};
+
+const ParameterSpec kAxesSpec = {
+    .name = "axes",
+    .help = "linear: X, Y, Z correct the position; all: rotary axes correct the tool axis, too",
+    .default_text = "linear",
+    .is_number = false,
+    .words = kAxesWords};
+
+const ParameterSpec kSingularSpec = {
+    .name = "singular_deg",
+    .help = "axes = all: nearer to a singular direction, the axis that would turn far gives way",
+    .unit = "deg",
+    .default_text = "1",
+    .min = 1e-3,
+    .max = 45.0};
+
+DisplacedAxes displaced_axes_of(const Parameters& parameters) {
+  return parameters.word("axes") == "all" ? DisplacedAxes::all : DisplacedAxes::linear;
+}
 
 Iterations iterations_of(const Parameters& parameters) {
   return parameters.word("iterations") == "converged" ? Iterations::converged : Iterations::one;

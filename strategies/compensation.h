@@ -1,5 +1,5 @@
-/// Displacement of the linear axes that brings believed errors out or corrects them: the one
-/// formula that all strategies share.
+/// Displacement of the linear axes that brings believed errors out or corrects them, and the
+/// parameters that strategies share.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,6 +14,17 @@ enum class Iterations : std::uint8_t { one, converged };
 
 /// Reads "1" or "converged".
 Iterations iterations_of(const Parameters& parameters);
+
+/// Which axes are displaced: X, Y, Z, which can correct the position of the tip, or all, which can
+/// correct the tool axis, too (strategies/pose_compensation.h).
+enum class DisplacedAxes : std::uint8_t { linear, all };
+
+/// Reads "linear" or "all".
+DisplacedAxes displaced_axes_of(const Parameters& parameters);
+
+/// The parameters `axes` and `singular_deg` as every strategy declares them that has both ways.
+extern const ParameterSpec kAxesSpec;
+extern const ParameterSpec kSingularSpec;
 
 /// The parameter `iterations` as every strategy declares it.
 extern const ParameterSpec kIterationsSpec;

@@ -6,15 +6,15 @@
 #include <iterator>
 
 #include "strategies/approach_kernel.h"
-#include "strategies/compensation.h"
+#include "strategies/pose_compensation.h"
 
 namespace servomill::strategies {
 namespace {
 
 constexpr std::array<std::string_view, 1> kAuto = {"auto"};
 
-const std::array<ParameterSpec, 5>& specs() {
-  static const std::array<ParameterSpec, 5> kSpecs = {{
+const std::array<ParameterSpec, 9>& specs() {
+  static const std::array<ParameterSpec, 9> kSpecs = {{
       {.name = "max_um",
        .help = "saturation of the virtual displacement of an axis",
        .unit = "um",
@@ -24,6 +24,16 @@ const std::array<ParameterSpec, 5>& specs() {
        .help = "saturation of its rate of change",
        .unit = "mm/s",
        .default_text = "10",
+       .min = 0.0},
+      {.name = "max_mrad",
+       .help = "the same of a rotary axis",
+       .unit = "mrad",
+       .default_text = "10",
+       .min = 0.0},
+      {.name = "max_rate_mrad_per_s",
+       .help = "saturation of its rate of change",
+       .unit = "mrad/s",
+       .default_text = "100",
        .min = 0.0},
       {.name = "lead_ms",
        .help = "evaluates the model where the axis will be after this time; auto: 1/Kv",
@@ -39,6 +49,8 @@ const std::array<ParameterSpec, 5>& specs() {
        .min = 0.0,
        .max = 1e4},
       kIterationsSpec,
+      kAxesSpec,
+      kSingularSpec,
   }};
   return kSpecs;
 }
@@ -46,42 +58,56 @@ const std::array<ParameterSpec, 5>& specs() {
 struct FeedbackParams {
   Sign sign = Sign::correct;
   Iterations iterations = Iterations::one;
-  double max = 0.0;                                // m
-  double max_rate = 0.0;                           // m/s
-  Eigen::Vector3d lead = Eigen::Vector3d::Zero();  // s, of each displaced axis
-  double window = 0.0;                             // s
+  DisplacedAxes axes = DisplacedAxes::linear;
+  double sigma_0 = 0.0;
+  Joints max = Joints::Zero();       // m, rad
+  Joints max_rate = Joints::Zero();  // m/s, rad/s
+  Joints lead = Joints::Zero();      // s, of each displaced axis
+  double window = 0.0;               // s
 };
 
-// Velocity of the linear joints as the difference of readings over a window.
+// Joints that a vector of displacements holds.
+template <class Shifts>
+inline constexpr int kJointsOf = kLinearJoints;
+template <>
+inline constexpr int kJointsOf<Joints> = kJoints;
+template <>
+inline constexpr int kJointsOf<JointLanes> = kJoints;
+
+// Velocity of the first joints as the difference of readings over a window.
 class VelocityWindow {
  public:
-  VelocityWindow(double window, double period)
-      : readings_(std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(window / period)))),
-        inverse_length_(1.0 / (static_cast<double>(readings_.size()) * period)) {}
+  VelocityWindow(double window, double period, int joints)
+      : joints_(joints),
+        length_(std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(window / period)))),
+        readings_(length_ * static_cast<std::size_t>(joints)),
+        inverse_length_(1.0 / (static_cast<double>(length_) * period)) {}
 
   void settle(const Joints& reading, std::size_t run) {
-    for (Readings& one : readings_) {
-      for (int j = 0; j < kLinearJoints; ++j) one.Q[j][run] = reading[j];
+    for (std::size_t n = 0; n < length_; ++n) {
+      for (int j = 0; j < joints_; ++j) at(n, j)[run] = reading[j];
     }
   }
   // Of one run, or of eight from the first on.
   template <class Poses, class Shifts>
   void advance(const Poses& reading, std::size_t first, Shifts& velocity) {
-    for (int j = 0; j < kLinearJoints; ++j) {
-      double* before = readings_[oldest_].Q[j].data() + first;
+    for (int j = 0; j < kJointsOf<Shifts>; ++j) {
+      double* before = at(oldest_, j).data() + first;
       for (std::size_t k = 0; k < kLanesOf<Shifts>; ++k) {
         lane(velocity[j], k) = (lane(reading[j], k) - before[k]) * inverse_length_;
         before[k] = lane(reading[j], k);
       }
     }
-    oldest_ = oldest_ + 1 == readings_.size() ? 0 : oldest_ + 1;
+    oldest_ = oldest_ + 1 == length_ ? 0 : oldest_ + 1;
   }
 
  private:
-  struct Readings {
-    LinearJointLanes Q{};
-  };
-  std::vector<Readings> readings_;
+  LaneArray& at(std::size_t n, int joint) {
+    return readings_[n * static_cast<std::size_t>(joints_) + static_cast<std::size_t>(joint)];
+  }
+  int joints_;
+  std::size_t length_;
+  std::vector<LaneArray> readings_;
   double inverse_length_;
   std::size_t oldest_ = 0;
 };
@@ -91,32 +117,60 @@ class VirtualEncoder final : public FeedbackPart {
   VirtualEncoder(const Belief& belief, const FeedbackParams& params, double period)
       : belief_(belief),
         params_(params),
+        all_(belief, params.iterations, params.sigma_0),
         leads_(!params.lead.isZero(0.0)),
         max_change_(params.max_rate * period),
-        velocity_(params.window, period) {}
+        velocity_(params.window, period,
+                  params.axes == DisplacedAxes::all ? kJoints : kLinearJoints) {}
 
-  Eigen::Vector3d settle(const Joints& Q_meas, std::size_t run) override {
+  Joints settle(const Joints& Q_meas, std::size_t run) override {
     velocity_.settle(Q_meas, run);
-    Eigen::Vector3d d;
-    find_displacement(Q_meas, {}, d);
-    for (int j = 0; j < kLinearJoints; ++j) out_[j][run] = d[j] = limited(d[j], params_.max);
+    const Joints wanted =
+        of_all_or_linear([&](auto& shifts) { find_displacement(Q_meas, LaneFlags{}, shifts); });
+    Joints d;
+    for (int j = 0; j < kJoints; ++j) out_[j][run] = d[j] = limited(wanted[j], params_.max[j]);
     return d;
   }
-  Eigen::Vector3d evaluate(const Joints& Q_meas, std::size_t run) override {
-    Eigen::Vector3d d;
-    find(Q_meas, {}, run, d);
-    for (int j = 0; j < kLinearJoints; ++j) {
+  Joints evaluate(const Joints& Q_meas, std::size_t run) override {
+    const Joints wanted =
+        of_all_or_linear([&](auto& shifts) { find(Q_meas, LaneFlags{}, run, shifts); });
+    Joints d;
+    for (int j = 0; j < kJoints; ++j) {
       double& out = out_[j][run];
-      d[j] = out = approached(d[j], params_.max, max_change_, out);
+      d[j] = out = approached(wanted[j], params_.max[j], max_change_[j], out);
     }
     return d;
   }
-  void evaluate(const JointLanes& Q_meas, const LaneFlags& lanes, LinearJointLanes& d) override {
-    find(Q_meas, lanes, 0, d);
-    approach_(params_.max, max_change_, kLinearJoints, out_, d);
+  void evaluate(const JointLanes& Q_meas, const LaneFlags& lanes, JointLanes& d) override {
+    if (displaces_all()) {
+      find(Q_meas, lanes, 0, d);
+      approach_(params_.max[kLinearJoints], max_change_[kLinearJoints], kJoints - kLinearJoints,
+                out_ + kLinearJoints, d + kLinearJoints);
+    } else {
+      LinearJointLanes linear;
+      find(Q_meas, lanes, 0, linear);
+      std::copy(std::begin(linear), std::end(linear), std::begin(d));
+    }
+    approach_(params_.max[0], max_change_[0], kLinearJoints, out_, d);
   }
 
  private:
+  bool displaces_all() const { return params_.axes == DisplacedAxes::all; }
+
+  // What `find` finds of one run; 0 for joints that are not displaced.
+  template <class Find>
+  Joints of_all_or_linear(Find find_shifts) const {
+    Joints d = Joints::Zero();
+    if (displaces_all()) {
+      find_shifts(d);
+    } else {
+      Eigen::Vector3d linear;
+      find_shifts(linear);
+      d.head<3>() = linear;
+    }
+    return d;
+  }
+
   template <class Poses, class Shifts>
   void find(const Poses& Q_meas, const LaneFlags& lanes, std::size_t first, Shifts& d) {
     if (leads_) {
@@ -127,16 +181,16 @@ class VirtualEncoder final : public FeedbackPart {
   }
 
   // Displacement where the machine will be when an axis has followed it: each displaced axis has
-  // its own lag, hence its own lead.
+  // its own lag, hence its own lead. Rotary axes that are not displaced are taken to stand still.
   template <class Poses, class Shifts>
   void find_ahead(const Poses& Q_meas, const LaneFlags& lanes, std::size_t first, Shifts& d) {
-    const Eigen::Vector3d& lead = params_.lead;
+    const Joints& lead = params_.lead;
     Poses Q;
     Shifts velocity, other;
     std::copy(std::begin(Q_meas), std::end(Q_meas), std::begin(Q));
     velocity_.advance(Q_meas, first, velocity);
     const auto find_after = [&](double time, Shifts& out) {
-      for (int j = 0; j < kLinearJoints; ++j) {
+      for (int j = 0; j < kJointsOf<Shifts>; ++j) {
         for (std::size_t k = 0; k < kLanesOf<Shifts>; ++k) {
           lane(Q[j], k) = lane(Q_meas[j], k) + time * lane(velocity[j], k);
         }
@@ -144,7 +198,7 @@ class VirtualEncoder final : public FeedbackPart {
       find_displacement(Q, lanes, out);
     };
     find_after(lead[0], d);
-    for (int j = 1; j < kLinearJoints; ++j) {
+    for (int j = 1; j < kJointsOf<Shifts>; ++j) {
       if (lead[j] == lead[0]) continue;
       find_after(lead[j], other);
       d[j] = other[j];
@@ -157,14 +211,26 @@ class VirtualEncoder final : public FeedbackPart {
   void find_displacement(const JointLanes& Q, const LaneFlags& lanes, LinearJointLanes& d) const {
     feedback_displacement(belief_, params_.sign, params_.iterations, Q, lanes, d);
   }
+  void find_displacement(const Joints& Q, const LaneFlags&, Joints& d) const {
+    d = all_.of_feedback(params_.sign, Q);
+  }
+  void find_displacement(const JointLanes& Q, const LaneFlags& lanes, JointLanes& d) const {
+    Joints one;
+    for (std::size_t k = 0; k < kLaneWidth; ++k) {
+      for (int j = 0; j < kJoints; ++j) one[j] = lanes[k] ? Q[j][k] : 0.0;
+      if (lanes[k]) one = all_.of_feedback(params_.sign, one);
+      for (int j = 0; j < kJoints; ++j) d[j][k] = one[j];
+    }
+  }
 
   const Belief& belief_;
   FeedbackParams params_;
+  PoseCompensation all_;
   bool leads_;
-  double max_change_;  // m per model period
+  Joints max_change_;  // m, rad per model period
   VelocityWindow velocity_;
   Approach approach_ = approach_in_lanes();
-  LinearJointLanes out_{};
+  JointLanes out_{};
 };
 
 class ModifiedFeedback final : public Strategy {
@@ -172,6 +238,7 @@ class ModifiedFeedback final : public Strategy {
   ModifiedFeedback(const Belief& belief, const FeedbackParams& params)
       : belief_(belief), params_(params) {}
   bool displaces_feedback() const override { return true; }
+  bool displaces_rotary() const override { return params_.axes == DisplacedAxes::all; }
   std::unique_ptr<FeedbackPart> feedback(double model_period) const override {
     return std::make_unique<VirtualEncoder>(belief_, params_, model_period);
   }
@@ -185,10 +252,16 @@ std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& bel
   FeedbackParams params;
   params.sign = sign;
   params.iterations = iterations_of(p);
-  params.max = p.number("max_um");
-  params.max_rate = p.number("max_rate_mm_per_s");
+  params.axes = displaced_axes_of(p);
+  params.max.head<3>().setConstant(p.number("max_um"));
+  params.max_rate.head<3>().setConstant(p.number("max_rate_mm_per_s"));
+  if (params.axes == DisplacedAxes::all) {
+    params.sigma_0 = std::sin(p.number("singular_deg"));
+    params.max.tail<2>().setConstant(p.number("max_mrad"));
+    params.max_rate.tail<2>().setConstant(p.number("max_rate_mrad_per_s"));
+  }
   if (p.is_word("lead_ms")) {
-    for (int j = 0; j < kLinearJoints; ++j) {
+    for (int j = 0; j < kJoints; ++j) {
       if (belief.layout.has(j)) params.lead[j] = 1.0 / belief.Kv[j];
     }
   } else {

@@ -6,13 +6,13 @@
 #include <cstdint>
 
 #include "plant/vocabulary/move_curve.h"
-#include "strategies/compensation.h"
+#include "strategies/pose_compensation.h"
 
 namespace servomill::strategies {
 namespace {
 
-const std::array<ParameterSpec, 3>& specs() {
-  static const std::array<ParameterSpec, 3> kSpecs = {{
+const std::array<ParameterSpec, 7>& specs() {
+  static const std::array<ParameterSpec, 7> kSpecs = {{
       {.name = "tolerance_um",
        .help = "chord tolerance of the rewritten blocks",
        .unit = "um",
@@ -23,7 +23,19 @@ const std::array<ParameterSpec, 3>& specs() {
        .unit = "mm",
        .default_text = "1",
        .min = 1e-3},
+      {.name = "tolerance_urad",
+       .help = "axes = all: chord tolerance of the rotary axes",
+       .unit = "urad",
+       .default_text = "0.5",
+       .min = 1e-3},
+      {.name = "max_block_deg",
+       .help = "axes = all: largest turn of a rotary axis in a rewritten block",
+       .unit = "deg",
+       .default_text = "1",
+       .min = 1e-3},
       kIterationsSpec,
+      kAxesSpec,
+      kSingularSpec,
   }};
   return kSpecs;
 }
@@ -31,8 +43,12 @@ const std::array<ParameterSpec, 3>& specs() {
 struct RewriteParams {
   Sign sign = Sign::correct;
   Iterations iterations = Iterations::one;
-  double tolerance = 0.0;  // m
-  double max_block = 0.0;  // m
+  DisplacedAxes axes = DisplacedAxes::linear;
+  double sigma_0 = 0.0;
+  double tolerance = 0.0;       // m
+  double max_block = 0.0;       // m
+  double tolerance_turn = 0.0;  // rad
+  double max_block_turn = 0.0;  // rad
 };
 
 // Displaces one programmed move after the other and appends the blocks that result.
@@ -40,10 +56,15 @@ class Rewriter {
  public:
   Rewriter(const Belief& belief, const RewriteParams& params, const AxisWords& start,
            std::vector<Move>& out)
-      : belief_(belief), params_(params), out_(out), out_at_(start) {}
+      : belief_(belief),
+        params_(params),
+        all_(belief, params.iterations, params.sigma_0),
+        out_(out),
+        out_at_(start) {}
 
   void rewrite(const AxisWords& from, const Move& move) {
     move_ = &move;
+    turn_ = displaces_all() ? (move.end_machine - from).tail<3>().cwiseAbs().maxCoeff() : 0.0;
     curve_ = MoveCurve(from, move);
     s_ = move.s_begin;
     if (move.kind == MoveKind::rapid) {
@@ -52,7 +73,7 @@ class Rewriter {
     } else if (curve_.length() == 0.0 && (move.end_machine - from).tail<3>().any()) {
       // Rotary axes alone keep their angular feed: X, Y and Z wait where they are, and the next
       // move takes them to where they belong.
-      AxisWords target = move.end_machine;
+      AxisWords target = displaces_all() ? displaced(1.0) : move.end_machine;
       target.head<3>() = out_at_.head<3>();
       emit(1.0, target);
     } else {
@@ -63,9 +84,12 @@ class Rewriter {
  private:
   static constexpr int kMostSplits = 24;
 
+  bool displaces_all() const { return params_.axes == DisplacedAxes::all; }
+
   void cut() {
-    const auto pieces = std::max<std::int64_t>(
-        1, std::llround(std::ceil(curve_.length() / params_.max_block - 1e-9)));
+    const double blocks =
+        std::max(curve_.length() / params_.max_block, turn_ / params_.max_block_turn);
+    const auto pieces = std::max<std::int64_t>(1, std::llround(std::ceil(blocks - 1e-9)));
     const double dt = 1.0 / static_cast<double>(pieces);
     AxisWords a = displaced(0.0);
     for (std::int64_t i = 0; i < pieces; ++i) {
@@ -79,14 +103,18 @@ class Rewriter {
 
   AxisWords displaced(double t) const {
     AxisWords p = curve_.at(t);
-    p.head<3>() +=
-        set_point_displacement(belief_, params_.sign, params_.iterations, belief_.layout.joints(p));
+    const Joints Q = belief_.layout.joints(p);
+    if (displaces_all()) {
+      p += belief_.layout.words(all_.of_set_point(params_.sign, Q));
+    } else {
+      p.head<3>() += set_point_displacement(belief_, params_.sign, params_.iterations, Q);
+    }
     return p;
   }
 
   // Halves [t0, t1] until the chord is within tolerance at a quarter, the half and three quarters.
   void split(double t0, const AxisWords& a, double t1, const AxisWords& b, int splits_left) {
-    if (splits_left == 0 || chord_error(t0, a, t1, b) <= params_.tolerance) {
+    if (splits_left == 0 || is_within_tolerance(t0, a, t1, b)) {
       emit(t1, b);
       return;
     }
@@ -96,13 +124,13 @@ class Rewriter {
     split(t, m, t1, b, splits_left - 1);
   }
 
-  double chord_error(double t0, const AxisWords& a, double t1, const AxisWords& b) const {
-    double worst = 0.0;
+  bool is_within_tolerance(double t0, const AxisWords& a, double t1, const AxisWords& b) const {
     for (const double f : {0.25, 0.5, 0.75}) {
       const AxisWords off = displaced(t0 + f * (t1 - t0)) - (a + f * (b - a));
-      worst = std::max(worst, off.head<3>().norm());
+      if (off.head<3>().norm() > params_.tolerance) return false;
+      if (displaces_all() && off.tail<3>().norm() > params_.tolerance_turn) return false;
     }
-    return worst;
+    return true;
   }
 
   void emit(double t, const AxisWords& target) {
@@ -120,10 +148,12 @@ class Rewriter {
 
   const Belief& belief_;
   const RewriteParams& params_;
+  PoseCompensation all_;
   std::vector<Move>& out_;
   const Move* move_ = nullptr;
   AxisWords out_at_;  // displaced end of the block before
   MoveCurve curve_;
+  double turn_ = 0.0;  // rad, of the rotary axis that turns most; 0 where none is displaced
   double s_ = 0.0;
 };
 
@@ -133,6 +163,7 @@ class RewrittenProgram final : public Strategy {
       : belief_(belief), params_(params) {}
 
   bool rewrites() const override { return true; }
+  bool displaces_rotary() const override { return params_.axes == DisplacedAxes::all; }
 
   std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
     std::vector<Move> out;
@@ -160,6 +191,10 @@ std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& bel
   params.iterations = iterations_of(p);
   params.tolerance = p.number("tolerance_um");
   params.max_block = p.number("max_block_mm");
+  params.axes = displaced_axes_of(p);
+  params.sigma_0 = std::sin(p.number("singular_deg"));
+  params.tolerance_turn = p.number("tolerance_urad");
+  params.max_block_turn = p.number("max_block_deg");
   return std::make_unique<RewrittenProgram>(belief, params);
 }
 

@@ -26,19 +26,19 @@ struct Belief {
   Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();  // m, tool tip at the spindle nose
   Joints lower = Joints::Zero();                   // m, rad; travel of the machine
   Joints upper = Joints::Zero();
-  Joints reference = Joints::Zero();             // m, rad; where the machine starts
-  Eigen::Vector3d Kv = Eigen::Vector3d::Zero();  // 1/s, position gains that the NC is set to;
-                                                 // NaN unless the entry reads_gains
+  Joints reference = Joints::Zero();  // m, rad; where the machine starts
+  Joints Kv = Joints::Zero();         // 1/s, position gains that the NC is set to;
+                                      // NaN unless the entry reads_gains
 };
 
-/// Offset of the linear set points, added in the NC where `entry` says.
+/// Offset of the set points, added in the NC where `entry` says.
 class SetPointPart {
  public:
   virtual ~SetPointPart() = default;
   virtual SetPointEntry entry() const = 0;
   /// @param Q_ref  interpolated position (5; m, rad)
-  /// @return offset of X, Y, Z (3; m)
-  virtual Eigen::Vector3d offset(const Joints& Q_ref) const = 0;
+  /// @return offset of all joints (5; m, rad)
+  virtual Joints offset(const Joints& Q_ref) const = 0;
 };
 
 /// Offset of the position feedback: the NC reads x_measured + d, hence moves the axis by -d.
@@ -48,16 +48,17 @@ class FeedbackPart {
  public:
   virtual ~FeedbackPart() = default;
   /// Settles one run at standstill in Q_meas, as if the hardware had been on for long.
-  virtual Eigen::Vector3d settle(const Joints& Q_meas, std::size_t lane = 0) = 0;
+  virtual Joints settle(const Joints& Q_meas, std::size_t lane = 0) = 0;
   /// One model period of one run, the only one that goes on.
   /// @param Q_meas  scale readings of this instant (5; m, rad)
-  /// @return d for X, Y, Z (3; m), acting one model period later
-  virtual Eigen::Vector3d evaluate(const Joints& Q_meas, std::size_t lane = 0) = 0;
+  /// @return d of all joints (5; m, rad), acting one model period later
+  virtual Joints evaluate(const Joints& Q_meas, std::size_t lane = 0) = 0;
   /// One model period of all runs that go on, in less time than of each.
   /// @param Q_meas  as above; of other lanes anything
   /// @param lanes   those of the runs
-  /// @param d       as above; of other lanes anything
-  virtual void evaluate(const JointLanes& Q_meas, const LaneFlags& lanes, LinearJointLanes& d) = 0;
+  /// @param d       as above; of other lanes anything. Rotary joints that the strategy does not
+  ///                displace are left as they are
+  virtual void evaluate(const JointLanes& Q_meas, const LaneFlags& lanes, JointLanes& d) = 0;
 };
 
 /// Up to three parts, each optional. A strategy is constant and may be shared by runs; the parts
@@ -74,6 +75,8 @@ class Strategy {
 
   /// Whether it has a part that displaces the feedback.
   virtual bool displaces_feedback() const { return false; }
+  /// Whether any of its parts displaces rotary axes, too.
+  virtual bool displaces_rotary() const { return false; }
   /// @param model_period  s, time between two calls of FeedbackPart::evaluate
   virtual std::unique_ptr<FeedbackPart> feedback(double model_period) const {
     (void)model_period;

@@ -105,9 +105,9 @@ class Tables final : public SetPointPart {
   Tables(const SetPointEntry& entry, const std::vector<AxisTable>& tables)
       : entry_(entry), tables_(tables) {}
   SetPointEntry entry() const override { return entry_; }
-  Eigen::Vector3d offset(const Joints& Q_ref) const override {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const AxisTable& table : tables_) sum += table.at(Q_ref[table.joint]);
+  Joints offset(const Joints& Q_ref) const override {
+    Joints sum = Joints::Zero();
+    for (const AxisTable& table : tables_) sum.head<3>() += table.at(Q_ref[table.joint]);
     return sum;
   }
 

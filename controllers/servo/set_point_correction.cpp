@@ -11,19 +11,19 @@ SetPointCorrection::SetPointCorrection(const SetPointEntry& entry, double positi
           std::max(1, static_cast<int>(std::ceil(entry.update_period / position_period - 1e-9)))),
       gain_(entry.response_time > 0.0 ? -std::expm1(-position_period / entry.response_time) : 1.0),
       delayed_(static_cast<std::size_t>(std::lround(entry.dead_time / position_period)),
-               Eigen::Vector3d::Zero()) {}
+               Joints::Zero()) {}
 
-void SetPointCorrection::settle(const Eigen::Vector3d& value) {
+void SetPointCorrection::settle(const Joints& value) {
   std::fill(delayed_.begin(), delayed_.end(), value);
   held_ = value;
   out_ = value;
 }
 
-Eigen::Vector3d SetPointCorrection::advance(const Eigen::Vector3d& value) {
+Joints SetPointCorrection::advance(const Joints& value) {
   if (wants_value()) held_ = value;
   phase_ = phase_ + 1 == periods_per_update_ ? 0 : phase_ + 1;
 
-  Eigen::Vector3d u = held_;
+  Joints u = held_;
   if (!delayed_.empty()) {
     std::swap(u, delayed_[oldest_]);
     oldest_ = oldest_ + 1 == delayed_.size() ? 0 : oldest_ + 1;

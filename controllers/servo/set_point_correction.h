@@ -23,12 +23,12 @@ class SetPointCorrection {
   /// True when `advance` wants a fresh value of the table in this position period.
   bool wants_value() const { return phase_ == 0; }
 
-  /// Settled at `value` (3; m), as if the machine had stood there for long.
-  void settle(const Eigen::Vector3d& value);
+  /// Settled at `value` (5; m, rad), as if the machine had stood there for long.
+  void settle(const Joints& value);
 
-  /// @param value  what the table says now (3; m); only read when wants_value()
-  /// @return offset of the linear set points in this period (3; m)
-  Eigen::Vector3d advance(const Eigen::Vector3d& value);
+  /// @param value  what the table says now (5; m, rad); only read when wants_value()
+  /// @return offset of the set points in this period (5; m, rad)
+  Joints advance(const Joints& value);
 
  private:
   EntryPoint entry_;
@@ -36,9 +36,9 @@ class SetPointCorrection {
   double gain_;  // 1 - exp(-Tp / T); 1 without a response time
   int phase_ = 0;
   std::size_t oldest_ = 0;
-  std::vector<Eigen::Vector3d> delayed_;  // ring of dead_time / Tp values, empty without dead time
-  Eigen::Vector3d held_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d out_ = Eigen::Vector3d::Zero();
+  std::vector<Joints> delayed_;  // ring of dead_time / Tp values, empty without dead time
+  Joints held_ = Joints::Zero();
+  Joints out_ = Joints::Zero();
 };
 
 }  // namespace servomill::controllers

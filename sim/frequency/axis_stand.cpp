@@ -45,7 +45,7 @@ void AxisStand::settle(double position) {
   Joints Q = Joints::Zero();
   Q[joint_] = position;
   axes_.inject(joint_, {});
-  axes_.settle(Q, Eigen::Vector3d::Zero());
+  axes_.settle(Q, Joints::Zero());
 }
 
 void AxisStand::set_states(const Eigen::VectorXd& x) {

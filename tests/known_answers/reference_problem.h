@@ -144,6 +144,7 @@ inline std::unique_ptr<strategies::Strategy> make_virtual_encoder() {
   parameters.set("lead_ms", 0.0);
   parameters.set("velocity_window_ms", 0.0);
   parameters.set("iterations", "converged");  // one step is exact when errors are corrected
+  parameters.set("axes", "linear");
   return strategies::find("feedback")->make(parameters, strategies::Sign::correct, belief);
 }
 

@@ -12,11 +12,12 @@ TEST(EveryStrategy, DoesNotAllocateInARun) {
   const Belief belief = belief_in(plant::random_errors(random, 10e-6));
   for (const Entry& entry : entries()) {
     for (const Sign sign : kBothSigns) {
-      for (const bool converged : {false, true}) {
+      for (const int way : {0, 1, 2, 3}) {
         Parameters parameters = default_parameters(entry);
-        if (converged && parameters.is_word("iterations")) {
+        if (way % 2 == 1 && parameters.is_word("iterations")) {
           parameters.set("iterations", "converged");
         }
+        if (way >= 2 && parameters.is_word("axes")) parameters.set("axes", "all");
         for (const ParameterSpec& spec : entry.parameters) {  // a lead needs readings of the past
           if (std::find(spec.words.begin(), spec.words.end(), "auto") != spec.words.end()) {
             parameters.set(spec.name, "auto");

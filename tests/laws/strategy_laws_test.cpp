@@ -105,13 +105,13 @@ TEST(EveryStrategy, LeavesPositionsAloneWithoutErrors) {
   plant::Uniform random(1);
   for (const Entry& entry : entries()) {
     for (const Sign sign : kBothSigns) {
-      for (const bool converged : {false, true}) {
-        const Acting acting = make_acting(entry, sign, belief, converged);
+      for (const int way : {0, 1, 2, 3}) {
+        const Acting acting = make_acting(entry, sign, belief, way % 2 == 1, way >= 2);
         for (int n = 0; n < 100; ++n) {
           const Joints Q = random_position(belief, random);
-          EXPECT_EQ(acting.displacement(belief.layout, Q), Eigen::Vector3d::Zero()) << entry.name;
+          EXPECT_EQ(acting.displacement(belief.layout, Q), Joints::Zero()) << entry.name;
           if (!acting.feedback) continue;
-          EXPECT_EQ(acting.feedback->evaluate(Q), Eigen::Vector3d::Zero()) << entry.name;
+          EXPECT_EQ(acting.feedback->evaluate(Q), Joints::Zero()) << entry.name;
         }
       }
     }
@@ -127,7 +127,7 @@ TEST(EveryStrategy, ThatReadsNoErrorsDisplacesNothing) {
     const Acting acting = make_acting(entry, Sign::correct, belief);
     for (int n = 0; n < 20; ++n) {
       const Joints Q = random_position(belief, random);
-      EXPECT_EQ(acting.displacement(belief.layout, Q), Eigen::Vector3d::Zero()) << entry.name;
+      EXPECT_EQ(acting.displacement(belief.layout, Q), Joints::Zero()) << entry.name;
     }
   }
 }
@@ -136,8 +136,9 @@ TEST(EveryStrategy, KeepsEveryProgrammedPointWithoutErrors) {
   const Belief belief = belief_in({});
   const std::vector<Move> moves = some_program(belief);
   for (const Entry& entry : entries()) {
-    for (const Sign sign : kBothSigns) {
-      const Acting acting = make_acting(entry, sign, belief);
+    for (const int way : {0, 1, 2, 3}) {
+      const Acting acting = make_acting(entry, way % 2 == 1 ? Sign::generate : Sign::correct,
+                                        belief, false, way >= 2);
       const std::vector<Move> rewritten = acting.strategy->rewrite(moves);
       auto next = rewritten.begin();
       AxisWords from = belief.layout.words(belief.reference);
@@ -188,7 +189,7 @@ TEST(EveryStrategy, DisplacesByTheBelievedErrorTimesItsSign) {
           const Eigen::Vector3d believed = belief.model.joint_offset(Q, belief.p_ST);
           ASSERT_GT(believed.norm(), 100.0 * kSecondOrder);
           const Eigen::Vector3d wanted = (sign == Sign::generate ? 1.0 : -1.0) * believed;
-          const double off = (acting.displacement(belief.layout, Q) - wanted).norm();
+          const double off = (acting.displacement(belief.layout, Q).head<3>() - wanted).norm();
           EXPECT_LE(off, kSecondOrder) << entry.name << " " << name_of(sign) << " " << joint;
         }
       }
@@ -201,11 +202,15 @@ TEST(EveryStrategy, CorrectsWhatItGeneratesToFirstOrder) {
   plant::Uniform random(3);
   const Belief large = random_belief(kErrorSize), small = random_belief(0.5 * kErrorSize);
   for (const Entry& entry : entries()) {
-    const auto left = [&](const Belief& belief, const Joints& Q) -> Eigen::Vector3d {
-      return make_acting(entry, Sign::generate, belief, true).displacement(belief.layout, Q) +
-             make_acting(entry, Sign::correct, belief, true).displacement(belief.layout, Q);
+    bool all_axes = false;
+    const auto left = [&](const Belief& belief, const Joints& Q) -> Joints {
+      const auto by = [&](Sign sign) {
+        return make_acting(entry, sign, belief, true, all_axes).displacement(belief.layout, Q);
+      };
+      return by(Sign::generate) + by(Sign::correct);
     };
-    for (int n = 0; n < 20; ++n) {
+    for (int n = 0; n < 40; ++n) {
+      all_axes = n >= 20;
       const Joints Q = random_position(large, random);
       const double at_full = left(large, Q).norm(), at_half = left(small, Q).norm();
       if (at_full == 0.0) {
@@ -224,13 +229,15 @@ TEST(EveryStrategy, CorrectsInOneStepByTheNegative) {
   const Belief belief = random_belief();
   plant::Uniform random(5);
   for (const Entry& entry : entries()) {
-    const Acting generate = make_acting(entry, Sign::generate, belief);
-    const Acting correct = make_acting(entry, Sign::correct, belief);
-    for (int n = 0; n < 20; ++n) {
-      const Joints Q = random_position(belief, random);
-      const Eigen::Vector3d sum =
-          generate.displacement(belief.layout, Q) + correct.displacement(belief.layout, Q);
-      EXPECT_LE(sum.cwiseAbs().maxCoeff(), kRounding) << entry.name;
+    for (const bool all_axes : {false, true}) {
+      const Acting generate = make_acting(entry, Sign::generate, belief, false, all_axes);
+      const Acting correct = make_acting(entry, Sign::correct, belief, false, all_axes);
+      for (int n = 0; n < 20; ++n) {
+        const Joints Q = random_position(belief, random);
+        const Joints sum =
+            generate.displacement(belief.layout, Q) + correct.displacement(belief.layout, Q);
+        EXPECT_LE(sum.cwiseAbs().maxCoeff(), kRounding) << entry.name;
+      }
     }
   }
 }
@@ -248,11 +255,11 @@ TEST(EveryStrategy, DoesTheSameInEveryRun) {
       if (feedback) feedback->settle(Q);
       for (int n = 0; n < 200; ++n) {
         for (int j = 0; j < kLinearJoints; ++j) Q[j] += 1e-6 * random();
-        for (int i = 0; i < 3; ++i) {
+        for (int i = 0; i < kJoints; ++i) {
           if (set_point) out.push_back(set_point->offset(Q)[i]);
         }
         if (!feedback) continue;
-        const Eigen::Vector3d d = feedback->evaluate(Q);
+        const Joints d = feedback->evaluate(Q);
         out.insert(out.end(), d.begin(), d.end());
       }
       return out;
@@ -271,6 +278,38 @@ TEST(EveryStrategy, DoesTheSameInEveryRun) {
       EXPECT_EQ(once[i].end_machine, twice[i].end_machine) << entry.name;
     }
   }
+}
+
+// Law 6: a strategy that displaces all axes, with perfect belief and axes that stand where they are
+// sent, leaves neither tip nor tool axis anything, whatever the machine.
+TEST(EveryStrategyOfAllAxes, LeavesNothingOfTipAndToolAxis) {
+  constexpr double kPoseTol = 2e-12;  // m, rad: ten times that of the iteration and its slopes
+  plant::Uniform random(13);
+  int tried = 0;
+  for (const char* structure : {"[w C' B' X b Y Z t]", "[w B' A' X b Y Z t]", "[w C' b X Y Z A t]",
+                                "[w X b Y Z C B t]", "[w X Y b Z B A t]"}) {
+    const Belief belief = belief_in(plant::random_errors(random, kErrorSize), structure);
+    const plant::MachineChain& chain = belief.model.chain();
+    for (const Entry& entry : entries()) {
+      if (!default_parameters(entry).is_word("axes")) continue;
+      const Acting acting = make_acting(entry, Sign::correct, belief, true, true);
+      EXPECT_TRUE(acting.strategy->displaces_rotary()) << entry.name;
+      ++tried;
+      for (int n = 0; n < 20; ++n) {
+        const Joints Q = random_position(belief, random);
+        const Joints d = acting.displacement(belief.layout, Q);
+        // a reading is taken where the axes are, a program says where they are to be
+        const Joints Q_true = acting.feedback ? Q : Joints(Q + d);
+        const Joints Q_prog = acting.feedback ? Joints(Q - d) : Q;
+        const ToolPose got = belief.model.forward(Q_true, belief.p_ST);
+        const ToolPose wanted = plant::forward(chain, Q_prog, belief.p_ST);
+        EXPECT_LT((got.p_WT - wanted.p_WT).norm(), kPoseTol) << structure << entry.name;
+        EXPECT_LT((got.k_W - wanted.k_W).norm(), kPoseTol) << structure << entry.name;
+        EXPECT_GT(d.tail<2>().norm(), 1e-7) << "there is something to correct";
+      }
+    }
+  }
+  EXPECT_GE(tried, 10);
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ struct FiveAxisCase {
     p.set("lead_ms", "auto");
     p.set("velocity_window_ms", 3.0 * ms);
     p.set("iterations", "1");
+    p.set("axes", "linear");
     strategy = entry->make(p, strategies::Sign::generate, belief);
   }
 
@@ -69,9 +70,8 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
   plant::DriveInputBlock& u = input.blocks.front();
   std::array<controllers::CascadeState, kJoints> loops;
   const auto scales = [&] { return Joints(Eigen::Map<const Joints>(x.x.data())); };
-  Eigen::Vector3d d_now = part->settle(scales()), d_next = d_now;
-  Joints Q_read = scales();
-  Q_read.head<3>() += d_now;
+  Joints d_now = part->settle(scales()), d_next = d_now;
+  Joints Q_read = scales() + d_now;
   for (std::size_t j = 0; j < kJoints; ++j) {
     loops[j].phi = drives.motor_angle(state, j);
     loops[j].i_next = loops[j].i_cmd = u.command[j] = x.i[j];
@@ -85,8 +85,7 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
       d_next = part->evaluate(scales());
     }
     if ((n + c.hardware.signal_delay) % p.position == 0) {
-      Q_read = scales();
-      Q_read.head<3>() += d_now;
+      Q_read = scales() + d_now;
     }
     if (n % p.position == 0) {
       const AxisSetPoint& set = set_point.advance(c.trajectory.at(p.seconds(n), cursor));

@@ -16,8 +16,8 @@ class Proportional final : public strategies::SetPointPart {
   Proportional(EntryPoint where, double slope, double dead_time)
       : entry_{where, 0.0, dead_time, 0.0}, slope_(slope) {}
   SetPointEntry entry() const override { return entry_; }
-  Eigen::Vector3d offset(const Joints& Q_ref) const override {
-    return {0.0, slope_ * Q_ref[0], 0.0};
+  Joints offset(const Joints& Q_ref) const override {
+    return {0.0, slope_ * Q_ref[0], 0.0, 0.0, 0.0};
   }
 
  private:

@@ -13,11 +13,11 @@
 
 namespace servomill::strategies {
 
-/// A five-axis machine of +-200 mm with a tool of 110 mm, its table turned, believed to have these
-/// errors. The reference position is a point of a table with the default spacing.
-inline Belief belief_in(const plant::ErrorModel& errors) {
-  const plant::MachineChain chain =
-      plant::make_chain(plant::parse_structure("[w C' B' X b Y Z (C1) t]"));
+/// A five-axis machine of +-200 mm with a tool of 110 mm, its rotary axes turned, believed to have
+/// these errors. The reference position is a point of a table with the default spacing.
+inline Belief belief_in(const plant::ErrorModel& errors,
+                        const char* structure = "[w C' B' X b Y Z (C1) t]") {
+  const plant::MachineChain chain = plant::make_chain(plant::parse_structure(structure));
   Belief belief{chain.layout, plant::VolumetricModel(chain, errors)};
   belief.p_ST << 0.0, 0.0, -110.0 * mm;
   belief.lower << -200.0 * mm, -200.0 * mm, -200.0 * mm, -2.0, -7.0;
@@ -53,15 +53,16 @@ struct Acting {
 
   bool acts() const { return strategy->rewrites() || set_point || feedback; }
 
-  /// Displacement of the axes (3; m) at standstill in Q: set point, program and feedback together.
-  Eigen::Vector3d displacement(const JointLayout& layout, const Joints& Q) const {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  /// Displacement of the axes (5; m, rad) at standstill in Q: set point, program and feedback
+  /// together.
+  Joints displacement(const JointLayout& layout, const Joints& Q) const {
+    Joints sum = Joints::Zero();
     if (set_point) sum += set_point->offset(Q);
     if (feedback) sum -= feedback->settle(Q);
     if (strategy->rewrites()) {
       Move move;
       move.end = move.end_machine = layout.words(Q);
-      sum += (strategy->rewrite({move}).back().end_machine - move.end_machine).head<3>();
+      sum += layout.joints(strategy->rewrite({move}).back().end_machine - move.end_machine);
     }
     return sum;
   }
@@ -78,11 +79,13 @@ inline Acting make_acting(const Entry& entry, const Parameters& parameters, Sign
   return out;
 }
 
-/// The strategy with its default parameters; `iterations = "converged"` where it knows that.
+/// The strategy with its default parameters; `iterations = "converged"` and `axes = "all"` where it
+/// knows them.
 inline Acting make_acting(const Entry& entry, Sign sign, const Belief& belief,
-                          bool converged = false) {
+                          bool converged = false, bool all_axes = false) {
   Parameters parameters = default_parameters(entry);
   if (converged && parameters.is_word("iterations")) parameters.set("iterations", "converged");
+  if (all_axes && parameters.is_word("axes")) parameters.set("axes", "all");
   return make_acting(entry, parameters, sign, belief);
 }
 

@@ -47,14 +47,14 @@ TEST(VirtualEncoder, LimitsTheDisplacement) {
   const Acting free = virtual_encoder(belief, {});
   const Acting limited = virtual_encoder(belief, {.max_um = 10.1});
   for (const double x : {0.2 * mm, 1.0 * mm, 1.0099 * mm, -1.0099 * mm}) {
-    const Eigen::Vector3d d = free.feedback->settle(at_x(x));
+    const Joints d = free.feedback->settle(at_x(x));
     EXPECT_NE(d[1], 0.0);
     EXPECT_EQ(limited.feedback->settle(at_x(x)), d) << x;
     EXPECT_EQ(limited.feedback->evaluate(at_x(x)), d) << x;
   }
   for (const double x : {1.0101 * mm, 50.0 * mm}) {
     for (const double sign : {1.0, -1.0}) {
-      const Eigen::Vector3d limit(0.0, sign * (10.1 * um), 0.0);
+      const Joints limit{0.0, sign * (10.1 * um), 0.0, 0.0, 0.0};
       EXPECT_EQ(limited.feedback->settle(at_x(sign * x)), limit) << x;
       EXPECT_EQ(limited.feedback->evaluate(at_x(sign * x)), limit) << x;
     }
@@ -81,7 +81,7 @@ TEST(VirtualEncoder, LimitsTheRate) {
     for (int n = 1; n <= 16; ++n) {
       EXPECT_NEAR(limited.feedback->evaluate(Q)[1], from + sign * n * most, kRounding) << n;
     }
-    const Eigen::Vector3d wanted = free.feedback->evaluate(Q);
+    const Joints wanted = free.feedback->evaluate(Q);
     EXPECT_NEAR(limited.feedback->evaluate(Q)[1], wanted[1], kRounding);
   }
 }
@@ -136,21 +136,22 @@ TEST(VirtualEncoder, KeepsTheStepsOfTheEncoderOutOfItsLead) {
 TEST(VirtualEncoder, GivesTheSameBitsTogetherAndAlone) {
   plant::Uniform random(23);
   Belief belief = belief_in(plant::random_errors(random, 50e-6));
-  belief.Kv = {60.0, 40.0, 40.0};  // leads that differ
+  belief.Kv << 60.0, 40.0, 40.0, 50.0, 50.0;  // leads that differ
   const Entry entry = feedback_entry();
   constexpr LaneFlags kRuns = {true, true, false, true, true, true, false, true};
   for (const Sign sign : kBothSigns) {
     for (const bool lead : {false, true}) {
-      for (const std::string_view iterations : {"1", "converged"}) {
+      for (const int way : {0, 1, 2, 3}) {
         Parameters parameters = default_parameters(entry);
-        parameters.set("iterations", iterations);
+        parameters.set("iterations", way % 2 == 0 ? std::string_view("1") : "converged");
+        parameters.set("axes", way < 2 ? std::string_view("linear") : "all");
         if (lead) parameters.set("lead_ms", std::string_view("auto"));
         const auto strategy = entry.make(parameters, sign, belief);
         const auto together = strategy->feedback(kModelPeriod);
         std::vector<std::unique_ptr<FeedbackPart>> alone;
         std::vector<Joints> Q(kLaneWidth, belief.reference);
         JointLanes Q_lanes;
-        LinearJointLanes d;
+        JointLanes d{};
         for (LaneArray& of_joint : Q_lanes) of_joint.fill(std::numeric_limits<double>::quiet_NaN());
         for (std::size_t run = 0; run < kLaneWidth; ++run) {
           alone.push_back(strategy->feedback(kModelPeriod));
@@ -162,13 +163,14 @@ TEST(VirtualEncoder, GivesTheSameBitsTogetherAndAlone) {
           for (std::size_t run = 0; run < kLaneWidth; ++run) {
             if (!kRuns[run]) continue;
             Q[run].head<3>() += 1e-6 * Eigen::Vector3d(random(), random(), 1.0);
+            Q[run].tail<2>() += 1e-6 * Eigen::Vector2d(random(), -1.0);
             for (int j = 0; j < kJoints; ++j) Q_lanes[j][run] = Q[run][j];
           }
           together->evaluate(Q_lanes, kRuns, d);
           for (std::size_t run = 0; run < kLaneWidth; ++run) {
             if (!kRuns[run]) continue;
-            const Eigen::Vector3d one = alone[run]->evaluate(Q[run]);
-            for (int j = 0; j < kLinearJoints; ++j) {
+            const Joints one = alone[run]->evaluate(Q[run]);
+            for (int j = 0; j < kJoints; ++j) {
               ASSERT_EQ(d[j][run], one[j]) << "run " << run << ", period " << n;
             }
           }
@@ -178,6 +180,41 @@ TEST(VirtualEncoder, GivesTheSameBitsTogetherAndAlone) {
         EXPECT_EQ(together->evaluate(further, 4), alone[4]->evaluate(further));
       }
     }
+  }
+}
+
+// Each kind of axis has its own limits, and those that are not displaced stay where they are.
+TEST(VirtualEncoder, LimitsRotaryAxesOnTheirOwn) {
+  plant::ErrorModel errors;
+  errors.component({Axis::B, Axis::X}) = plant::polynomial({0.0, kSlope});  // rad/m
+  Belief belief = belief_in(errors);
+  belief.reference << 0.0, 0.0, 0.0, 30.0 * deg, 0.0;
+  const Entry entry = feedback_entry();
+  Parameters parameters = default_parameters(entry);
+  parameters.set("max_mrad", 0.1e-3);
+  parameters.set("max_rate_mrad_per_s", 1e9);
+  parameters.set("max_um", 1.0);
+  parameters.set("max_rate_mm_per_s", 1e9);
+  const auto at = [&](double x) {
+    Joints Q = belief.reference;
+    Q[0] = x;
+    return Q;
+  };
+  EXPECT_EQ(make_acting(entry, parameters, Sign::correct, belief).feedback->settle(at(0.1))[3],
+            0.0);
+  parameters.set("axes", "all");
+  const Acting all = make_acting(entry, parameters, Sign::correct, belief);
+  constexpr double kThirdOrder = 2.1e-14;  // rad: one step leaves e^3 / 6 of e = 50 urad
+  EXPECT_NEAR(all.feedback->settle(at(0.005))[3], 0.05e-3, kThirdOrder);
+  EXPECT_EQ(all.feedback->settle(at(0.02))[3], 0.1e-3);
+  EXPECT_EQ(all.feedback->settle(at(-0.02))[3], -0.1e-3);
+  parameters.set("max_mrad", 10e-3);
+  parameters.set("max_rate_mrad_per_s", 100e-3);
+  const Acting slow = make_acting(entry, parameters, Sign::correct, belief);
+  slow.feedback->settle(at(0.0));
+  constexpr double kRounding = 1e-18;  // rad
+  for (int n = 1; n <= 10; ++n) {
+    EXPECT_NEAR(slow.feedback->evaluate(at(0.1))[3], n * 100e-3 * kModelPeriod, kRounding);
   }
 }
 

@@ -8,7 +8,7 @@ namespace servomill::controllers {
 namespace {
 
 constexpr double kTp = 0.2e-3;
-const Eigen::Vector3d kOne(1.0, -2.0, 0.5);
+const Joints kOne{1.0, -2.0, 0.5, -0.3, 0.7};
 
 TEST(SetPointCorrection, PassesValuesOnAtOnceByDefault) {
   SetPointCorrection correction({}, kTp);
@@ -19,7 +19,7 @@ TEST(SetPointCorrection, RespondsLikeAFirstOrderLag) {
   SetPointEntry entry;
   entry.response_time = 40e-3;
   SetPointCorrection correction(entry, kTp);
-  Eigen::Vector3d out;
+  Joints out;
   for (int k = 0; k < 200; ++k) out = correction.advance(kOne);  // one time constant
   EXPECT_NEAR(out.x(), 1.0 - std::exp(-1.0), 1e-12);
 }
@@ -29,7 +29,7 @@ TEST(SetPointCorrection, LagsARampByResponseTimeAndDeadTime) {
   entry.response_time = 40e-3;
   entry.dead_time = 10e-3;
   SetPointCorrection correction(entry, kTp);
-  Eigen::Vector3d out;
+  Joints out;
   for (int k = 0; k < 10000; ++k) out = correction.advance(kOne * (k * kTp));
   const double lag = (10000 - 1) * kTp - out.x();
   EXPECT_NEAR(lag, 40e-3 + 10e-3, kTp);  // the discrete lag is T - Tp / 2 + O(Tp^2)

@@ -1,0 +1,67 @@
+/// Displacement of all joints that brings believed errors of tip and tool axis out or corrects
+/// them: rotary axes take what turns the tool axis, linear axes the rest, what those turns do to
+/// the tip included, so that nothing is corrected twice.
+///
+/// With the Jacobian of the ideal machine at Q (linear joints l, rotary joints r) and the wanted
+/// change s_p of the tip and s_k of the tool axis,
+///
+///     J_kr dr = s_k               by least squares
+///     J_pl dl = s_p - J_pr dr
+///
+/// Where the smaller singular value of J_kr falls below sigma_0, the angle that hardly matters
+/// there would have to turn far for little. It then counts what it turns: |J_kr dr - s_k|^2 +
+/// lambda^2 |dr|^2 is smallest, with
+///
+///     lambda = (sigma_0 / 2) (1 - sigma^2 / sigma_0^2),   0 from sigma_0 on
+///
+/// in its direction. With x = sigma / sigma_0 < 1 the angle then turns by 4 x / (1 + x^2)^2 /
+/// sigma_0 of what is asked for, 1.3 / sigma_0 at most, and leaves the share
+/// ((1 - x^2) / (1 + x^2))^2 of it. Displacements change smoothly through a singular direction.
+/// Source of the damping: Nakamura and Hanafusa, Inverse kinematic solutions with singularity
+/// robustness for robot manipulator control, ASME J. Dyn. Sys. Meas. Control 108 (1986) 163-171.
+#pragma once
+
+#include "strategies/compensation.h"
+#include "strategies/strategy.h"
+
+namespace servomill::strategies {
+
+/// What correcting leaves: true minus ideal pose, believed.
+struct Leftover {
+  double tip = 0.0;   // m
+  double axis = 0.0;  // rad
+};
+
+/// Constant after construction. Calls do not allocate.
+class PoseCompensation {
+ public:
+  /// @param belief     must outlive this
+  /// @param sigma_0    see above; for machines whose axes are orthogonal the sine of the angle to
+  ///                   the singular direction; > 0
+  PoseCompensation(const Belief& belief, Iterations iterations, double sigma_0);
+
+  /// Displacement of the set point (5; m, rad) for the programmed position Q.
+  ///   generate:            F_i(Q + d) = F_ni(Q)
+  ///   correct:             F_ni(Q + d) = F_i(Q), the non-ideal inverse
+  /// With one iteration both are of first order, and each the negative of the other.
+  Joints of_set_point(Sign sign, const Joints& Q) const;
+
+  /// Displacement of the reading (5; m, rad) for the measured position Q: the axes move by its
+  /// negative.
+  ///   correct:             F_i(Q + d) = F_ni(Q), the reading says where the tool is
+  ///   generate:            F_ni(Q + d) = F_i(Q), the error where the program is
+  Joints of_feedback(Sign sign, const Joints& Q) const;
+
+  /// What is left of the errors when the axes stand at Q + d instead of Q.
+  Leftover leftover(const Joints& Q, const Joints& d) const;
+
+ private:
+  enum class Wanted { errors, removal };
+  Joints displacement(Wanted wanted, const Joints& Q) const;
+
+  const Belief& belief_;
+  Iterations iterations_;
+  double sigma_0_;
+};
+
+}  // namespace servomill::strategies
