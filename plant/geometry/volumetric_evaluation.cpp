@@ -89,6 +89,24 @@ void write(const Matrix3d& R, double (&out)[3][3]) {
   }
 }
 
+// C L J L^-1 C^-1 with C = Trans(centre), L = Rot(R) Trans(t), and J = one of three constant
+// matrices, as each coordinate of a turned vector has a part that stays, one that goes with the
+// cosine, and one that goes with the sine.
+void write_tilted_turn(const Matrix3d& R, const Vector3d& t, VolumetricStep& step) {
+  const Vector3d axis = Vector3d::Unit(step.direction), centre = Vector3d::Map(step.centre);
+  const auto part = [&](const Matrix3d& J, const Vector3d& d, double* out) {
+    const Matrix3d M = R * J * R.transpose();
+    for (int i = 0; i < 3; ++i) Vector3d::Map(out + 3 * i) = M.row(i);
+    Vector3d::Map(out + 9) = d - M * centre - R * (J * t);
+  };
+  const Matrix3d still = axis * axis.transpose();
+  Matrix3d across;
+  for (int i = 0; i < 3; ++i) across.col(i) = axis.cross(Vector3d::Unit(i));
+  part(still, centre + R * t, step.still);
+  part(Matrix3d::Identity() - still, Vector3d::Zero(), step.turning[0]);
+  part(across, Vector3d::Zero(), step.turning[1]);
+}
+
 bool is_turn(const VolumetricStep& step) {
   return step.move == VolumetricMove::turn || step.move == VolumetricMove::tilted_turn;
 }
@@ -242,10 +260,7 @@ void VolumetricEvaluation::add_steps_of(const ChainAxis& axis, const ErrorModel&
   step.joint = static_cast<std::uint8_t>(axis.joint);
   step.has_angles = faults.has_angles;
   Vector3d::Map(step.centre) = axis.centre;
-  // L = Rot(angles) Trans(shift)
-  const Matrix3d R = TurnOf(faults.angles).matrix();
-  write(R, step.R);
-  Vector3d::Map(step.t) = faults.shift;
+  const Matrix3d R = TurnOf(faults.angles).matrix();  // L = Rot(angles) Trans(shift)
   const bool linear = is_linear(axis.axis), workpiece = axis.side == Side::workpiece;
   if (linear) {
     step.move = VolumetricMove::shift;
@@ -258,6 +273,9 @@ void VolumetricEvaluation::add_steps_of(const ChainAxis& axis, const ErrorModel&
     VolumetricStep fault = step;
     fault.move = VolumetricMove::fault;
     step.move = faults.has_location() ? VolumetricMove::tilted_turn : VolumetricMove::turn;
+    write_tilted_turn(R, faults.shift, step);
+    program_.has_turns = true;
+    program_.senses[joint - kLinearJoints] = axis.sense == Sense::table ? -1.0 : 1.0;
     if (faults.has_functions && !workpiece) steps_.push_back(fault);
     steps_.push_back(step);
     if (faults.has_functions && workpiece) steps_.push_back(fault);
@@ -274,7 +292,7 @@ void VolumetricEvaluation::find_ends() {
     return step.move != VolumetricMove::turn && !is_frame(step);
   });
   const auto end = steps_.begin() + static_cast<std::ptrdiff_t>(program_.offset_steps);
-  offset_rotary_ = static_cast<std::size_t>(std::count_if(steps_.begin(), end, is_turn));
+  tip_turns_ = static_cast<std::size_t>(std::count_if(steps_.begin(), end, is_turn));
 }
 
 // Turns, which place the tip, and then three linear axes; what follows are turns that do not count.
@@ -287,7 +305,6 @@ void VolumetricEvaluation::find_straight_way(const MachineChain& chain, const Er
     const bool is_ideal_turn = step.move == VolumetricMove::turn || is_frame(step);
     if (n < first ? !is_ideal_turn : !is_shift(step)) return;
   }
-  tip_turns_ = offset_rotary_;
   is_straight_ = true;
   for (std::size_t n = 0; n < kStraightAxes; ++n) {
     straight_.joint[n] = steps_[first + n].joint;
@@ -336,16 +353,9 @@ void VolumetricEvaluation::lay_out_straight_powers() {
 
 // --- evaluation ---------------------------------------------------------------------------------
 
-void VolumetricEvaluation::one_with_data(VolumetricKernel::One call, std::size_t turned,
-                                         const Joints& Q, const Vector3d& p_ST, double* out) const {
-  OnePoseData data;
-  for (std::size_t n = 0; n < turned; ++n) {
-    const JointMotion m = motion_at(rotary_[n], Q[rotary_[n].joint]);
-    const auto joint = static_cast<std::size_t>(rotary_[n].joint);
-    data.cosine[joint] = m.cosine;
-    data.sine[joint] = m.sine;
-  }
-  if (program_.functions.has_terms) data.tables = {};
+void VolumetricEvaluation::one_with_tables(VolumetricKernel::One call, const Joints& Q,
+                                           const Vector3d& p_ST, double* out) const {
+  OnePoseData data{};
   functions_.tables_at([&](std::size_t joint) { return Q[static_cast<int>(joint)]; },
                        [&](std::size_t axis, std::size_t component, double value) {
                          data.tables.e[component][axis] += value;
@@ -353,25 +363,9 @@ void VolumetricEvaluation::one_with_data(VolumetricKernel::One call, std::size_t
   call(program_, &data, Q.data(), p_ST.data(), out);
 }
 
-// Eight poses, with what the kernel does not compute.
-void VolumetricEvaluation::eight(VolumetricKernel::Many call, std::size_t turned, const Joints* Q,
-                                 const Vector3d& p_ST, double* out) const {
-  EightPosesData data;
-  for (std::size_t n = 0; n < turned; ++n) {
-    const ChainAxis& axis = rotary_[n];
-    const auto joint = static_cast<std::size_t>(axis.joint);
-    JointMotion m;
-    for (std::size_t lane = 0; lane < kLaneWidth; ++lane) {
-      // a rotary axis often stands still
-      const double q = Q[lane][axis.joint];
-      if (lane == 0 || q != Q[lane - 1][axis.joint]) m = motion_at(axis, q);
-      data.cosine[joint][lane] = m.cosine;
-      data.sine[joint][lane] = m.sine;
-    }
-  }
-  if (program_.functions.has_terms) {
-    for (std::size_t joint = 0; joint < program_.functions.axes; ++joint) data.tables[joint] = {};
-  }
+void VolumetricEvaluation::eight_with_tables(VolumetricKernel::Many call, const Joints* Q,
+                                             const Vector3d& p_ST, double* out) const {
+  EightPosesData data{};
   for (std::size_t lane = 0; lane < kLaneWidth; ++lane) {
     functions_.tables_at([&](std::size_t joint) { return Q[lane][static_cast<int>(joint)]; },
                          [&](std::size_t axis, std::size_t component, double value) {
@@ -402,27 +396,27 @@ constexpr std::size_t kTool = 6, kOffset = 3;  // numbers
 
 }  // namespace
 
-void VolumetricEvaluation::many(VolumetricKernel::Many call, std::size_t turned,
-                                std::size_t numbers, std::span<const Joints> Q,
-                                const Vector3d& p_ST, double* out) const {
+void VolumetricEvaluation::many(VolumetricKernel::Many call, std::size_t numbers,
+                                std::span<const Joints> Q, const Vector3d& p_ST,
+                                double* out) const {
   in_blocks(Q, numbers, out, [&](const Joints* poses, std::size_t blocks, double* to) {
-    if (turned == 0 && !functions_.has_tables()) {
+    if (!functions_.has_tables()) {
       call(program_, nullptr, poses->data(), blocks, p_ST.data(), to);
       return;
     }
     for (std::size_t n = 0; n < blocks; ++n) {
-      eight(call, turned, poses + n * kLaneWidth, p_ST, to + n * kLaneWidth * numbers);
+      eight_with_tables(call, poses + n * kLaneWidth, p_ST, to + n * kLaneWidth * numbers);
     }
   });
 }
 
 void VolumetricEvaluation::tools(std::span<const Joints> Q, const Vector3d& p_ST,
                                  double* out) const {
-  many(kernel_.tools, rotary_.size(), kTool, Q, p_ST, out);
+  many(kernel_.tools, kTool, Q, p_ST, out);
 }
 void VolumetricEvaluation::errors(std::span<const Joints> Q, const Vector3d& p_ST,
                                   double* out) const {
-  many(kernel_.errors, rotary_.size(), kTool, Q, p_ST, out);
+  many(kernel_.errors, kTool, Q, p_ST, out);
 }
 
 // --- offsets ------------------------------------------------------------------------------------
@@ -459,7 +453,7 @@ void VolumetricEvaluation::offset(const Joints& Q, const Vector3d& p_ST, double*
     return;
   }
   if (!is_straight_) {
-    one(kernel_.offset, offset_rotary_, Q, p_ST, out);
+    one(kernel_.offset, Q, p_ST, out);
     return;
   }
   const auto at = [&](std::size_t joint) { return Q[static_cast<int>(joint)]; };
@@ -476,7 +470,7 @@ void VolumetricEvaluation::offsets(std::span<const Joints> Q, const Vector3d& p_
   if (is_straight_) {
     straight_offsets(Q, p_ST, out);
   } else {
-    many(kernel_.offsets, offset_rotary_, kOffset, Q, p_ST, out);
+    many(kernel_.offsets, kOffset, Q, p_ST, out);
   }
 }
 

@@ -79,10 +79,10 @@ class VolumetricEvaluation {
   VolumetricEvaluation& operator=(const VolumetricEvaluation&) = delete;
 
   void tool(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const {
-    one(kernel_.tool, rotary_.size(), Q, p_ST, out);
+    one(kernel_.tool, Q, p_ST, out);
   }
   void error(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const {
-    one(kernel_.error, rotary_.size(), Q, p_ST, out);
+    one(kernel_.error, Q, p_ST, out);
   }
   void offset(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const;
   void tools(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
@@ -109,20 +109,20 @@ class VolumetricEvaluation {
                          const ErrorModel& errors);
   void lay_out_straight_powers();
 
-  void one(VolumetricKernel::One call, std::size_t turned, const Joints& Q,
-           const Eigen::Vector3d& p_ST, double* out) const {
-    if (turned == 0 && !functions_.has_tables()) {
-      call(program_, nullptr, Q.data(), p_ST.data(), out);
+  void one(VolumetricKernel::One call, const Joints& Q, const Eigen::Vector3d& p_ST,
+           double* out) const {
+    if (functions_.has_tables()) {
+      one_with_tables(call, Q, p_ST, out);
     } else {
-      one_with_data(call, turned, Q, p_ST, out);
+      call(program_, nullptr, Q.data(), p_ST.data(), out);
     }
   }
-  void one_with_data(VolumetricKernel::One call, std::size_t turned, const Joints& Q,
-                     const Eigen::Vector3d& p_ST, double* out) const;
-  void many(VolumetricKernel::Many call, std::size_t turned, std::size_t numbers,
-            std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
-  void eight(VolumetricKernel::Many call, std::size_t turned, const Joints* Q,
-             const Eigen::Vector3d& p_ST, double* out) const;
+  void one_with_tables(VolumetricKernel::One call, const Joints& Q, const Eigen::Vector3d& p_ST,
+                       double* out) const;
+  void many(VolumetricKernel::Many call, std::size_t numbers, std::span<const Joints> Q,
+            const Eigen::Vector3d& p_ST, double* out) const;
+  void eight_with_tables(VolumetricKernel::Many call, const Joints* Q, const Eigen::Vector3d& p_ST,
+                         double* out) const;
   void straight_offsets(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
   template <class Coordinate>
   Eigen::Vector3d tip_before_linear_axes(const Coordinate& q, const Eigen::Vector3d& p_ST) const;
@@ -134,14 +134,13 @@ class VolumetricEvaluation {
   std::vector<VolumetricStep> steps_;
   PreparedFunctions functions_;    // axes counted as joints
   std::vector<ChainAxis> rotary_;  // in the order of the steps
-  std::size_t offset_rotary_ = 0;  // those among the steps that offsets need
 
   bool is_straight_ = false, is_plain_ = false;
   StraightKernel straight_kernel_{};
   StraightProgram straight_{};
   PreparedFunctions straight_functions_;  // axes counted as the tool passes them
   std::vector<StraightPower> straight_powers_;
-  std::size_t tip_turns_ = 0;  // rotary axes before the linear ones
+  std::size_t tip_turns_ = 0;  // rotary axes among the steps that offsets need
 };
 
 }  // namespace servomill::plant

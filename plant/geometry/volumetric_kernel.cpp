@@ -22,6 +22,23 @@ SERVOMILL_INLINE bool is_frame(const VolumetricStep& step) {
   return step.move >= VolumetricMove::enter_frame;
 }
 
+// The motion of a tilted turn.
+SERVOMILL_INLINE void find_motion(const VolumetricStep& step, double c, double s, double* M) {
+  const Register cosine = all<Register>(c), sine = all<Register>(s);
+  for (std::size_t i = 0; i < kMotionNumbers; i += kRegister) {
+    store(fma(sine, load(step.turning[1] + i),
+              fma(cosine, load(step.turning[0] + i), load(step.still + i))),
+          M + i);
+  }
+}
+SERVOMILL_INLINE void find_motion(const VolumetricStep& step, const Register& c, const Register& s,
+                                  Register* M) {
+  repeat<12>([&](auto i) SERVOMILL_INLINE_LAMBDA {
+    M[i] = fma(s, all<Register>(step.turning[1][i]),
+               fma(c, all<Register>(step.turning[0][i]), all<Register>(step.still[i])));
+  });
+}
+
 // The true tool, and the ideal one where it is asked for; the axis where it is asked for.
 template <class N, bool kAxis, bool kIdeal>
 struct Tools {
@@ -38,10 +55,18 @@ struct Tools {
     p = plus(turned(about, c, s, minus(p, centre)), centre);
     if constexpr (kAxis) k = turned(about, c, s, k);
   }
-  SERVOMILL_INLINE void tilted_turn(int about, const N& c, const N& s, const VolumetricStep& step) {
-    const Vector<N> u = minus(transpose_times(step.R, minus(p, step.centre)), step.t);
-    p = plus(times(step.R, plus(turned(about, c, s, u), step.t)), step.centre);
-    if constexpr (kAxis) k = times(step.R, turned(about, c, s, transpose_times(step.R, k)));
+  SERVOMILL_INLINE void tilted_turn(const N& c, const N& s, const VolumetricStep& step) {
+    N M[kMotionNumbers];
+    find_motion(step, c, s, M);
+    const N* const d = M + 9;
+    p = {fma(M[2], p.v[2], fma(M[1], p.v[1], fma(M[0], p.v[0], d[0]))),
+         fma(M[5], p.v[2], fma(M[4], p.v[1], fma(M[3], p.v[0], d[1]))),
+         fma(M[8], p.v[2], fma(M[7], p.v[1], fma(M[6], p.v[0], d[2])))};
+    if constexpr (kAxis) {
+      k = {fma(M[2], k.v[2], fma(M[1], k.v[1], M[0] * k.v[0])),
+           fma(M[5], k.v[2], fma(M[4], k.v[1], M[3] * k.v[0])),
+           fma(M[8], k.v[2], fma(M[7], k.v[1], M[6] * k.v[0]))};
+    }
   }
   SERVOMILL_INLINE void enter(const VolumetricStep& frame) {
     p = transpose_times(frame.R, minus(p, frame.centre));
@@ -109,7 +134,7 @@ SERVOMILL_INLINE void go(const VolumetricProgram& program, std::size_t steps, So
         if (step->move == VolumetricMove::turn) {
           tools.turn(axis, c, s, step->centre);
         } else {
-          tools.tilted_turn(axis, c, s, *step);
+          tools.tilted_turn(c, s, *step);
         }
         tools.ideal_turn(axis, c, s, step->centre);
       });
@@ -127,6 +152,10 @@ SERVOMILL_INLINE Vector<N> at_tip(const double* p_ST) {
 }
 
 enum class Number { tool, error, offset };
+
+SERVOMILL_INLINE std::size_t place(std::size_t joint) {  // among the turned ones
+  return joint - (kMachineJoints - kTurnedJoints);
+}
 
 // What a call computes, and for which programs.
 struct Wanted {
@@ -170,6 +199,34 @@ SERVOMILL_INLINE void solve(const VolumetricProgram& program, Source& at, const 
 
 // --- one pose: axes in lanes --------------------------------------------------------------------
 
+// Of the turned joints.
+struct Turned {
+  double sine[kTurnedJoints], cosine[kTurnedJoints];
+};
+
+[[gnu::noinline]] void turn_far(const VolumetricProgram& program, const double* q, Turned& turned) {
+  for (std::size_t n = 0; n < kTurnedJoints; ++n) {
+    const double at = program.senses[n] * q[n];
+    const auto [s, c] = is_large(at) ? large_sine_and_cosine(at) : sine_and_cosine(at);
+    turned.sine[n] = s;
+    turned.cosine[n] = c;
+  }
+}
+
+SERVOMILL_INLINE void turn(const VolumetricProgram& program, const double* Q, Turned& turned) {
+  const double* const q = Q + kMachineJoints - kTurnedJoints;
+  if (is_large(q[0]) || is_large(q[1])) {
+    turn_far(program, q, turned);
+    return;
+  }
+  const auto [s, c] = sine_and_cosine<Register>(lanes_from(
+      [&](std::size_t n) { return n < kTurnedJoints ? program.senses[n] * q[n] : 0.0; }));
+  for (std::size_t n = 0; n < kTurnedJoints; ++n) {
+    turned.sine[n] = s[n];
+    turned.cosine[n] = c[n];
+  }
+}
+
 // Faults of all joints, one of which is read where it lies.
 struct OnePoseFaults {
   LaneArray w_[3], a_[3], h_[3];
@@ -193,13 +250,13 @@ struct FaultInMemory {
 };
 
 struct OnePose {
-  const OnePoseData* data;
+  const Turned& turned;
   const double* Q;
   const OnePoseFaults& faults;
 
   SERVOMILL_INLINE double q(std::size_t joint) const { return Q[joint]; }
-  SERVOMILL_INLINE double cosine(std::size_t joint) const { return data->cosine[joint]; }
-  SERVOMILL_INLINE double sine(std::size_t joint) const { return data->sine[joint]; }
+  SERVOMILL_INLINE double cosine(std::size_t joint) const { return turned.cosine[place(joint)]; }
+  SERVOMILL_INLINE double sine(std::size_t joint) const { return turned.sine[place(joint)]; }
   SERVOMILL_INLINE FaultInMemory fault(const VolumetricStep& step, double) const {
     return {faults, step.joint};
   }
@@ -209,6 +266,8 @@ struct OnePose {
 template <Way way, Wanted wanted>
 SERVOMILL_INLINE bool try_one(const VolumetricProgram& program, const OnePoseData* data,
                               const double* Q, const double* p_ST, double* out) {
+  Turned turned;
+  if (program.has_turns) turn(program, Q, turned);
   OnePoseFaults faults;
   const VolumetricPower* const tables = data != nullptr ? &data->tables : nullptr;
   const VolumetricFunctions& functions = program.functions;
@@ -218,7 +277,7 @@ SERVOMILL_INLINE bool try_one(const VolumetricProgram& program, const OnePoseDat
   if (!find_faults<way, kMachineJoints>(functions, functions.has_angles, tables, Q, keep)) {
     return false;
   }
-  OnePose at{data, Q, faults};
+  OnePose at{turned, Q, faults};
   solve<wanted>(program, at, p_ST, out);
   return true;
 }
@@ -242,20 +301,32 @@ void one(const VolumetricProgram& program, const OnePoseData* data, const double
 using Coordinates = Register[kMachineJoints];
 using ManyTerms = Register[kMachineJoints][kErrorComponents];
 
+[[gnu::noinline]] void turn_far(const Register& q, SineAndCosine<Register>& turned) {
+  for (std::size_t lane = 0; lane < kRegister; ++lane) {
+    if (!is_large(q[lane])) continue;
+    const auto [s, c] = large_sine_and_cosine(q[lane]);
+    turned.sine[lane] = s;
+    turned.cosine[lane] = c;
+  }
+}
+
+SERVOMILL_INLINE void turn(const Register& q, SineAndCosine<Register>& turned) {
+  turned = sine_and_cosine(q);
+  const bool are_all_near = xsimd::all(xsimd::abs(Batch(q)) < Batch(kLargestAngle));
+  if (!are_all_near) turn_far(q, turned);
+}
+
 template <Way way>
 struct PosesInLanes {
   const VolumetricProgram& program;
-  const EightPosesData* data;
-  std::size_t first;  // of the eight
   const Coordinates& Q;
+  const SineAndCosine<Register> (&turned)[kTurnedJoints];
   const ManyTerms& sums;
   Register t2_max;
 
   SERVOMILL_INLINE Register q(std::size_t joint) const { return Q[joint]; }
-  SERVOMILL_INLINE Register cosine(std::size_t joint) const {
-    return load(data->cosine[joint], first);
-  }
-  SERVOMILL_INLINE Register sine(std::size_t joint) const { return load(data->sine[joint], first); }
+  SERVOMILL_INLINE Register cosine(std::size_t joint) const { return turned[place(joint)].cosine; }
+  SERVOMILL_INLINE Register sine(std::size_t joint) const { return turned[place(joint)].sine; }
   SERVOMILL_INLINE Fault fault(const VolumetricStep& step, const Register& q) {
     const std::size_t joint = step.joint;
     const auto coefficient = [&](std::size_t power, std::size_t component) {
@@ -285,7 +356,13 @@ SERVOMILL_INLINE bool try_many(const VolumetricProgram& program, const EightPose
     const VolumetricPower* const tables = data != nullptr ? data->tables : nullptr;
     if (program.functions.has_terms) find_terms(program.functions, tables, first, q, sums);
   }
-  PosesInLanes<way> at{program, data, first, q, sums, Register{}};
+  SineAndCosine<Register> turned[kTurnedJoints];
+  if (program.has_turns) {
+    repeat<kTurnedJoints>([&](auto n) SERVOMILL_INLINE_LAMBDA {
+      turn(program.senses[n] * q[kMachineJoints - kTurnedJoints + n], turned[n]);
+    });
+  }
+  PosesInLanes<way> at{program, q, turned, sums, Register{}};
   Register result[kNumbers<wanted>];
   solve<wanted>(program, at, p_ST, result);
   if (way != Way::general && !are_small_turns(at.t2_max)) return false;

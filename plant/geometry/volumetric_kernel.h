@@ -23,6 +23,7 @@
 namespace servomill::plant {
 
 inline constexpr std::size_t kMachineJoints = 5;
+inline constexpr std::size_t kTurnedJoints = 2;     // the last ones
 inline constexpr std::size_t kErrorComponents = 6;  // along X, Y, Z, about A, B, C
 
 /// Turns below this use the series of their sine and cosine, whose next term is below 1e-16.
@@ -38,14 +39,18 @@ enum class VolumetricMove : std::uint8_t {
   leave_frame    // p <- R p + c
 };
 
+/// p <- M p + d, k <- M k: the numbers of M, row by row, and of d (m), then gaps.
+inline constexpr std::size_t kMotionNumbers = 16;
+
 struct VolumetricStep {
   VolumetricMove move;
   bool has_angles, has_lever;     // a fault: turns the tool; c or lever_slope is not 0
   std::uint8_t direction, joint;  // 0, 1, 2: along X, Y, Z or about A, B, C; place in Joints
   double centre[3];               // m, c: where the lever of a fault and a turn begin at q = 0
   double lever_slope[3];          // m/m: c moves by -lever_slope q (workpiece side)
-  double R[3][3], t[3];           // m; a tilted turn is R T J T^-1 R^T with T = Trans(t);
-                                  // of a frame: its orientation
+  double R[3][3];                 // of a frame: its orientation
+  // of a tilted turn: its motion is still + cosine turning[0] + sine turning[1]
+  double still[kMotionNumbers], turning[2][kMotionNumbers];
 };
 
 /// Eight waves sin(omega q + phase).
@@ -87,21 +92,21 @@ struct VolumetricProgram {
   std::size_t offset_steps;       // without the last ones, ideal turns, which offsets undo at once
   std::size_t linear_end;         // behind the last linear step: no other shift follows
   VolumetricFunctions functions;  // counted as joints
+  bool has_turns;
+  double senses[kTurnedJoints];  // -1 where the joint counts the turn of a table
 };
 
-/// What the kernel does not compute: turned rotary joints, and values of tables.
+/// What the kernel does not compute: values of tables.
 struct OnePoseData {
-  double cosine[kMachineJoints], sine[kMachineJoints];
   VolumetricPower tables;  // lanes: joints
 };
 struct EightPosesData {
-  LaneArray cosine[kMachineJoints], sine[kMachineJoints];  // lanes: poses
-  VolumetricPower tables[kMachineJoints];                  // lanes: poses
+  VolumetricPower tables[kMachineJoints];  // lanes: poses
 };
 
 /// Q: joints of one pose (5), or of `blocks` times eight poses one behind the other. p_ST: tip in
 /// the spindle nose (3). Data: one, or one for each block; may be null where the program has
-/// neither turns nor tables. out: offset 3; tool 6 (tip, axis); error 6 (of the tip, of the axis)
+/// no tables. out: offset 3; tool 6 (tip, axis); error 6 (of the tip, of the axis)
 /// per pose.
 struct VolumetricKernel {
   using One = void (*)(const VolumetricProgram&, const OnePoseData*, const double* Q,

@@ -13,6 +13,7 @@
 #include <xsimd/xsimd.hpp>
 
 #include "plant/vocabulary/lanes.h"
+#include "plant/vocabulary/sine_and_cosine.h"
 
 #define SERVOMILL_INLINE [[gnu::always_inline]] inline
 #define SERVOMILL_INLINE_LAMBDA __attribute__((always_inline))
@@ -127,16 +128,6 @@ SERVOMILL_INLINE Pair fnma(const Pair& a, const Pair& b, const Pair& c) {
 SERVOMILL_INLINE Pair fms(const Pair& a, const Pair& b, const Pair& c) {
   return {fms(a.first, b.first, c.first), fms(a.second, b.second, c.second)};
 }
-
-// As many whole numbers.
-template <class N>
-struct WholeNumbers {
-  using Type [[gnu::vector_size(sizeof(N))]] = long long;
-};
-template <>
-struct WholeNumbers<double> {
-  using Type = long long;
-};
 
 // The sine, with an error below one unit in the last place of 1: Taylor's series of x less the
 // nearest multiple n of pi, which is subtracted in three parts. The products of the first two are

@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "plant/vocabulary/sine_and_cosine.h"
+
 namespace servomill::plant {
 namespace {
 
@@ -70,7 +72,8 @@ JointMotion motion_at(const ChainAxis& axis, double q) {
   if (is_linear(axis.axis)) return {.shift = q};
   if (q == 0.0) return {};
   if (axis.sense == Sense::table) q = -q;
-  return {.cosine = std::cos(q), .sine = std::sin(q)};
+  const auto [sine, cosine] = is_large(q) ? large_sine_and_cosine(q) : sine_and_cosine(q);
+  return {.cosine = cosine, .sine = sine};
 }
 
 ToolPose forward(const MachineChain& chain, const Joints& Q, const Eigen::Vector3d& p_ST) {
