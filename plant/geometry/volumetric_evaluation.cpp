@@ -1,5 +1,6 @@
 #include "plant/geometry/volumetric_evaluation.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cassert>
