@@ -180,7 +180,7 @@ class Problem {
     for (std::size_t run = 0; run < machines.size(); ++run) {
       if (run % kLaneWidth == 0) feedbacks_.emplace_back(axes_, run);
       feedbacks_.back().add(run, *virtual_encoder_, kVolumetric * kTick);
-      axes_.settle(Joints::Zero(), Eigen::Vector3d::Zero(), run);
+      axes_.settle(Joints::Zero(), Joints::Zero(), run);
     }
   }
 

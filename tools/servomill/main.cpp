@@ -104,8 +104,8 @@ int guarded(const servomill::tools::Arguments& arguments) {
   } catch (const std::length_error&) {  // more than any memory could hold
     fmt::print(stderr, "servomill: not enough memory\n");
     return tools::kSystemFailed;
-  } catch (const std::system_error& error) {  // standard output, threads
-    fmt::print(stderr, "servomill: {}\n", error.what());
+  } catch (const std::system_error& error) {  // threads; of standard output main() tells
+    if (std::ferror(stdout) == 0) fmt::print(stderr, "servomill: {}\n", error.what());
     return tools::kSystemFailed;
   } catch (const std::exception& error) {
     fmt::print(stderr, "servomill: internal error: {}\n", error.what());
