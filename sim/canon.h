@@ -22,8 +22,8 @@ struct ProgramInputs {
 std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& inputs,
                          const std::function<void(const std::string&)>& line);
 
-/// All faults of a file: scenario or machine (.toml), cutter locations (.cls, .apt, .csv) or program
-/// (anything else).
+/// All faults of a file: scenario or machine (.toml), cutter locations (.cls, .apt, .csv) or
+/// program (anything else).
 /// @param changes     what --set says, for scenarios
 /// @param inputs   for programs
 std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,

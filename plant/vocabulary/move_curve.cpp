@@ -17,8 +17,8 @@ MoveCurve::MoveCurve(const AxisWords& from, const Move& move) : from_(from), to_
   if (move.kind == MoveKind::arc && move.plane) {
     plane_ = move.plane;
     const Eigen::Vector3d begin = plane_->R.transpose() * (from.head<3>() - plane_->origin);
-    arc_ = ArcSweep(begin, move.end.head<3>(), move.arc.centre, move.arc.normal_axis,
-                    move.arc.turns);
+    arc_ =
+        ArcSweep(begin, move.end.head<3>(), move.arc.centre, move.arc.normal_axis, move.arc.turns);
   } else if (move.kind == MoveKind::arc) {
     arc_ = arc_sweep(move, from.head<3>());
   }
