@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -72,15 +73,30 @@ void take_tools(const PostRequest& request, const controllers::ClData& data,
   if (!request.tool_table.empty()) {
     options.tools = controllers::ToolTable::parse(read_file(request.tool_table, {}, "tool table"),
                                                   request.tool_table);
-  } else if (request.tool_length > 0.0) {
+  } else if (request.tool_length) {
     if (options.tool == 0) options.tool = 1;
     for (const int number : tools_loaded(data, options.tool)) {
       controllers::ToolEntry tool;
       tool.number = number;
-      tool.offset[index_of(Axis::Z)] = request.tool_length;
+      tool.offset[index_of(Axis::Z)] = *request.tool_length;
       options.tools.add(tool);
     }
   }
+}
+
+// Where the head turns, the axes go with the length of the tool; elsewhere G43 takes it into
+// account.
+void refuse_unknown_length(const PostRequest& request, const plant::MachineChain& chain) {
+  const bool head_turns =
+      std::any_of(chain.axes.begin(), chain.axes.end(), [](const plant::ChainAxis& axis) {
+        return axis.side == plant::Side::tool && !is_linear(axis.axis);
+      });
+  const bool is_known = request.tool_length || !request.tool_table.empty();
+  if (!head_turns || is_known || request.options.mode == controllers::PostMode::tip) return;
+  throw InputError(
+      {request.cl_file},
+      "the length of the tool is not given, and the head of this machine turns it; add "
+      "--tool-length or --tools");
 }
 
 std::string header(const PostRequest& request, const controllers::PostOptions& options,
@@ -118,6 +134,7 @@ PostedFile post_file(PostRequest request) {
   const MachineSettings machine = read_changed_machine(request.machine_file, request.changes);
   const controllers::ClData data = controllers::read_cl_data(
       read_file(request.cl_file, {}, "cutter location file"), request.cl_file);
+  refuse_unknown_length(request, machine.chain);
   controllers::PostOptions& options = request.options;
   options.start = joints_of(request.start, machine.chain.layout);
   take_tools(request, data, options);

@@ -1,6 +1,7 @@
 /// Cutter locations in a file to a program in a file.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,9 +12,9 @@ namespace servomill::sim {
 
 struct PostRequest {
   std::string cl_file, machine_file;
-  std::vector<std::string> changes;  // "KEY=VALUE": of the machine
-  std::string tool_table;            // of LinuxCNC's format; empty: none
-  double tool_length = 0.0;          // m, of every tool; without a table
+  std::vector<std::string> changes;   // "KEY=VALUE": of the machine
+  std::string tool_table;             // of LinuxCNC's format; empty: none
+  std::optional<double> tool_length;  // m, of every tool; without table
   std::string start;  // "A=10,C=90" in mm and deg: options.start; empty: all axes at zero
   controllers::PostOptions options;  // tools and start are filled in
 };

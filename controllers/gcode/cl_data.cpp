@@ -242,9 +242,10 @@ class AptReader : ClReader {
   }
 
   void unknown(Spot at, const std::string& name) {
-    static constexpr std::array<std::string_view, 16> kChangeTheWay = {
-        "CIRCLE", "COPY",   "CUTCOM", "CYCLE",  "GODLTA", "INDEX", "MODE",   "MSYS",
-        "OFSTNO", "ORIGIN", "ROTABL", "ROTATE", "ROTHED", "TMARK", "TRACUT", "TRANS"};
+    static constexpr std::array<std::string_view, 27> kChangeTheWay = {
+        "CIRCLE", "COPY",   "CUTCOM", "CYCLE", "GOBACK", "GODLTA", "GODOWN", "GOFWD",  "GOHOME",
+        "GOLFT",  "GORGT",  "GOUP",   "INDEX", "MODE",   "MOVARC", "MSYS",   "OFSTNO", "ORIGIN",
+        "ROTABL", "ROTATE", "ROTHED", "TLLFT", "TLON",   "TLRGT",  "TMARK",  "TRACUT", "TRANS"};
     static constexpr std::array<std::string_view, 10> kDescribe = {
         "CUTTER", "END-OF-PATH", "FROM",   "INTOL",     "MACHIN",
         "OUTTOL", "PAINT",       "TLDATA", "TOOL PATH", "TOLER"};

@@ -91,5 +91,25 @@ TEST(PostFile, HeaderSaysWhatTheNcMustKnow) {
       << program.substr(0, 400);
 }
 
+// What the head turns goes with the length of the tool; a table does not care.
+TEST(PostFile, AHeadNeedsTheLengthOfTheTool) {
+  PostRequest request = request_of("table32.csv");
+  request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/generic_head_table_bc.toml";
+  request.options.feed = 300 * mm_per_min;
+  try {
+    post_file(request);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), request.cl_file +
+                                ": error: the length of the tool is not given, and the head of "
+                                "this machine turns it; add --tool-length or --tools");
+  }
+  request.tool_length = 0.0;  // said on purpose
+  EXPECT_NO_THROW(post_file(request));
+  request.tool_length.reset();
+  request.options.mode = controllers::PostMode::tip;  // the NC knows
+  EXPECT_NO_THROW(post_file(request));
+}
+
 }  // namespace
 }  // namespace servomill::sim

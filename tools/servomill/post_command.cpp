@@ -71,7 +71,7 @@ sim::PostRequest request_of(const Options& options) {
   request.changes = options.list("set");
   if (options.has("tools")) request.tool_table = options.get<std::string>("tools");
   if (options.has("tool-length")) {
-    request.tool_length = number_option(options, "tool-length", kLeast, kMost) * mm;
+    request.tool_length = number_option(options, "tool-length", 0.0, kMost) * mm;
   }
   if (options.has("start")) request.start = options.get<std::string>("start");
   controllers::PostOptions& post = request.options;

@@ -205,6 +205,12 @@ TEST(ClData, FaultsOfApt) {
   EXPECT_EQ(apt_fault("  CIRCLE/0,0,0,0,0,1,5\n"),
             "p.cls:1:3: error: CIRCLE changes where the tool goes and is not supported; write the "
             "locations out as GOTO");
+  for (const std::string word : {"MOVARC/0,0,0,0,0,1,5,ANGLE,90", "GOHOME", "GOFWD/L1"}) {
+    const std::string name = word.substr(0, word.find('/'));
+    EXPECT_EQ(apt_fault(word + "\n"), "p.cls:1:1: error: " + name +
+                                          " changes where the tool goes and is not supported; "
+                                          "write the locations out as GOTO");
+  }
   EXPECT_EQ(apt_fault("FEDRAT/0,MMPM\n"), "p.cls:1:8: error: a feed must be > 0");
   EXPECT_EQ(apt_fault("FEDRAT/MMPM\n"), "p.cls:1:1: error: FEDRAT needs a number");
   EXPECT_EQ(apt_fault("FEDRAT/10,MPM\n"),
