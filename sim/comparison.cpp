@@ -11,6 +11,7 @@
 #include <limits>
 #include <optional>
 
+#include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
 #include "sim/case_samples.h"
 #include "sim/circular_quantities.h"
@@ -179,8 +180,7 @@ std::vector<double> tool_axis_deviation(const CaseData& one, const std::vector<s
   const std::size_t actual = *one.servo->column("tool_axis_true", 'I');
   std::vector<double> out;
   for (const std::size_t row : rows) {
-    const Eigen::Vector3d n = vector_at(one, row, nominal), a = vector_at(one, row, actual);
-    out.push_back(std::atan2(n.cross(a).norm(), n.dot(a)) / urad);
+    out.push_back(angle_between(vector_at(one, row, nominal), vector_at(one, row, actual)) / urad);
   }
   return out;
 }

@@ -39,7 +39,7 @@ class ExactStrategy final : public Strategy {
     return with_points(moves, belief_, [&](const Joints& Q_0, const Joints& Q_1) {
       const ToolPose P_0 = plant::forward(inverse_.chain(), Q_0, belief_.p_ST);
       const ToolPose P_1 = plant::forward(inverse_.chain(), Q_1, belief_.p_ST);
-      if (plant::angle_between(P_0.k_W, P_1.k_W) >= plant::kRoundTurn) {
+      if (angle_between(P_0.k_W, P_1.k_W) >= plant::kRoundTurn) {
         throw InputError(Place{}, "the tool axis turns round: no way of turning is the shortest");
       }
       plant::LinearisedPath way = plant::linearise(

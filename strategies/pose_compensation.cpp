@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "plant/vocabulary/tool_axis.h"
+
 namespace servomill::strategies {
 namespace {
 
@@ -100,8 +102,7 @@ Joints PoseCompensation::displacement(Wanted wanted, const Joints& Q) const {
 Leftover PoseCompensation::leftover(const Joints& Q, const Joints& d) const {
   const ToolPose wanted = plant::forward(belief_.model.chain(), Q, belief_.p_ST);
   const ToolPose got = belief_.model.forward(Q + d, belief_.p_ST);
-  return {(got.p_WT - wanted.p_WT).norm(),
-          std::atan2(got.k_W.cross(wanted.k_W).norm(), got.k_W.dot(wanted.k_W))};
+  return {(got.p_WT - wanted.p_WT).norm(), angle_between(got.k_W, wanted.k_W)};
 }
 
 }  // namespace servomill::strategies

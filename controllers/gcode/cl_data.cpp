@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "controllers/gcode/modal_state.h"
+#include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {

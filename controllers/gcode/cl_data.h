@@ -60,10 +60,6 @@ struct ClData {
   std::size_t locations() const;
 };
 
-/// A tool axis whose length differs from 1 by more is made a unit vector with a warning. Rounding
-/// its components to four decimals, as CAM systems do, changes the length by up to 0.87e-4.
-inline constexpr double kAxisLengthTolerance = 1e-4;
-
 /// @param file  name for messages; its ending tells the form
 /// @throws InputError with every fault: among them a tool axis without a direction, a file without
 /// a location

@@ -15,6 +15,7 @@
 #include "controllers/gcode/parser.h"
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/arc_sweep.h"
+#include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
@@ -22,7 +23,6 @@ namespace {
 
 constexpr double kIntegerTol = 1e-4;     // as LinuxCNC, for words that must be integers
 constexpr double kTurnsTol = 1e-3;       // as LinuxCNC, for P of an arc
-constexpr double kUnitTol = 1e-4;        // of a tool axis with four decimals
 constexpr double kLeastVector = 1e-6;    // length of a tool axis; below it is zero
 constexpr double kSlowestInverse = 0.1;  // mm, inch or deg per minute; as LinuxCNC
 
@@ -738,7 +738,7 @@ Eigen::Vector3d Interpreter::Machine::programmed_axis() {
   const char first = request().has('I') ? 'I' : request().has('J') ? 'J' : 'K';
   const double length = given.norm();
   if (!(length > kLeastVector)) fail_at(first, "the tool axis I J K has length zero");
-  if (std::abs(length - 1.0) > kUnitTol) {
+  if (std::abs(length - 1.0) > kAxisLengthTolerance) {
     warnings_.push_back(
         {{file_, lines_.number(), request().word(first).column},
          fmt::format("the tool axis I J K has length {:.6g}; taken as a unit vector", length)});

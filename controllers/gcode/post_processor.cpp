@@ -108,7 +108,7 @@ class Post {
   }
 
   void feed_to(const ToolPose& P, int line, double feed) {
-    if (plant::angle_between(here_.k_W, P.k_W) >= plant::kRoundTurn) {
+    if (angle_between(here_.k_W, P.k_W) >= plant::kRoundTurn) {
       return fault(line, "the tool axis turns round: no way of turning is the shortest");
     }
     const plant::JointSolution end = inverse_.nearest(P, p_ST_, Q_);

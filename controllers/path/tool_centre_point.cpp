@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
@@ -21,10 +22,6 @@ constexpr double kOpposite = 1e-6;       // rad, from half a turn: no plane is g
 constexpr double kLeastTurn = 1e-12;     // rad of the tool axis; what changes within is a jump
 constexpr double kUneven = 0.1;          // of the chord, by which joints may leave it evenly
 constexpr std::array<double, 3> kLooks = {0.25, 0.5, 0.75};  // where a chord is compared
-
-double angle_between(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 plant::InverseSettings rotary_travel(const Joints& lower, const Joints& upper) {
   plant::InverseSettings settings;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plant/vocabulary/tool_axis.h"
+
 namespace servomill::plant {
 namespace {
 
@@ -13,10 +15,6 @@ using Matrix32 = Eigen::Matrix<double, 3, 2>;
 
 constexpr double kMostTurn = 0.5;  // rad in one step; the derivatives say nothing beyond
 constexpr double kShorter = 0.25;  // where a step led away
-
-double angle_between(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 struct Turn {
   Vector2d dr;

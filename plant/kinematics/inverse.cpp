@@ -6,16 +6,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "plant/vocabulary/tool_axis.h"
+
 namespace servomill::plant {
 namespace {
 
 using Eigen::Vector3d;
 
 constexpr double kPi = std::numbers::pi, kFullTurn = 2.0 * std::numbers::pi;
-
-double angle_between(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 // Between the lines along a and b, at most a right angle.
 double angle_of_lines(double angle) { return std::min(angle, kPi - angle); }

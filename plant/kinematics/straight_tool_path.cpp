@@ -60,10 +60,6 @@ class Lineariser {
 
 }  // namespace
 
-double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 StraightToolPath::StraightToolPath(const ToolPose& from, const ToolPose& to)
     : from_(from), to_(to), angle_(angle_between(from.k_W, to.k_W)) {
   assert(angle_ < kRoundTurn);

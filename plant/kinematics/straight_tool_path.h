@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "plant/kinematics/inverse.h"
+#include "plant/vocabulary/tool_axis.h"
 
 namespace servomill::plant {
 
@@ -28,9 +29,6 @@ class StraightToolPath {
 
 /// Tool axes that enclose more have no great circle between them that means anything.
 inline constexpr double kRoundTurn = 3.1415;  // rad
-
-/// Angle between two unit vectors (rad), exact for small ones, too.
-double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 /// How far the tool may be from where it should be, at equal t.
 struct ToolTolerance {

@@ -7,6 +7,7 @@
 #include <boost/random/uniform_real_distribution.hpp>
 
 #include "controllers/gcode/modal_state.h"
+#include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {

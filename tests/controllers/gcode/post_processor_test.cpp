@@ -10,8 +10,6 @@
 namespace servomill::controllers {
 namespace {
 
-using plant::angle_between;
-
 constexpr double kPrintTol = 1e-9;  // m, rad: seven decimals of mm and deg, seen from 0.3 m
 const char* const kTableTable = "[w C' A' b X Y Z t]";
 const std::array<const char*, 4> kStructures = {kTableTable, "[w C' B' X b Y Z (C1) t]",
