@@ -35,36 +35,29 @@ FeedbackLanes::Together& FeedbackLanes::of(std::size_t run) {
 }
 
 Joints FeedbackLanes::settle(std::size_t run, const Joints& Q_meas) {
-  Together& together = of(run);
-  const Joints d = together.part->settle(Q_meas, run - first_);
-  for (int j = 0; j < kJoints; ++j) together.d_next[j][run - first_] = d[j];
-  return d;
+  return of(run).part->settle(Q_meas, run - first_);
 }
 
 void FeedbackLanes::drop(std::size_t run) { use(of(run), run - first_, false); }
 
-void FeedbackLanes::evaluate() {
+void FeedbackLanes::advance() {
   bool are_read = false;
   for (Together& together : all_) {
     if (together.count == 0) continue;
     if (together.count == 1) {
-      evaluate_one(together);
+      advance_one(together);
       continue;
     }
-    axes_.displace(together.d_next, together.lanes, together.strategy->displaces_rotary(), first_);
     if (!are_read) axes_.get_readings(Q_meas_, first_);
     are_read = true;
-    together.part->evaluate(Q_meas_, together.lanes, together.d_next);
+    axes_.displace(together.part->advance(Q_meas_, together.lanes), together.lanes,
+                   together.strategy->displaces_rotary(), first_);
   }
 }
 
-void FeedbackLanes::evaluate_one(Together& one) {
+void FeedbackLanes::advance_one(Together& one) {
   const std::size_t run = first_ + one.last;
-  Joints now;
-  for (int j = 0; j < kJoints; ++j) now[j] = one.d_next[j][one.last];
-  axes_.displace(now, run);
-  const Joints d = one.part->evaluate(axes_.Q_meas(run), one.last);
-  for (int j = 0; j < kJoints; ++j) one.d_next[j][one.last] = d[j];
+  axes_.displace(one.part->advance(axes_.Q_meas(run), one.last), run);
 }
 
 }  // namespace servomill::sim

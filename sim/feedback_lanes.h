@@ -10,10 +10,9 @@
 
 namespace servomill::sim {
 
-/// The feedback hardware of eight runs that lie side by side in ServoAxes: what was evaluated one
-/// model period ago acts now, the next one is begun. Runs with one strategy are evaluated together,
-/// in the lanes in which they lie; what other lanes hold is left aside. A run that is the only one
-/// with its strategy goes by itself.
+/// The feedback hardware of eight runs that lie side by side in ServoAxes: Runs with
+/// one strategy advance together, in the lanes in which they lie; what other lanes hold is left
+/// aside. A run that is the only one with its strategy goes by itself.
 class FeedbackLanes {
  public:
   /// @param axes   must outlive this
@@ -28,7 +27,7 @@ class FeedbackLanes {
   /// The run goes on no longer.
   void drop(std::size_t run);
   /// To be called once a model period, after ServoAxes::read_scales.
-  void evaluate();
+  void advance();
 
  private:
   struct Together {
@@ -36,11 +35,10 @@ class FeedbackLanes {
     std::unique_ptr<strategies::FeedbackPart> part;
     LaneFlags lanes = {};
     std::size_t count = 0, last = 0;  // of the lanes in use
-    JointLanes d_next = {};           // acts one model period later
   };
   Together& of(std::size_t run);
   void use(Together& together, std::size_t lane, bool used);
-  void evaluate_one(Together& one);
+  void advance_one(Together& one);
 
   ServoAxes& axes_;
   std::size_t first_;

@@ -268,7 +268,7 @@ class Lockstep {
   void visit(std::uint8_t due, Tick n) {
     if (due & (kErrorModel | kRecord)) axes_.read_scales();
     if (due & kErrorModel) {
-      for (FeedbackLanes& feedback : feedbacks_) feedback.evaluate();
+      for (FeedbackLanes& feedback : feedbacks_) feedback.advance();
     }
     if (due & kSample) axes_.take_readings();
     if (due & kPositionLoop) {

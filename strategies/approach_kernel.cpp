@@ -12,13 +12,12 @@ Number limited(const Number& value, const Number& most) {
   return select(most < above, most, above);
 }
 
-void approach(double most, double most_change, std::size_t count, LaneArray* values, LaneArray* d) {
+void approach(const double* most, const double* most_change, std::size_t count,
+              const LaneArray* wanted, LaneArray* values) {
   for (std::size_t j = 0; j < count; ++j) {
     const Number value(values[j]);
-    const Number next =
-        value + limited(limited(Number(d[j]), Number(most)) - value, Number(most_change));
-    put(values[j], next);
-    put(d[j], next);
+    put(values[j], value + limited(limited(Number(wanted[j]), Number(most[j])) - value,
+                                   Number(most_change[j])));
   }
 }
 

@@ -19,10 +19,10 @@ inline double approached(double wanted, double most, double most_change, double 
   return value + limited(limited(wanted, most) - value, most_change);
 }
 
-/// approached(), of `count` joints of eight runs: of what is wanted in d. The values come next to
-/// `values` and to d, with the bits of approached().
-using Approach = void (*)(double most, double most_change, std::size_t count, LaneArray* values,
-                          LaneArray* d);
+/// approached(), of `count` joints of eight runs, with its bits: the next values replace `values`.
+/// @param most, most_change  of each joint
+using Approach = void (*)(const double* most, const double* most_change, std::size_t count,
+                          const LaneArray* wanted, LaneArray* values);
 
 /// For the instruction set of this machine.
 Approach approach_in_lanes();

@@ -66,14 +66,6 @@ struct FeedbackParams {
   double window = 0.0;               // s
 };
 
-// Joints that a vector of displacements holds.
-template <class Shifts>
-inline constexpr int kJointsOf = kLinearJoints;
-template <>
-inline constexpr int kJointsOf<Joints> = kJoints;
-template <>
-inline constexpr int kJointsOf<JointLanes> = kJoints;
-
 // Velocity of the first joints as the difference of readings over a window.
 class VelocityWindow {
  public:
@@ -89,11 +81,11 @@ class VelocityWindow {
     }
   }
   // Of one run, or of eight from the first on.
-  template <class Poses, class Shifts>
-  void advance(const Poses& reading, std::size_t first, Shifts& velocity) {
-    for (int j = 0; j < kJointsOf<Shifts>; ++j) {
+  template <class Poses, class Velocities>
+  void advance(const Poses& reading, std::size_t first, Velocities& velocity) {
+    for (int j = 0; j < joints_; ++j) {
       double* before = at(oldest_, j).data() + first;
-      for (std::size_t k = 0; k < kLanesOf<Shifts>; ++k) {
+      for (std::size_t k = 0; k < kLanesOf<Velocities>; ++k) {
         lane(velocity[j], k) = (lane(reading[j], k) - before[k]) * inverse_length_;
         before[k] = lane(reading[j], k);
       }
@@ -112,7 +104,12 @@ class VelocityWindow {
   std::size_t oldest_ = 0;
 };
 
+// Displaces the first joints: the linear ones, or all.
+template <int kDisplaced>
 class VirtualEncoder final : public FeedbackPart {
+  using Shifts = Eigen::Matrix<double, kDisplaced, 1>;
+  using ShiftLanes = LaneArray[kDisplaced];
+
  public:
   VirtualEncoder(const Belief& belief, const FeedbackParams& params, double period)
       : belief_(belief),
@@ -120,59 +117,41 @@ class VirtualEncoder final : public FeedbackPart {
         all_(belief, params.iterations, params.sigma_0),
         leads_(!params.lead.isZero(0.0)),
         max_change_(params.max_rate * period),
-        velocity_(params.window, period,
-                  params.axes == DisplacedAxes::all ? kJoints : kLinearJoints) {}
+        velocity_(params.window, period, kDisplaced) {}
 
   Joints settle(const Joints& Q_meas, std::size_t run) override {
     velocity_.settle(Q_meas, run);
-    const Joints wanted =
-        of_all_or_linear([&](auto& shifts) { find_displacement(Q_meas, LaneFlags{}, shifts); });
-    Joints d;
-    for (int j = 0; j < kJoints; ++j) out_[j][run] = d[j] = limited(wanted[j], params_.max[j]);
+    Shifts wanted;
+    find_displacement(Q_meas, LaneFlags{}, wanted);
+    keep(wanted, run);
+    Joints d = Joints::Zero();
+    for (int j = 0; j < kDisplaced; ++j) d[j] = out_[j][run] = limited(wanted[j], params_.max[j]);
     return d;
   }
-  Joints evaluate(const Joints& Q_meas, std::size_t run) override {
-    const Joints wanted =
-        of_all_or_linear([&](auto& shifts) { find(Q_meas, LaneFlags{}, run, shifts); });
-    Joints d;
-    for (int j = 0; j < kJoints; ++j) {
+  Joints advance(const Joints& Q_meas, std::size_t run) override {
+    Joints d = Joints::Zero();
+    for (int j = 0; j < kDisplaced; ++j) {
       double& out = out_[j][run];
-      d[j] = out = approached(wanted[j], params_.max[j], max_change_[j], out);
+      d[j] = out = approached(wanted_[j][run], params_.max[j], max_change_[j], out);
     }
+    Shifts wanted;
+    find(Q_meas, LaneFlags{}, run, wanted);
+    keep(wanted, run);
     return d;
   }
-  void evaluate(const JointLanes& Q_meas, const LaneFlags& lanes, JointLanes& d) override {
-    if (displaces_all()) {
-      find(Q_meas, lanes, 0, d);
-      approach_(params_.max[kLinearJoints], max_change_[kLinearJoints], kJoints - kLinearJoints,
-                out_ + kLinearJoints, d + kLinearJoints);
-    } else {
-      LinearJointLanes linear;
-      find(Q_meas, lanes, 0, linear);
-      std::copy(std::begin(linear), std::end(linear), std::begin(d));
-    }
-    approach_(params_.max[0], max_change_[0], kLinearJoints, out_, d);
+  const JointLanes& advance(const JointLanes& Q_meas, const LaneFlags& lanes) override {
+    approach_(params_.max.data(), max_change_.data(), kDisplaced, wanted_, out_);
+    find(Q_meas, lanes, 0, wanted_);
+    return out_;
   }
 
  private:
-  bool displaces_all() const { return params_.axes == DisplacedAxes::all; }
-
-  // What `find` finds of one run; 0 for joints that are not displaced.
-  template <class Find>
-  Joints of_all_or_linear(Find find_shifts) const {
-    Joints d = Joints::Zero();
-    if (displaces_all()) {
-      find_shifts(d);
-    } else {
-      Eigen::Vector3d linear;
-      find_shifts(linear);
-      d.head<3>() = linear;
-    }
-    return d;
+  void keep(const Shifts& wanted, std::size_t run) {
+    for (int j = 0; j < kDisplaced; ++j) wanted_[j][run] = wanted[j];
   }
 
-  template <class Poses, class Shifts>
-  void find(const Poses& Q_meas, const LaneFlags& lanes, std::size_t first, Shifts& d) {
+  template <class Poses, class Found>
+  void find(const Poses& Q_meas, const LaneFlags& lanes, std::size_t first, Found& d) {
     if (leads_) {
       find_ahead(Q_meas, lanes, first, d);
     } else {
@@ -182,23 +161,23 @@ class VirtualEncoder final : public FeedbackPart {
 
   // Displacement where the machine will be when an axis has followed it: each displaced axis has
   // its own lag, hence its own lead. Rotary axes that are not displaced are taken to stand still.
-  template <class Poses, class Shifts>
-  void find_ahead(const Poses& Q_meas, const LaneFlags& lanes, std::size_t first, Shifts& d) {
+  template <class Poses, class Found>
+  void find_ahead(const Poses& Q_meas, const LaneFlags& lanes, std::size_t first, Found& d) {
     const Joints& lead = params_.lead;
     Poses Q;
-    Shifts velocity, other;
+    Found velocity, other;
     std::copy(std::begin(Q_meas), std::end(Q_meas), std::begin(Q));
     velocity_.advance(Q_meas, first, velocity);
-    const auto find_after = [&](double time, Shifts& out) {
-      for (int j = 0; j < kJointsOf<Shifts>; ++j) {
-        for (std::size_t k = 0; k < kLanesOf<Shifts>; ++k) {
+    const auto find_after = [&](double time, Found& out) {
+      for (int j = 0; j < kDisplaced; ++j) {
+        for (std::size_t k = 0; k < kLanesOf<Found>; ++k) {
           lane(Q[j], k) = lane(Q_meas[j], k) + time * lane(velocity[j], k);
         }
       }
       find_displacement(Q, lanes, out);
     };
     find_after(lead[0], d);
-    for (int j = 1; j < kJointsOf<Shifts>; ++j) {
+    for (int j = 1; j < kDisplaced; ++j) {
       if (lead[j] == lead[0]) continue;
       find_after(lead[j], other);
       d[j] = other[j];
@@ -230,7 +209,8 @@ class VirtualEncoder final : public FeedbackPart {
   Joints max_change_;  // m, rad per model period
   VelocityWindow velocity_;
   Approach approach_ = approach_in_lanes();
-  JointLanes out_{};
+  ShiftLanes wanted_{};  // found, acts a period later
+  JointLanes out_{};     // acts
 };
 
 class ModifiedFeedback final : public Strategy {
@@ -240,7 +220,10 @@ class ModifiedFeedback final : public Strategy {
   bool displaces_feedback() const override { return true; }
   bool displaces_rotary() const override { return params_.axes == DisplacedAxes::all; }
   std::unique_ptr<FeedbackPart> feedback(double model_period) const override {
-    return std::make_unique<VirtualEncoder>(belief_, params_, model_period);
+    if (displaces_rotary()) {
+      return std::make_unique<VirtualEncoder<kJoints>>(belief_, params_, model_period);
+    }
+    return std::make_unique<VirtualEncoder<kLinearJoints>>(belief_, params_, model_period);
   }
 
  private:

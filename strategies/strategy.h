@@ -42,23 +42,24 @@ class SetPointPart {
 };
 
 /// Offset of the position feedback: the NC reads x_measured + d, hence moves the axis by -d.
-/// Evaluated once per model period of the feedback hardware. Has the state of up to eight runs,
+/// Advances once per model period of the feedback hardware. Has the state of up to eight runs,
 /// side by side in lanes; a run gives the same bits in any lane, alone and among others.
 class FeedbackPart {
  public:
   virtual ~FeedbackPart() = default;
   /// Settles one run at standstill in Q_meas, as if the hardware had been on for long.
   virtual Joints settle(const Joints& Q_meas, std::size_t lane = 0) = 0;
-  /// One model period of one run, the only one that goes on.
+  /// One model period of one run, the only one that goes on: what was evaluated a period ago acts
+  /// now, and the model is evaluated for the next period.
   /// @param Q_meas  scale readings of this instant (5; m, rad)
-  /// @return d of all joints (5; m, rad), acting one model period later
-  virtual Joints evaluate(const Joints& Q_meas, std::size_t lane = 0) = 0;
-  /// One model period of all runs that go on, in less time than of each.
+  /// @return d of all joints (5; m, rad), acting from now on
+  virtual Joints advance(const Joints& Q_meas, std::size_t lane = 0) = 0;
+  /// The same of all runs that go on, in less time than of each.
   /// @param Q_meas  as above; of other lanes anything
   /// @param lanes   those of the runs
-  /// @param d       as above; of other lanes anything. Rotary joints that the strategy does not
-  ///                displace are left as they are
-  virtual void evaluate(const JointLanes& Q_meas, const LaneFlags& lanes, JointLanes& d) = 0;
+  /// @return as above, until the next call; of other lanes anything. Rotary joints that the
+  ///         strategy does not displace stay as they were settled
+  virtual const JointLanes& advance(const JointLanes& Q_meas, const LaneFlags& lanes) = 0;
 };
 
 /// Up to three parts, each optional. A strategy is constant and may be shared by runs; the parts
@@ -77,7 +78,7 @@ class Strategy {
   virtual bool displaces_feedback() const { return false; }
   /// Whether any of its parts displaces rotary axes, too.
   virtual bool displaces_rotary() const { return false; }
-  /// @param model_period  s, time between two calls of FeedbackPart::evaluate
+  /// @param model_period  s, time between two calls of FeedbackPart::advance
   virtual std::unique_ptr<FeedbackPart> feedback(double model_period) const {
     (void)model_period;
     return nullptr;

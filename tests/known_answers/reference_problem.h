@@ -205,7 +205,7 @@ class Problem {
   void visit(std::uint8_t due, Tick n) {
     if (due & sim::kErrorModel) {
       axes_.read_scales();
-      for (sim::FeedbackLanes& feedback : feedbacks_) feedback.evaluate();
+      for (sim::FeedbackLanes& feedback : feedbacks_) feedback.advance();
     }
     if (due & sim::kPositionLoop) {
       set_point_.take(reference_trajectory(static_cast<double>(n) * kTick));

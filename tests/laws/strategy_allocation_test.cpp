@@ -31,7 +31,7 @@ TEST(EveryStrategy, DoesNotAllocateInARun) {
         for (int n = 0; n < 100; ++n) {
           for (int j = 0; j < kLinearJoints; ++j) Q[j] += 1e-5;
           if (acting.set_point) sum += acting.set_point->offset(Q).sum();
-          if (acting.feedback) sum += acting.feedback->evaluate(Q).sum();
+          if (acting.feedback) sum += acting.feedback->advance(Q).sum();
         }
         EXPECT_EQ(allocations, before) << entry.name;
         EXPECT_TRUE(std::isfinite(sum));

@@ -111,7 +111,7 @@ TEST(EveryStrategy, LeavesPositionsAloneWithoutErrors) {
           const Joints Q = random_position(belief, random);
           EXPECT_EQ(acting.displacement(belief.layout, Q), Joints::Zero()) << entry.name;
           if (!acting.feedback) continue;
-          EXPECT_EQ(acting.feedback->evaluate(Q), Joints::Zero()) << entry.name;
+          EXPECT_EQ(acting.feedback->advance(Q), Joints::Zero()) << entry.name;
         }
       }
     }
@@ -259,7 +259,7 @@ TEST(EveryStrategy, DoesTheSameInEveryRun) {
           if (set_point) out.push_back(set_point->offset(Q)[i]);
         }
         if (!feedback) continue;
-        const Joints d = feedback->evaluate(Q);
+        const Joints d = feedback->advance(Q);
         out.insert(out.end(), d.begin(), d.end());
       }
       return out;

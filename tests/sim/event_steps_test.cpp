@@ -70,7 +70,7 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
   plant::DriveInputBlock& u = input.blocks.front();
   std::array<controllers::CascadeState, kJoints> loops;
   const auto scales = [&] { return Joints(Eigen::Map<const Joints>(x.x.data())); };
-  Joints d_now = part->settle(scales()), d_next = d_now;
+  Joints d_now = part->settle(scales());
   Joints Q_read = scales() + d_now;
   for (std::size_t j = 0; j < kJoints; ++j) {
     loops[j].phi = drives.motor_angle(state, j);
@@ -80,10 +80,7 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
   std::vector<Joints> recorded;
   const auto end = static_cast<Tick>(std::ceil((c.trajectory.duration() + 0.02) / p.base));
   for (Tick n = 0; n <= end; ++n) {
-    if (n % 6 == 0) {
-      d_now = d_next;
-      d_next = part->evaluate(scales());
-    }
+    if (n % 6 == 0) d_now = part->advance(scales());
     if ((n + c.hardware.signal_delay) % p.position == 0) {
       Q_read = scales() + d_now;
     }

@@ -125,7 +125,7 @@ std::string prepared(const Scenario& scenario, PreparationCache* cache) {
         for (const auto& part : in.set_points) all.add(part->offset(at.Q_ref));
         if (!feedback) continue;
         if (k == 0) feedback->settle(at.Q_ref);
-        all.add(feedback->evaluate(at.Q_ref));
+        all.add(feedback->advance(at.Q_ref));
       }
       all.add(in.path.length());
       all.add(in.path.piece(0).end);

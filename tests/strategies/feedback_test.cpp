@@ -50,13 +50,13 @@ TEST(VirtualEncoder, LimitsTheDisplacement) {
     const Joints d = free.feedback->settle(at_x(x));
     EXPECT_NE(d[1], 0.0);
     EXPECT_EQ(limited.feedback->settle(at_x(x)), d) << x;
-    EXPECT_EQ(limited.feedback->evaluate(at_x(x)), d) << x;
+    EXPECT_EQ(limited.feedback->advance(at_x(x)), d) << x;
   }
   for (const double x : {1.0101 * mm, 50.0 * mm}) {
     for (const double sign : {1.0, -1.0}) {
       const Joints limit{0.0, sign * (10.1 * um), 0.0, 0.0, 0.0};
       EXPECT_EQ(limited.feedback->settle(at_x(sign * x)), limit) << x;
-      EXPECT_EQ(limited.feedback->evaluate(at_x(sign * x)), limit) << x;
+      EXPECT_EQ(limited.feedback->advance(at_x(sign * x)), limit) << x;
     }
   }
 }
@@ -72,17 +72,19 @@ TEST(VirtualEncoder, LimitsTheRate) {
     // inside: 0.599 um a period
     for (int n = 1; n <= 20; ++n) {
       const Joints Q = at_x(sign * n * 59.9 * um);
-      EXPECT_EQ(limited.feedback->evaluate(Q), free.feedback->evaluate(Q)) << n;
+      EXPECT_EQ(limited.feedback->advance(Q), free.feedback->advance(Q)) << n;
     }
     // outside: a jump of 10 um is walked in steps of the limit, and then reached
     const double from = sign * 20 * 0.599 * um;
     const Joints Q = at_x(sign * (20 * 59.9 * um + 1.0 * mm));
     constexpr double kRounding = 1e-19;  // m, of the sum of some steps
+    limited.feedback->advance(Q);        // the last of those inside acts
     for (int n = 1; n <= 16; ++n) {
-      EXPECT_NEAR(limited.feedback->evaluate(Q)[1], from + sign * n * most, kRounding) << n;
+      EXPECT_NEAR(limited.feedback->advance(Q)[1], from + sign * n * most, kRounding) << n;
     }
-    const Joints wanted = free.feedback->evaluate(Q);
-    EXPECT_NEAR(limited.feedback->evaluate(Q)[1], wanted[1], kRounding);
+    free.feedback->advance(Q);
+    const Joints wanted = free.feedback->advance(Q);
+    EXPECT_NEAR(limited.feedback->advance(Q)[1], wanted[1], kRounding);
   }
 }
 
@@ -92,15 +94,16 @@ TEST(VirtualEncoder, LeadsByItsTime) {
   const Acting led = virtual_encoder(belief, {.lead_ms = 12.0, .window_ms = 3.0});
   const double v = 20.0 * mm;  // m/s
   led.feedback->settle(at_x(0.0));
-  double d = 0.0, x = 0.0;
+  double x = 0.0;
   for (int n = 1; n <= 51; ++n) {  // 50 periods of 60 us are the window
     x = n * v * kModelPeriod;
-    d = led.feedback->evaluate(at_x(x))[1];
+    led.feedback->advance(at_x(x));
   }
+  double d = led.feedback->advance(at_x(x))[1];
   constexpr double kRounding = 1e-15;  // m
   EXPECT_NEAR(d, kSlope * (x + v * 12.0 * ms), kRounding);
   // standing still for a window, it leads nothing
-  for (int n = 0; n < 51; ++n) d = led.feedback->evaluate(at_x(x))[1];
+  for (int n = 0; n < 51; ++n) d = led.feedback->advance(at_x(x))[1];
   EXPECT_NEAR(d, kSlope * x, kRounding);
 }
 
@@ -116,8 +119,8 @@ TEST(VirtualEncoder, KeepsTheStepsOfTheEncoderOutOfItsLead) {
     led.feedback->settle(at_x(0.0));
     double largest = 0.0;
     for (int n = 1; n < 2000; ++n) {
-      const double x = n * v * kModelPeriod;
-      const double d = led.feedback->evaluate(at_x(encoder.read(x)))[1];
+      const double d = led.feedback->advance(at_x(encoder.read(n * v * kModelPeriod)))[1];
+      const double x = (n - 1) * v * kModelPeriod;  // d acts a period after its reading
       if (n > 500) largest = std::max(largest, std::abs(d - kSlope * (x + v * lead)));
     }
     RecordProperty("noise_nm_window_" + std::to_string(window_ms), std::to_string(largest / nm));
@@ -151,7 +154,6 @@ TEST(VirtualEncoder, GivesTheSameBitsTogetherAndAlone) {
         std::vector<std::unique_ptr<FeedbackPart>> alone;
         std::vector<Joints> Q(kLaneWidth, belief.reference);
         JointLanes Q_lanes;
-        JointLanes d{};
         for (LaneArray& of_joint : Q_lanes) of_joint.fill(std::numeric_limits<double>::quiet_NaN());
         for (std::size_t run = 0; run < kLaneWidth; ++run) {
           alone.push_back(strategy->feedback(kModelPeriod));
@@ -166,10 +168,10 @@ TEST(VirtualEncoder, GivesTheSameBitsTogetherAndAlone) {
             Q[run].tail<2>() += 1e-6 * Eigen::Vector2d(random(), -1.0);
             for (int j = 0; j < kJoints; ++j) Q_lanes[j][run] = Q[run][j];
           }
-          together->evaluate(Q_lanes, kRuns, d);
+          const JointLanes& d = together->advance(Q_lanes, kRuns);
           for (std::size_t run = 0; run < kLaneWidth; ++run) {
             if (!kRuns[run]) continue;
-            const Joints one = alone[run]->evaluate(Q[run]);
+            const Joints one = alone[run]->advance(Q[run]);
             for (int j = 0; j < kJoints; ++j) {
               ASSERT_EQ(d[j][run], one[j]) << "run " << run << ", period " << n;
             }
@@ -177,7 +179,7 @@ TEST(VirtualEncoder, GivesTheSameBitsTogetherAndAlone) {
         }
         // one that is left goes on by itself
         const Joints further = Q[4] + Joints::Constant(1e-6);
-        EXPECT_EQ(together->evaluate(further, 4), alone[4]->evaluate(further));
+        EXPECT_EQ(together->advance(further, 4), alone[4]->advance(further));
       }
     }
   }
@@ -213,8 +215,9 @@ TEST(VirtualEncoder, LimitsRotaryAxesOnTheirOwn) {
   const Acting slow = make_acting(entry, parameters, Sign::correct, belief);
   slow.feedback->settle(at(0.0));
   constexpr double kRounding = 1e-18;  // rad
+  slow.feedback->advance(at(0.1));
   for (int n = 1; n <= 10; ++n) {
-    EXPECT_NEAR(slow.feedback->evaluate(at(0.1))[3], n * 100e-3 * kModelPeriod, kRounding);
+    EXPECT_NEAR(slow.feedback->advance(at(0.1))[3], n * 100e-3 * kModelPeriod, kRounding);
   }
 }
 
