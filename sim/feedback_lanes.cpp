@@ -38,14 +38,18 @@ Joints FeedbackLanes::settle(std::size_t run, const Joints& Q_meas) {
   return of(run).part->settle(Q_meas, run - first_);
 }
 
-void FeedbackLanes::drop(std::size_t run) { use(of(run), run - first_, false); }
+void FeedbackLanes::drop(std::size_t run) {
+  Together& together = of(run);
+  use(together, run - first_, false);
+  together.waiting = 0;  // its own, if any
+}
 
 void FeedbackLanes::advance() {
   bool are_read = false;
   for (Together& together : all_) {
     if (together.count == 0) continue;
     if (together.count == 1) {
-      advance_one(together);
+      wait(together);
       continue;
     }
     if (!are_read) axes_.get_readings(Q_meas_, first_);
@@ -55,9 +59,21 @@ void FeedbackLanes::advance() {
   }
 }
 
-void FeedbackLanes::advance_one(Together& one) {
-  const std::size_t run = first_ + one.last;
-  axes_.displace(one.part->advance(axes_.Q_meas(run), one.last), run);
+void FeedbackLanes::wait(Together& one) {
+  const Joints Q_meas = axes_.Q_meas(first_ + one.last);
+  for (int j = 0; j < kJoints; ++j) one.Q_waiting[j][one.waiting] = Q_meas[j];
+  if (++one.waiting == kLaneWidth) act(one);
+}
+
+void FeedbackLanes::act() {
+  for (Together& together : all_) {
+    if (together.waiting > 0) act(together);
+  }
+}
+
+void FeedbackLanes::act(Together& one) {
+  axes_.displace(one.part->advance(one.Q_waiting, one.waiting, one.last), first_ + one.last);
+  one.waiting = 0;
 }
 
 }  // namespace servomill::sim

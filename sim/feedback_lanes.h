@@ -12,7 +12,8 @@ namespace servomill::sim {
 
 /// The feedback hardware of eight runs that lie side by side in ServoAxes: Runs with
 /// one strategy advance together, in the lanes in which they lie; what other lanes hold is left
-/// aside. A run that is the only one with its strategy goes by itself.
+/// aside. Of a run that is the only one with its strategy up to eight model periods wait, and then
+/// advance together: the axes get to know what acts when they read it.
 class FeedbackLanes {
  public:
   /// @param axes   must outlive this
@@ -28,6 +29,8 @@ class FeedbackLanes {
   void drop(std::size_t run);
   /// To be called once a model period, after ServoAxes::read_scales.
   void advance();
+  /// To be called before ServoAxes::take_readings: what acts now acts on the axes.
+  void act();
 
  private:
   struct Together {
@@ -35,10 +38,13 @@ class FeedbackLanes {
     std::unique_ptr<strategies::FeedbackPart> part;
     LaneFlags lanes = {};
     std::size_t count = 0, last = 0;  // of the lanes in use
+    JointLanes Q_waiting = {};        // readings of the only run, period by period
+    std::size_t waiting = 0;          // periods
   };
   Together& of(std::size_t run);
   void use(Together& together, std::size_t lane, bool used);
-  void advance_one(Together& one);
+  void wait(Together& one);
+  void act(Together& one);
 
   ServoAxes& axes_;
   std::size_t first_;

@@ -61,6 +61,7 @@ DriveWay drive_way(const std::vector<Instant>& schedule) {
       if (goes_on) {
         way.legs.back().stretch = static_cast<int>(number);
         way.legs.back().stop = leg - first;
+        way.legs.back().at_end = leg + 1 == n;
       } else {
         way.steps.push_back(schedule[leg].step);
       }
@@ -98,17 +99,20 @@ ServoAxes::ServoAxes(std::vector<const MachineSettings*> machines, std::vector<i
     : machines_(std::move(machines)),
       joints_(std::move(joints)),
       places_(machines_.size()),
+      in_a_row_(machines_.size() == 1 && joints_.size() == kJoints),
       params_(params_of(machines_, joints_)),
       way_(drive_way(schedule)),
+      last_leg_(way_.legs.empty() ? 0 : way_.legs.size() - 1),
       positions_(way_.most_stops * blocks_of(params_.size())),
       drives_(params_, machines_[0]->nc.periods.base,
               machines_[0]->integrator == Integrator::exact ? way_.steps : std::vector<Tick>(),
               kept, simd_level(),
               machines_[0]->integrator == Integrator::exact ? way_.stretches
                                                             : std::vector<plant::Stretch>()),
+      blocks_(blocks_of(params_.size())),
       state_(params_.size()),
       input_(params_.size()),
-      servos_(blocks_of(params_.size())),
+      servos_(blocks_),
       functions_(params_.size()),
       kernel_(servo_kernel()) {
   for (const int j : joints_) {
@@ -226,6 +230,10 @@ void ServoAxes::settle(std::size_t l, double Q, double d) {
 }
 
 void ServoAxes::displace(const Joints& displacement, std::size_t run) {
+  if (in_a_row_) {
+    row(&ServoBlock::displacement) = displacement;
+    return;
+  }
   for (std::size_t j = 0; j < kJoints; ++j) {
     const Place& p = places_[run][j];
     if (p.present) servos_[p.block].displacement[p.place] = displacement[static_cast<int>(j)];
@@ -258,6 +266,12 @@ void ServoAxes::get_readings(JointLanes& Q_meas, std::size_t first) const {
 }
 
 void ServoAxes::follow(const AxisSetPoint& set, std::size_t run) {
+  if (in_a_row_) {
+    row(&ServoBlock::Q_cmd) = set.Q_cmd;
+    row(&ServoBlock::dQ_ff) = set.dQ_ff;
+    row(&ServoBlock::ddQ_ff) = set.ddQ_ff;
+    return;
+  }
   for (const int j : joints_) {
     const std::size_t l = lane(run, j);
     at(&ServoBlock::Q_cmd, l) = set.Q_cmd[j];
@@ -304,12 +318,11 @@ double ServoAxes::scale_reading(std::size_t l) const {
 }
 
 void ServoAxes::read_motors() {
-  kernel_.read_motors(servos_.data(), state_.blocks.data(), servos_.size());
+  kernel_.read_motors(servos_.data(), state_.blocks.data(), blocks_);
   for (const std::size_t l : own_motor_reading_) at(&ServoBlock::phi, l) = motor_reading(l);
 }
 
-void ServoAxes::read_scales() {
-  kernel_.read_scales(servos_.data(), state_.blocks.data(), servos_.size());
+void ServoAxes::read_own_scales() {
   for (const std::size_t l : own_scale_reading_) at(&ServoBlock::scale, l) = scale_reading(l);
 }
 
@@ -317,7 +330,7 @@ void ServoAxes::take_readings() {
   assert(!on_the_way_);
   read_scales();
   read_motors();
-  kernel_.take_readings(servos_.data(), servos_.size());
+  kernel_.take_readings(servos_.data(), blocks_);
   for (const std::size_t l : marked_) {
     Functions& own = functions_[l];
     if (own.mark_fault) continue;
@@ -340,12 +353,12 @@ void ServoAxes::run_position_loops() {
       at(&ServoBlock::v_add, l) = ramp.rate;
     }
   }
-  suspects_ = kernel_.position_loops(servos_.data(), state_.blocks.data(), servos_.size());
+  suspects_ = kernel_.position_loops(servos_.data(), state_.blocks.data(), blocks_);
 }
 
 void ServoAxes::run_current_loops() {
   assert(!on_the_way_);
-  kernel_.current_loops(servos_.data(), state_.blocks.data(), input_.blocks.data(), servos_.size());
+  kernel_.current_loops(servos_.data(), state_.blocks.data(), input_.blocks.data(), blocks_);
 }
 
 void ServoAxes::run_velocity_loops() {
@@ -360,7 +373,7 @@ void ServoAxes::run_velocity_loops() {
         controllers::friction_compensation(nc.functions[j].friction, functions_[l].friction, v);
   }
   read_motors();
-  kernel_.velocity_loops(servos_.data(), servos_.size());
+  kernel_.velocity_loops(servos_.data(), blocks_);
 }
 
 Joints ServoAxes::motor_angle(std::size_t run) const {

@@ -32,7 +32,8 @@ struct DriveWay {
   struct Leg {
     Tick step;
     int stretch = -1;      // that it belongs to; -1: it is a step of its own
-    std::size_t stop = 0;  // of the stretch, that it ends at; behind the last one: its end
+    std::size_t stop = 0;  // of the stretch, that it ends at
+    bool at_end = false;   // it ends behind the last one, with the stretch
   };
   std::vector<Leg> legs;  // one for each instant
   std::vector<plant::Stretch> stretches;
@@ -96,7 +97,10 @@ class ServoAxes {
   void end(std::size_t run);
 
   /// kErrorModel and kRecord need this first: the position encoders are read.
-  void read_scales();
+  void read_scales() {
+    kernel_.read_scales(servos_.data(), state_.blocks.data(), blocks_);
+    if (!own_scale_reading_.empty()) read_own_scales();
+  }
   /// kSample: the reading that the next position period will use.
   void take_readings();
   /// kPositionLoop
@@ -109,8 +113,8 @@ class ServoAxes {
   void advance(Tick step) {
     const DriveWay::Leg& leg = way_.legs[leg_];
     assert(step == leg.step);
-    leg_ = leg_ + 1 == way_.legs.size() ? 0 : leg_ + 1;
     now_ += step;
+    leg_ = leg_ == last_leg_ ? 0 : leg_ + 1;
     if (cvode_) {
       cvode_->advance(state_, input_, step);
     } else if (leg.stretch < 0) {
@@ -195,6 +199,7 @@ class ServoAxes {
   }
   template <class Blocks, class Member>
   Joints gathered(const Blocks& blocks, Member member, std::size_t run) const {
+    if (in_a_row_) return Joints((blocks.front().*member).data());
     return each_joint(run, [&](const Place& p) { return (blocks[p.block].*member)[p.place]; });
   }
   Joints joints_of(LaneArray ServoBlock::*member, std::size_t run) const {
@@ -203,6 +208,8 @@ class ServoAxes {
   Joints drives_of(LaneArray plant::DriveBlock::*member, std::size_t run) const {
     return gathered(state_.blocks, member, run);
   }
+  // In a row only: the joints of the only run.
+  auto row(LaneArray ServoBlock::*member) { return Joints::Map((servos_.front().*member).data()); }
   // Blocks hold one joint of eight runs each.
   bool fills_blocks() const { return runs() % kLaneWidth == 0; }
   // what(n, joint, place) for the joints of the runs first + n, up to eight.
@@ -224,15 +231,13 @@ class ServoAxes {
       drives_.advance_with_stops(state_, input_, static_cast<std::size_t>(leg.stretch), positions_);
     }
     // Positions of this stop come in; those of the end wait in the place of the first stop's.
-    const std::size_t count = state_.blocks.size();
-    const bool at_end =
-        leg.stop == way_.stretches[static_cast<std::size_t>(leg.stretch)].stops.size();
-    drives_.exchange_positions(state_,
-                               std::span(positions_).subspan(at_end ? 0 : leg.stop * count, count));
-    on_the_way_ = !at_end;
+    LaneArray* positions = positions_.data() + (leg.at_end ? 0 : leg.stop * blocks_);
+    drives_.exchange_positions(state_, {positions, blocks_});
+    on_the_way_ = !leg.at_end;
   }
   void describe(std::size_t lane);
   void settle(std::size_t lane, double Q, double displacement);
+  void read_own_scales();  // of encoders that do more than quantise
   void read_motors();
   double motor_reading(std::size_t lane) const;
   double scale_reading(std::size_t lane) const;
@@ -244,13 +249,15 @@ class ServoAxes {
   std::vector<Axis> axes_;         // by lane: joint by joint
   std::array<std::size_t, kJoints> first_lane_{};
   std::vector<std::array<Place, kJoints>> places_;  // by run
-  std::vector<plant::FeedDriveParams> params_;      // by lane
+  bool in_a_row_ = false;  // one run only, and all joints take part: they lie side by side
+  std::vector<plant::FeedDriveParams> params_;  // by lane
   DriveWay way_;
-  std::size_t leg_ = 0;               // the next one
+  std::size_t leg_ = 0, last_leg_;    // the next one, the last of a round
   std::vector<LaneArray> positions_;  // at the stops of a stretch
   bool on_the_way_ = false;           // past a stop, of which only the positions are shown
   plant::DriveBank drives_;
   std::optional<plant::CvodeBank> cvode_;  // moves the drives instead, if asked for
+  std::size_t blocks_;                     // that the lanes fill
   plant::DriveState state_;
   plant::DriveInput input_;
   std::vector<ServoBlock> servos_;

@@ -270,7 +270,10 @@ class Lockstep {
     if (due & kErrorModel) {
       for (FeedbackLanes& feedback : feedbacks_) feedback.advance();
     }
-    if (due & kSample) axes_.take_readings();
+    if (due & kSample) {
+      for (FeedbackLanes& feedback : feedbacks_) feedback.act();
+      axes_.take_readings();
+    }
     if (due & kPositionLoop) {
       each([&](CaseRun& run) { run.interpolate(n); });
       axes_.run_position_loops();

@@ -8,15 +8,16 @@
 
 namespace servomill::strategies {
 
-/// value within +-most, without references: so that lanes go through registers.
-inline double limited(double value, double most) {
-  const double above = value < -most ? -most : value;
+/// The value that is nearest within limits, without references: so that lanes go through registers.
+inline double within(double value, double least, double most) {
+  const double above = value < least ? least : value;
   return most < above ? most : above;
 }
+inline double limited(double value, double most) { return within(value, -most, most); }
 
 /// The value that comes next: what is wanted, limited in size, approached by a limited change.
 inline double approached(double wanted, double most, double most_change, double value) {
-  return value + limited(limited(wanted, most) - value, most_change);
+  return within(limited(wanted, most), value - most_change, value + most_change);
 }
 
 /// approached(), of `count` joints of eight runs, with its bits: the next values replace `values`.

@@ -69,36 +69,28 @@ struct FeedbackParams {
 // Velocity of the first joints as the difference of readings over a window.
 class VelocityWindow {
  public:
-  VelocityWindow(double window, double period, int joints)
+  VelocityWindow(double window, double period, std::size_t joints)
       : joints_(joints),
         length_(std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(window / period)))),
-        readings_(length_ * static_cast<std::size_t>(joints)),
+        readings_(length_ * joints),
         inverse_length_(1.0 / (static_cast<double>(length_) * period)) {}
 
   void settle(const Joints& reading, std::size_t run) {
-    for (std::size_t n = 0; n < length_; ++n) {
-      for (int j = 0; j < joints_; ++j) at(n, j)[run] = reading[j];
+    for (std::size_t n = 0; n < readings_.size(); ++n) {
+      readings_[n][run] = reading[static_cast<int>(n % joints_)];
     }
   }
-  // Of one run, or of eight from the first on.
-  template <class Poses, class Velocities>
-  void advance(const Poses& reading, std::size_t first, Velocities& velocity) {
-    for (int j = 0; j < joints_; ++j) {
-      double* before = at(oldest_, j).data() + first;
-      for (std::size_t k = 0; k < kLanesOf<Velocities>; ++k) {
-        lane(velocity[j], k) = (lane(reading[j], k) - before[k]) * inverse_length_;
-        before[k] = lane(reading[j], k);
-      }
-    }
-    oldest_ = oldest_ + 1 == length_ ? 0 : oldest_ + 1;
+  // To be asked of all joints and runs, then followed by `next`.
+  double velocity(std::size_t joint, std::size_t run, double reading) {
+    double& before = readings_[oldest_ + joint][run];
+    const double v = (reading - before) * inverse_length_;
+    before = reading;
+    return v;
   }
+  void next() { oldest_ = oldest_ + joints_ == readings_.size() ? 0 : oldest_ + joints_; }
 
  private:
-  LaneArray& at(std::size_t n, int joint) {
-    return readings_[n * static_cast<std::size_t>(joints_) + static_cast<std::size_t>(joint)];
-  }
-  int joints_;
-  std::size_t length_;
+  std::size_t joints_, length_;
   std::vector<LaneArray> readings_;
   double inverse_length_;
   std::size_t oldest_ = 0;
@@ -123,56 +115,84 @@ class VirtualEncoder final : public FeedbackPart {
     velocity_.settle(Q_meas, run);
     Shifts wanted;
     find_displacement(Q_meas, LaneFlags{}, wanted);
-    keep(wanted, run);
-    Joints d = Joints::Zero();
-    for (int j = 0; j < kDisplaced; ++j) d[j] = out_[j][run] = limited(wanted[j], params_.max[j]);
-    return d;
-  }
-  Joints advance(const Joints& Q_meas, std::size_t run) override {
     Joints d = Joints::Zero();
     for (int j = 0; j < kDisplaced; ++j) {
-      double& out = out_[j][run];
-      d[j] = out = approached(wanted_[j][run], params_.max[j], max_change_[j], out);
+      wanted_[j][run] = wanted[j];
+      d[j] = out_[j][run] = limited(wanted[j], params_.max[j]);
     }
-    Shifts wanted;
-    find(Q_meas, LaneFlags{}, run, wanted);
-    keep(wanted, run);
     return d;
   }
+
+  Joints advance(const JointLanes& Q_meas, std::size_t periods, std::size_t run) override {
+    ShiftLanes next;
+    find_in_turn(Q_meas, periods, run, next);
+    Joints d = Joints::Zero();
+    Shifts wanted;
+    for (int j = 0; j < kDisplaced; ++j) {
+      wanted[j] = wanted_[j][run];
+      d[j] = out_[j][run];
+    }
+    for (std::size_t n = 0; n < periods; ++n) {  // joints side by side: none waits for another
+      for (int j = 0; j < kDisplaced; ++j) {
+        d[j] = approached(wanted[j], params_.max[j], max_change_[j], d[j]);
+        wanted[j] = next[j][n];
+      }
+    }
+    for (int j = 0; j < kDisplaced; ++j) {
+      wanted_[j][run] = wanted[j];
+      out_[j][run] = d[j];
+    }
+    return d;
+  }
+
   const JointLanes& advance(const JointLanes& Q_meas, const LaneFlags& lanes) override {
     approach_(params_.max.data(), max_change_.data(), kDisplaced, wanted_, out_);
-    find(Q_meas, lanes, 0, wanted_);
+    if (leads_) {
+      ShiftLanes velocity;
+      for (std::size_t j = 0; j < kDisplaced; ++j) {
+        for (std::size_t run = 0; run < kLaneWidth; ++run) {
+          velocity[j][run] = velocity_.velocity(j, run, Q_meas[j][run]);
+        }
+      }
+      velocity_.next();
+      find_ahead(Q_meas, velocity, lanes, wanted_);
+    } else {
+      find_displacement(Q_meas, lanes, wanted_);
+    }
     return out_;
   }
 
  private:
-  void keep(const Shifts& wanted, std::size_t run) {
-    for (int j = 0; j < kDisplaced; ++j) wanted_[j][run] = wanted[j];
-  }
-
-  template <class Poses, class Found>
-  void find(const Poses& Q_meas, const LaneFlags& lanes, std::size_t first, Found& d) {
+  // What periods of one run find that lie side by side.
+  void find_in_turn(const JointLanes& Q_meas, std::size_t periods, std::size_t run,
+                    ShiftLanes& next) {
+    LaneFlags lanes = {};
+    std::fill_n(lanes.begin(), periods, true);
     if (leads_) {
-      find_ahead(Q_meas, lanes, first, d);
+      ShiftLanes velocity = {};
+      for (std::size_t n = 0; n < periods; ++n) {
+        for (std::size_t j = 0; j < kDisplaced; ++j) {
+          velocity[j][n] = velocity_.velocity(j, run, Q_meas[j][n]);
+        }
+        velocity_.next();
+      }
+      find_ahead(Q_meas, velocity, lanes, next);
     } else {
-      find_displacement(Q_meas, lanes, d);
+      find_displacement(Q_meas, lanes, next);
     }
   }
 
   // Displacement where the machine will be when an axis has followed it: each displaced axis has
   // its own lag, hence its own lead. Rotary axes that are not displaced are taken to stand still.
-  template <class Poses, class Found>
-  void find_ahead(const Poses& Q_meas, const LaneFlags& lanes, std::size_t first, Found& d) {
+  void find_ahead(const JointLanes& Q_meas, const ShiftLanes& velocity, const LaneFlags& lanes,
+                  ShiftLanes& d) const {
     const Joints& lead = params_.lead;
-    Poses Q;
-    Found velocity, other;
+    JointLanes Q;
+    ShiftLanes other;
     std::copy(std::begin(Q_meas), std::end(Q_meas), std::begin(Q));
-    velocity_.advance(Q_meas, first, velocity);
-    const auto find_after = [&](double time, Found& out) {
+    const auto find_after = [&](double time, ShiftLanes& out) {
       for (int j = 0; j < kDisplaced; ++j) {
-        for (std::size_t k = 0; k < kLanesOf<Found>; ++k) {
-          lane(Q[j], k) = lane(Q_meas[j], k) + time * lane(velocity[j], k);
-        }
+        for (std::size_t k = 0; k < kLaneWidth; ++k) Q[j][k] = Q_meas[j][k] + time * velocity[j][k];
       }
       find_displacement(Q, lanes, out);
     };

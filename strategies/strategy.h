@@ -49,17 +49,25 @@ class FeedbackPart {
   virtual ~FeedbackPart() = default;
   /// Settles one run at standstill in Q_meas, as if the hardware had been on for long.
   virtual Joints settle(const Joints& Q_meas, std::size_t lane = 0) = 0;
-  /// One model period of one run, the only one that goes on: what was evaluated a period ago acts
-  /// now, and the model is evaluated for the next period.
-  /// @param Q_meas  scale readings of this instant (5; m, rad)
-  /// @return d of all joints (5; m, rad), acting from now on
-  virtual Joints advance(const Joints& Q_meas, std::size_t lane = 0) = 0;
-  /// The same of all runs that go on, in less time than of each.
-  /// @param Q_meas  as above; of other lanes anything
+  /// One model period after the other of one run, the only one that goes on: what was evaluated a
+  /// period ago acts now, and the model is evaluated for the next period. Eight periods take little
+  /// longer than one.
+  /// @param Q_meas   scale readings (m, rad) at the instants of the periods, side by side: from the
+  ///                 first lane on; in other lanes any numbers
+  /// @param periods  their number, at most eight
+  /// @return d of all joints (5; m, rad), acting from the last of these instants on
+  virtual Joints advance(const JointLanes& Q_meas, std::size_t periods, std::size_t lane) = 0;
+  /// One model period of all runs that go on, in less time than of each.
+  /// @param Q_meas  scale readings of the runs at this instant; of other lanes anything
   /// @param lanes   those of the runs
-  /// @return as above, until the next call; of other lanes anything. Rotary joints that the
-  ///         strategy does not displace stay as they were settled
+  /// @return d of the runs, until the next call; of other lanes anything
   virtual const JointLanes& advance(const JointLanes& Q_meas, const LaneFlags& lanes) = 0;
+  /// One model period of one run, the only one that goes on.
+  Joints advance(const Joints& Q_meas, std::size_t lane = 0) {
+    JointLanes one{};
+    for (int j = 0; j < kJoints; ++j) one[j][0] = Q_meas[j];
+    return advance(one, 1, lane);
+  }
 };
 
 /// Up to three parts, each optional. A strategy is constant and may be shared by runs; the parts

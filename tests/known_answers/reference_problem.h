@@ -213,6 +213,7 @@ class Problem {
       set_.dQ_ff = set_point_.dQ();
       set_.ddQ_ff = set_point_.ddQ();
       for (std::size_t run = 0; run < axes_.runs(); ++run) axes_.follow(set_, run);
+      for (sim::FeedbackLanes& feedback : feedbacks_) feedback.act();
       axes_.take_readings();
       axes_.run_position_loops();
     }

@@ -185,6 +185,48 @@ TEST(VirtualEncoder, GivesTheSameBitsTogetherAndAlone) {
   }
 }
 
+// Periods that wait and then advance together give the bits of one after the other, limits reached
+// or not, however many they are.
+TEST(VirtualEncoder, GivesTheSameBitsForPeriodsTogether) {
+  plant::Uniform random(29);
+  Belief belief = belief_in(plant::random_errors(random, 50e-6));
+  belief.Kv << 60.0, 40.0, 40.0, 50.0, 50.0;
+  const Entry entry = feedback_entry();
+  for (const std::string_view axes : {"linear", "all"}) {
+    for (const double max_rate : {1.0, 1e-5}) {  // m/s, rad/s: never reached, often reached
+      for (const bool lead : {false, true}) {
+        Parameters parameters = default_parameters(entry);
+        parameters.set("axes", axes);
+        parameters.set("max_rate_mm_per_s", max_rate);
+        parameters.set("max_rate_mrad_per_s", max_rate);
+        if (lead) parameters.set("lead_ms", std::string_view("auto"));
+        const auto strategy = entry.make(parameters, Sign::correct, belief);
+        const auto each = strategy->feedback(kModelPeriod);
+        const auto all = strategy->feedback(kModelPeriod);
+        constexpr std::size_t kLane = 3;
+        Joints Q = belief.reference;
+        EXPECT_EQ(each->settle(Q, kLane), all->settle(Q, kLane));
+        std::size_t limited = 0;
+        for (int round = 0; round < 40; ++round) {
+          const std::size_t periods = 1 + static_cast<std::size_t>(round) % kLaneWidth;
+          JointLanes Q_meas{};
+          Joints before = Joints::Zero(), d = before;
+          for (std::size_t n = 0; n < periods; ++n) {
+            Q += 1e-5 * Joints(random(), random(), 1.0, random(), -1.0);
+            for (int j = 0; j < kJoints; ++j) Q_meas[j][n] = Q[j];
+            before = d;
+            d = each->advance(Q, kLane);
+            const double most = max_rate * kModelPeriod * (1.0 - 1e-9);
+            if (n > 0 && (d - before).cwiseAbs().maxCoeff() >= most) ++limited;
+          }
+          ASSERT_EQ(all->advance(Q_meas, periods, kLane), d) << axes << ", round " << round;
+        }
+        EXPECT_EQ(limited > 0, max_rate < 1.0);
+      }
+    }
+  }
+}
+
 // Each kind of axis has its own limits, and those that are not displaced stay where they are.
 TEST(VirtualEncoder, LimitsRotaryAxesOnTheirOwn) {
   plant::ErrorModel errors;
