@@ -24,6 +24,14 @@ SERVOMILL_INLINE bool are_small_half_turns(double t2) { return !(t2 >= kSmallHal
 SERVOMILL_INLINE bool are_small_half_turns(const Register& t2) {
   return !xsimd::any(Batch(t2) >= Batch(kSmallHalfTurn2));
 }
+// Of whole turns that are small or not: where they are small, the bits of the short way.
+SERVOMILL_INLINE TurnFactors<double> any_turn_factors(double t2) {
+  if (t2 < kSmallTurn * kSmallTurn) return {fnma(t2, 1.0 / 6.0, 1.0), 0.5};
+  return turn_factors(t2);
+}
+[[gnu::noinline]] TurnFactors<Register> any_turn_factors(const Register& t2) {
+  return lane_by_lane(t2, [](double lane) { return any_turn_factors(lane); });
+}
 SERVOMILL_INLINE double larger(double a, double b) { return a > b ? a : b; }
 SERVOMILL_INLINE Register larger(const Register& a, const Register& b) {
   return xsimd::max(Batch(a), Batch(b));
@@ -103,7 +111,7 @@ SERVOMILL_INLINE void pass(const StraightProgram& program, const N& q, const Vec
     t2_max = larger(t2_max, t2);
     a = small_half_turn_factor(t2);
     if constexpr (has.way == Way::general) {
-      const auto exact = turn_factors(4.0 * t2);
+      const auto exact = any_turn_factors(4.0 * t2);
       a = exact.a / exact.h;  // of the b that follows
       repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA { b.v[i] = b.v[i] * (2.0 * exact.h); });
     }

@@ -20,26 +20,31 @@ struct TurnFactors {
 
 template <class N>
 SERVOMILL_INLINE TurnFactors<N> small_turn_factors(const N& t2) {
-  return {fnma(t2, all<N>(1.0 / 6.0), all<N>(1.0)), all<N>(0.5)};
+  return {fma(t2, fma(t2, all<N>(1.0 / 120.0), all<N>(-1.0 / 6.0)), all<N>(1.0)),
+          fma(t2, fma(t2, all<N>(1.0 / 240.0), all<N>(1.0 / 24.0)), all<N>(0.5))};
 }
 
 // a is computed from h: what belongs together turns by some angle, even where h is large.
 [[gnu::noinline]] inline TurnFactors<double> turn_factors(double t2) {
-  if (t2 < kSmallTurn * kSmallTurn) return small_turn_factors(t2);
+  if (t2 < kSeriesTurn * kSeriesTurn) return small_turn_factors(t2);
   const double t = std::sqrt(t2), quarter = sine(0.25 * t);
   const double cosine = fnma(2.0 * quarter, quarter, 1.0);
   const double tangent = sine(0.5 * t) / (cosine == 0.0 ? 0x1p-54 : cosine);
   const double h = tangent / t;
   return {2.0 * h / fma(tangent, tangent, 1.0), h};
 }
-[[gnu::noinline]] inline TurnFactors<Register> turn_factors(const Register& t2) {
+template <class Factors>
+SERVOMILL_INLINE TurnFactors<Register> lane_by_lane(const Register& t2, Factors factors_of) {
   TurnFactors<Register> f;
   for (std::size_t n = 0; n < kRegister; ++n) {
-    const auto [a, h] = turn_factors(t2[n]);
-    f.a[n] = a;
-    f.h[n] = h;
+    const TurnFactors<double> of_lane = factors_of(t2[n]);
+    f.a[n] = of_lane.a;
+    f.h[n] = of_lane.h;
   }
   return f;
+}
+[[gnu::noinline]] inline TurnFactors<Register> turn_factors(const Register& t2) {
+  return lane_by_lane(t2, [](double lane) { return turn_factors(lane); });
 }
 
 // v + (R - 1) p
@@ -58,7 +63,7 @@ enum class Way {
 };
 
 SERVOMILL_INLINE bool are_small_turns(const Register& t2_max) {
-  return !xsimd::any(Batch(t2_max) >= Batch(kSmallTurn * kSmallTurn));
+  return !xsimd::any(Batch(t2_max) >= Batch(kSeriesTurn * kSeriesTurn));
 }
 
 // --- the errors of an axis ----------------------------------------------------------------------

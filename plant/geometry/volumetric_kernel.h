@@ -26,8 +26,13 @@ inline constexpr std::size_t kMachineJoints = 5;
 inline constexpr std::size_t kTurnedJoints = 2;     // the last ones
 inline constexpr std::size_t kErrorComponents = 6;  // along X, Y, Z, about A, B, C
 
-/// Turns below this use the series of their sine and cosine, whose next term is below 1e-16.
+/// Turns below this use the first two terms of their sine, whose next one is below 1e-16: those of
+/// the straight way (straight_kernel.h).
 inline constexpr double kSmallTurn = 2e-4;  // rad
+
+/// Turns below this use series of three terms, whose next one is below 1e-16: all that the errors of
+/// a machine amount to.
+inline constexpr double kSeriesTurn = 5e-3;  // rad
 
 enum class VolumetricMove : std::uint8_t {
   shift,         // an ideal linear axis

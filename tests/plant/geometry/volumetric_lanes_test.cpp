@@ -139,8 +139,9 @@ struct ErrorCase {
 std::vector<ErrorCase> error_cases(Uniform& random) {
   std::vector<ErrorCase> all;
   all.push_back({"cubic", cubics(random, 1e-5)});
-  // some lanes turn by less than kSmallTurn, some by more
+  // some lanes turn by less than kSmallTurn, some by more; the same of kSeriesTurn
   all.push_back({"large turns", cubics(random, 1.5e-4)});
+  all.push_back({"larger turns", cubics(random, 4e-3)});
   ErrorModel mixed = random_errors(random, 1e-5);
   for (std::size_t axis = 0; axis < kAxisWords; ++axis) {
     ErrorFunction& f = mixed.components[axis][axis];

@@ -136,7 +136,8 @@ TEST(RotationOfAnError, IsTheExponentialOfItsVector) {
 
 TEST(RotationOfAnError, IsTheSameFromSeriesAndFromSines) {
   const MachineChain chain = chain_of("[w b X t]");
-  for (const double angle : {kSmallTurn * (1.0 - 1e-15), kSmallTurn * (1.0 + 1e-15)}) {
+  for (const double angle : {kSmallTurn * (1.0 - 1e-15), kSmallTurn * (1.0 + 1e-15),
+                             kSeriesTurn * (1.0 - 1e-15), kSeriesTurn * (1.0 + 1e-15)}) {
     const ToolPose P = forward(chain, with("EAX"_err, angle), Joints::Zero(), Vector3d::Zero());
     EXPECT_LT((P.k_W - Vector3d(0.0, -std::sin(angle), std::cos(angle))).norm(), 3e-16);  // ulp
   }
