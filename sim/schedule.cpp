@@ -33,10 +33,17 @@ std::vector<Instant> make_schedule(const std::vector<Rate>& rates) {
   }
   assert(due.contains(0));
   std::vector<Instant> schedule;
-  for (auto it = due.begin(); it != due.end(); ++it) {
-    const auto next = std::next(it);
-    schedule.push_back({it->second, (next == due.end() ? total : next->first) - it->first});
+  Tick last = 0;
+  for (const auto& [n, what] : due) {
+    if (n > 0 && what == kErrorModel) {
+      schedule.back().stops.push_back(n - last);
+      continue;
+    }
+    if (n > 0) schedule.back().step = n - last;
+    schedule.push_back({what});
+    last = n;
   }
+  schedule.back().step = total - last;
   return schedule;
 }
 

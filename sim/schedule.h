@@ -1,6 +1,7 @@
 /// Static schedule of one case: the instants at which anything is due, over one common multiple of
 /// all periods. Nothing is visited that is not due; between instants the drives take one exact
-/// step, or one past several instants (DriveWay in sim/servo_axes.h).
+/// step. Where nothing but the error model is due, the drives feel nothing and nothing but
+/// positions is read: such an instant is but a stop on the way from one instant to the next.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,8 @@ enum Due : std::uint8_t {
 
 struct Instant {
   std::uint8_t due = 0;
-  Tick step = 0;  // ticks to the next instant
+  Tick step = 0;              // ticks to the next instant
+  std::vector<Tick> stops{};  // ticks from here to those where only the error model is due, rising
 };
 
 struct Rate {
@@ -36,8 +38,8 @@ inline constexpr Tick kMaxHyperperiod = 1'000'000;
 /// Least common multiple of the periods, or 0 beyond kMaxHyperperiod.
 Tick hyperperiod(const std::vector<Rate>& rates);
 
-/// The instants of one hyperperiod, from tick 0 on. @pre hyperperiod(rates) > 0, one rate has phase
-/// 0
+/// The instants of one hyperperiod, from tick 0 on, which is no stop. @pre hyperperiod(rates) > 0,
+/// one rate has phase 0
 std::vector<Instant> make_schedule(const std::vector<Rate>& rates);
 
 }  // namespace servomill::sim

@@ -40,35 +40,50 @@ std::vector<Rate> loop_rates(const LoopPeriods& p, Tick reading_delay) {
           {kCurrentLoop, p.current, 0}};
 }
 
+namespace {
+
+// Matrices are prepared for each stop: beyond these numbers steps are taken as they come.
+constexpr std::size_t kMostStops = 8, kMostStretches = 32;
+
+// Number of a stretch with stops among those of the way, which it joins if it is new; -1 if there
+// are too many.
+int number_of(const plant::Stretch& stretch, DriveWay& way) {
+  const auto known = std::find(way.stretches.begin(), way.stretches.end(), stretch);
+  const auto number = static_cast<int>(known - way.stretches.begin());
+  if (known != way.stretches.end()) return number;
+  if (way.stretches.size() == kMostStretches) return -1;
+  way.most_stops = std::max(way.most_stops, stretch.stops.size());
+  way.stretches.push_back(stretch);
+  return number;
+}
+
+}  // namespace
+
 DriveWay drive_way(const std::vector<Instant>& schedule) {
-  // Matrices are prepared for each stop: beyond these numbers steps are taken as they come.
-  constexpr std::size_t kMostStops = 8, kMostStretches = 32;
   DriveWay way;
-  for (std::size_t n = 0; n < schedule.size();) {
-    plant::Stretch stretch{.step = schedule[n].step};
-    const std::size_t first = n++;
-    for (; n < schedule.size() && schedule[n].due == kErrorModel; ++n) {
-      if (stretch.stops.size() == kMostStops) break;
-      stretch.stops.push_back(stretch.step);
-      stretch.step += schedule[n].step;
-    }
-    const auto known = std::find(way.stretches.begin(), way.stretches.end(), stretch);
-    const auto number = known - way.stretches.begin();
-    const bool goes_on = !stretch.stops.empty() &&
-                         (known != way.stretches.end() || way.stretches.size() < kMostStretches);
-    for (std::size_t leg = first; leg < n; ++leg) {
-      way.legs.push_back({schedule[leg].step});
-      if (goes_on) {
-        way.legs.back().stretch = static_cast<int>(number);
-        way.legs.back().stop = leg - first;
-        way.legs.back().at_end = leg + 1 == n;
+  const auto add_step = [&](Tick step) {
+    way.legs.push_back({step});
+    way.steps.push_back(step);
+  };
+  for (const Instant& instant : schedule) {
+    std::vector<Tick> places = instant.stops;
+    places.push_back(instant.step);
+    Tick begin = 0;
+    for (std::size_t first = 0; first < places.size();) {
+      const std::size_t last = std::min(first + kMostStops, places.size() - 1);
+      plant::Stretch stretch{.step = places[last] - begin};
+      for (std::size_t n = first; n < last; ++n) stretch.stops.push_back(places[n] - begin);
+      const int number = stretch.stops.empty() ? -1 : number_of(stretch, way);
+      if (number >= 0) {
+        way.legs.push_back({stretch.step, number});
       } else {
-        way.steps.push_back(schedule[leg].step);
+        for (std::size_t n = first; n <= last; ++n) {
+          add_step(places[n] - (n == first ? begin : places[n - 1]));
+        }
       }
+      begin = places[last];
+      first = last + 1;
     }
-    if (!goes_on || known != way.stretches.end()) continue;
-    way.most_stops = std::max(way.most_stops, stretch.stops.size());
-    way.stretches.push_back(std::move(stretch));
   }
   return way;
 }
@@ -176,7 +191,6 @@ void ServoAxes::describe(std::size_t l) {
 }
 
 void ServoAxes::settle(const Joints& Q, const Joints& displacement, std::size_t run) {
-  assert(!on_the_way_);
   displace(displacement, run);
   for (const int j : joints_) settle(lane(run, j), Q[j], displacement[j]);
 }
@@ -193,7 +207,7 @@ void ServoAxes::settle(std::size_t l, double Q, double d) {
                                            : controllers::StandingCurrent{state.i, {}};
   state.x -= controllers::standing_error(cascade, current.i_cmd);
   state_.set_lane(l, state);
-  const double phi = motor_reading(l), scale = scale_reading(l);
+  const double phi = motor_reading(l), scale = scale_reading(l, state.x, now_);
   const double y_motor = drive.r * phi, y_scale = scale + d;
   auto feedback = controllers::standing_at(functions.position_feedback, y_motor, y_scale);
   const double Q_read =
@@ -281,7 +295,6 @@ void ServoAxes::follow(const AxisSetPoint& set, std::size_t run) {
 }
 
 void ServoAxes::inject(int joint, const Injection& injection, std::size_t run) {
-  assert(!on_the_way_);
   const std::size_t l = lane(run, joint);
   at(&ServoBlock::added_velocity, l) = injection.velocity;
   at(&ServoBlock::added_current, l) = injection.current;
@@ -312,9 +325,9 @@ double ServoAxes::motor_reading(std::size_t l) const {
   return machine.motor[j].read(phi, now_);
 }
 
-double ServoAxes::scale_reading(std::size_t l) const {
+double ServoAxes::scale_reading(std::size_t l, double x, Tick now) const {
   const auto j = static_cast<std::size_t>(axes_[l].joint);
-  return machine_of(l).scale[j].read(state_.blocks[block(l)].x[place(l)], now_);
+  return machine_of(l).scale[j].read(x, now);
 }
 
 void ServoAxes::read_motors() {
@@ -322,12 +335,20 @@ void ServoAxes::read_motors() {
   for (const std::size_t l : own_motor_reading_) at(&ServoBlock::phi, l) = motor_reading(l);
 }
 
-void ServoAxes::read_own_scales() {
-  for (const std::size_t l : own_scale_reading_) at(&ServoBlock::scale, l) = scale_reading(l);
+void ServoAxes::read_scales() {
+  kernel_.read_scales(servos_.data(), state_.blocks.data(), blocks_);
+  for (const std::size_t l : own_scale_reading_) {
+    at(&ServoBlock::scale, l) = scale_reading(l, state_.blocks[block(l)].x[place(l)], now_);
+  }
+}
+
+void ServoAxes::read_own_scales_at(const LaneArray* positions, Tick now) {
+  for (const std::size_t l : own_scale_reading_) {
+    at(&ServoBlock::scale, l) = scale_reading(l, positions[block(l)][place(l)], now);
+  }
 }
 
 void ServoAxes::take_readings() {
-  assert(!on_the_way_);
   read_scales();
   read_motors();
   kernel_.take_readings(servos_.data(), blocks_);
@@ -357,12 +378,10 @@ void ServoAxes::run_position_loops() {
 }
 
 void ServoAxes::run_current_loops() {
-  assert(!on_the_way_);
   kernel_.current_loops(servos_.data(), state_.blocks.data(), input_.blocks.data(), blocks_);
 }
 
 void ServoAxes::run_velocity_loops() {
-  assert(!on_the_way_);
   for (const std::size_t l : with_friction_) {
     const NcSettings& nc = machine_of(l).nc;
     const auto j = static_cast<std::size_t>(axes_[l].joint);

@@ -24,20 +24,16 @@ namespace servomill::sim {
 ///                       much before the position loop
 std::vector<Rate> loop_rates(const LoopPeriods& periods, Tick reading_delay);
 
-/// Way of the drives through a schedule. Where nothing but the error model is due, the drives feel
-/// nothing and nothing but positions is read: they move past such an instant and only tell where
-/// they are at it.
+/// Way of the drives through a schedule: from one instant to the next in one leg, past its stops,
+/// or in several, each of which ends at a stop or at the next instant.
 struct DriveWay {
-  /// From one instant to the next.
   struct Leg {
     Tick step;
-    int stretch = -1;      // that it belongs to; -1: it is a step of its own
-    std::size_t stop = 0;  // of the stretch, that it ends at
-    bool at_end = false;   // it ends behind the last one, with the stretch
+    int stretch = -1;  // with stops on the way; -1: none
   };
-  std::vector<Leg> legs;  // one for each instant
+  std::vector<Leg> legs;
   std::vector<plant::Stretch> stretches;
-  std::vector<Tick> steps;     // of the legs that are steps of their own
+  std::vector<Tick> steps;     // of the legs without stops
   std::size_t most_stops = 0;  // of a stretch
 };
 DriveWay drive_way(const std::vector<Instant>& schedule);
@@ -59,10 +55,9 @@ struct Injection {
 };
 
 /// One function for each kind of instant of the schedule (sim/schedule.h), to be called in its
-/// order when due, from the schedule's beginning on; then `advance` to the next instant. Where only
-/// the error model is due the drives show their positions only (DriveWay). They treat all runs in
-/// lockstep, eight axes at once; a run gives the same bits alone and among others, and goes on as
-/// it is if another one ends.
+/// order when due, from the schedule's beginning on; then `advance` to the next instant. They treat
+/// all runs in lockstep, eight axes at once; a run gives the same bits alone and among others, and
+/// goes on as it is if another one ends.
 ///
 /// Runs are numbered from 0; functions that concern one of them take its number last, and the
 /// first if it is left out.
@@ -97,10 +92,7 @@ class ServoAxes {
   void end(std::size_t run);
 
   /// kErrorModel and kRecord need this first: the position encoders are read.
-  void read_scales() {
-    kernel_.read_scales(servos_.data(), state_.blocks.data(), blocks_);
-    if (!own_scale_reading_.empty()) read_own_scales();
-  }
+  void read_scales();
   /// kSample: the reading that the next position period will use.
   void take_readings();
   /// kPositionLoop
@@ -110,18 +102,27 @@ class ServoAxes {
   /// kVelocityLoop
   void run_velocity_loops();
   /// Moves the drives to the next instant. @pre step is that of the schedule
-  void advance(Tick step) {
-    const DriveWay::Leg& leg = way_.legs[leg_];
-    assert(step == leg.step);
-    now_ += step;
-    leg_ = leg_ == last_leg_ ? 0 : leg_ + 1;
-    if (cvode_) {
-      cvode_->advance(state_, input_, step);
-    } else if (leg.stretch < 0) {
-      drives_.advance(state_, input_, step);
-    } else {
-      advance_to_stop(leg);
+  /// @param at_stop  at_stop(), called at each stop on the way, when the scales have been read
+  /// there
+  template <class AtStop>
+  void advance(Tick step, AtStop at_stop) {
+    for (const Tick end = now_ + step;;) {
+      const DriveWay::Leg& leg = way_.legs[leg_];
+      leg_ = leg_ == last_leg_ ? 0 : leg_ + 1;
+      assert(now_ + leg.step <= end);
+      if (leg.stretch < 0) {
+        move(leg.step);
+      } else {
+        move_past_stops(static_cast<std::size_t>(leg.stretch), at_stop);
+      }
+      now_ += leg.step;
+      if (now_ == end) return;
+      read_scales();
+      at_stop();
     }
+  }
+  void advance(Tick step) {
+    advance(step, [] {});
   }
 
   /// What read_scales read.
@@ -226,21 +227,31 @@ class ServoAxes {
   }
 
   const MachineSettings& machine_of(std::size_t lane) const { return *machines_[axes_[lane].run]; }
-  void advance_to_stop(const DriveWay::Leg& leg) {
-    if (leg.stop == 0) {
-      drives_.advance_with_stops(state_, input_, static_cast<std::size_t>(leg.stretch), positions_);
+  void move(Tick step) {
+    if (cvode_) {
+      cvode_->advance(state_, input_, step);
+    } else {
+      drives_.advance(state_, input_, step);
     }
-    // Positions of this stop come in; those of the end wait in the place of the first stop's.
-    LaneArray* positions = positions_.data() + (leg.at_end ? 0 : leg.stop * blocks_);
-    drives_.exchange_positions(state_, {positions, blocks_});
-    on_the_way_ = !leg.at_end;
+  }
+  template <class AtStop>
+  void move_past_stops(std::size_t stretch, AtStop at_stop) {
+    drives_.advance_with_stops(state_, input_, stretch, positions_);
+    const LaneArray* positions = positions_.data();
+    for (const Tick stop : way_.stretches[stretch].stops) {
+      kernel_.read_scales_at(servos_.data(), positions, blocks_);
+      if (!own_scale_reading_.empty()) read_own_scales_at(positions, now_ + stop);
+      positions += blocks_;
+      at_stop();
+    }
   }
   void describe(std::size_t lane);
   void settle(std::size_t lane, double Q, double displacement);
-  void read_own_scales();  // of encoders that do more than quantise
+  // Of encoders that do more than quantise, at positions of the drives.
+  void read_own_scales_at(const LaneArray* positions, Tick now);
   void read_motors();
   double motor_reading(std::size_t lane) const;
-  double scale_reading(std::size_t lane) const;
+  double scale_reading(std::size_t lane, double x, Tick now) const;
   std::optional<std::string> fault_of(std::size_t lane);
 
   std::vector<const MachineSettings*> machines_;
@@ -254,7 +265,6 @@ class ServoAxes {
   DriveWay way_;
   std::size_t leg_ = 0, last_leg_;    // the next one, the last of a round
   std::vector<LaneArray> positions_;  // at the stops of a stretch
-  bool on_the_way_ = false;           // past a stop, of which only the positions are shown
   plant::DriveBank drives_;
   std::optional<plant::CvodeBank> cvode_;  // moves the drives instead, if asked for
   std::size_t blocks_;                     // that the lanes fill

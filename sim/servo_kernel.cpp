@@ -22,12 +22,16 @@ void read_motors(ServoBlock* servos, const DriveBlock* drives, std::size_t count
   }
 }
 
+void read_scale(ServoBlock& s, const LaneArray& x) {
+  put(s.scale, plant::quantised(Number(s.scale_step), Number(s.per_scale_step), Number(x)));
+}
+
 void read_scales(ServoBlock* servos, const DriveBlock* drives, std::size_t count) {
-  for (std::size_t n = 0; n < count; ++n) {
-    ServoBlock& s = servos[n];
-    put(s.scale,
-        plant::quantised(Number(s.scale_step), Number(s.per_scale_step), Number(drives[n].x)));
-  }
+  for (std::size_t n = 0; n < count; ++n) read_scale(servos[n], drives[n].x);
+}
+
+void read_scales_at(ServoBlock* servos, const LaneArray* positions, std::size_t count) {
+  for (std::size_t n = 0; n < count; ++n) read_scale(servos[n], positions[n]);
 }
 
 void take_readings(ServoBlock* servos, std::size_t count) {
@@ -105,8 +109,8 @@ void displace(ServoBlock* servos, std::size_t stride, const int* joints, std::si
 
 template <>
 ServoKernel make_servo_kernel<SERVOMILL_LEVEL>() {
-  return {&read_motors,    &read_scales,   &take_readings, &position_loops,
-          &velocity_loops, &current_loops, &get_scales,    &displace};
+  return {&read_motors,    &read_scales,   &read_scales_at, &take_readings, &position_loops,
+          &velocity_loops, &current_loops, &get_scales,     &displace};
 }
 
 }  // namespace servomill::sim

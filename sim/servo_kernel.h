@@ -48,8 +48,9 @@ struct ServoBlock {
 struct ServoKernel {
   /// phi of encoders that do nothing but quantise.
   void (*read_motors)(ServoBlock* servos, const plant::DriveBlock* drives, std::size_t count);
-  /// scale, likewise.
+  /// scale, likewise; at the positions of drives, or at others, one array for each block.
   void (*read_scales)(ServoBlock* servos, const plant::DriveBlock* drives, std::size_t count);
+  void (*read_scales_at)(ServoBlock* servos, const LaneArray* positions, std::size_t count);
   /// Q_read from phi and scale.
   void (*take_readings)(ServoBlock* servos, std::size_t count);
   /// Also marks suspects; whether there are any.

@@ -252,7 +252,7 @@ class Lockstep {
       for (const Instant& instant : schedule_) {
         if (end_those_done(n, results)) return results;
         visit(instant.due, n);
-        axes_.advance(instant.step);
+        axes_.advance(instant.step, [&] { advance_feedback(); });
         n += instant.step;
       }
     }
@@ -267,9 +267,7 @@ class Lockstep {
 
   void visit(std::uint8_t due, Tick n) {
     if (due & (kErrorModel | kRecord)) axes_.read_scales();
-    if (due & kErrorModel) {
-      for (FeedbackLanes& feedback : feedbacks_) feedback.advance();
-    }
+    if (due & kErrorModel) advance_feedback();
     if (due & kSample) {
       for (FeedbackLanes& feedback : feedbacks_) feedback.act();
       axes_.take_readings();
@@ -282,6 +280,10 @@ class Lockstep {
     if (due & kCurrentLoop) axes_.run_current_loops();
     if (due & kVelocityLoop) axes_.run_velocity_loops();
     if (due & kRecord) each([&](CaseRun& run) { run.record(n); });
+  }
+
+  void advance_feedback() {
+    for (FeedbackLanes& feedback : feedbacks_) feedback.advance();
   }
 
   void supervise(Tick n) {

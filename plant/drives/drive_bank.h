@@ -53,11 +53,6 @@ class DriveBank {
   /// @param positions  x of block b at stop n goes to positions[n * blocks + b]
   void advance_with_stops(DriveState& state, const DriveInput& input, std::size_t stretch,
                           std::span<LaneArray> positions) const;
-  /// Exchanges the positions of the state with others, one array for each block.
-  void exchange_positions(DriveState& state, std::span<LaneArray> others) const {
-    assert(others.size() == state.blocks.size());
-    kernel_.exchange_positions(state.blocks.data(), others.data(), others.size());
-  }
 
   /// Motor angle (rad) of a lane: (delta + x) / r.
   double motor_angle(const DriveState& state, std::size_t lane) const {

@@ -644,20 +644,11 @@ SERVOMILL_FLATTEN LanesLeft advance(DriveBlock* states, const DriveInputBlock* i
   return {end, 0};
 }
 
-template <class Arch>
-void exchange_positions(DriveBlock* states, LaneArray* positions, std::size_t count) {
-  for (std::size_t n = 0; n < count; ++n) {
-    const Pack<Arch> x(states[n].x);
-    Pack<Arch>(positions[n]).store(states[n].x);
-    x.store(positions[n]);
-  }
-}
-
 }  // namespace
 
 template <>
 DriveKernel make_drive_kernel<SERVOMILL_LEVEL>() {
-  return {&advance<SERVOMILL_ARCH>, &exchange_positions<SERVOMILL_ARCH>};
+  return {&advance<SERVOMILL_ARCH>};
 }
 
 }  // namespace servomill::plant

@@ -107,8 +107,6 @@ struct DriveKernel {
   /// positions[stop * end + n], which are not written for lanes that are left.
   LanesLeft (*advance)(DriveBlock* states, const DriveInputBlock* inputs, const BlockStep* steps,
                        LaneArray* positions, std::size_t first, std::size_t end);
-  /// Exchanges the positions of the states with others.
-  void (*exchange_positions)(DriveBlock* states, LaneArray* positions, std::size_t count);
 };
 
 template <SimdLevel level>

@@ -194,18 +194,22 @@ class Problem {
           for (std::size_t run = 0; run < axes_.runs(); ++run) record(run, set_, axes_);
         }
         if (n == end) return;
-        axes_.advance(instant.step);
+        axes_.advance(instant.step, [&] { advance_feedback(); });
         n += instant.step;
       }
     }
   }
 
  private:
+  void advance_feedback() {
+    for (sim::FeedbackLanes& feedback : feedbacks_) feedback.advance();
+  }
+
   // The velocity loop before the current loop, which uses its result at once.
   void visit(std::uint8_t due, Tick n) {
     if (due & sim::kErrorModel) {
       axes_.read_scales();
-      for (sim::FeedbackLanes& feedback : feedbacks_) feedback.advance();
+      advance_feedback();
     }
     if (due & sim::kPositionLoop) {
       set_point_.take(reference_trajectory(static_cast<double>(n) * kTick));

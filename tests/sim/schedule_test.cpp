@@ -21,8 +21,19 @@ void expect_due_exactly_at_its_multiples(const std::vector<Rate>& rates) {
     for (const Instant& instant : schedule) {
       EXPECT_GT(instant.step, 0);
       EXPECT_NE(instant.due, 0) << "nothing is visited that is not due";
-      for (std::size_t i = 0; i < rates.size(); ++i) {
-        if (instant.due & rates[i].due) seen[i].push_back(n);
+      EXPECT_TRUE(n == total * round || instant.due != kErrorModel) << "that is a stop";
+      const auto see = [&](std::uint8_t due, Tick now) {
+        for (std::size_t i = 0; i < rates.size(); ++i) {
+          if (due & rates[i].due) seen[i].push_back(now);
+        }
+      };
+      see(instant.due, n);
+      Tick before = 0;
+      for (const Tick stop : instant.stops) {
+        EXPECT_GT(stop, before);
+        EXPECT_LT(stop, instant.step);
+        see(kErrorModel, n + stop);
+        before = stop;
       }
       n += instant.step;
     }

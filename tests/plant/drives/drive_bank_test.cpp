@@ -179,17 +179,6 @@ TEST(DriveBank, StopsShowWhereADriveWithFrictionIs) {
   }
 }
 
-TEST(DriveBank, ExchangesThePositionsOfItsLanes) {
-  const DriveBank bank = bank_of(x_axis(), {1});
-  One s;
-  s.state.blocks[0].x[0] = 1.0;
-  std::vector<LaneArray> others(1);
-  others[0][0] = 2.0;
-  bank.exchange_positions(s.state, others);
-  EXPECT_EQ(s.at.x[0], 2.0);
-  EXPECT_EQ(others[0][0], 1.0);
-}
-
 // To and fro through both zones of friction and the standstill between them: the largest difference
 // (m) between a lane of the bank and its exact step.
 double difference_from_exact_step(FrictionKind kind, Tick step) {
