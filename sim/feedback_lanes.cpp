@@ -54,8 +54,7 @@ void FeedbackLanes::advance() {
     }
     if (!are_read) axes_.get_readings(Q_meas_, first_);
     are_read = true;
-    axes_.displace(together.part->advance(Q_meas_, together.lanes), together.lanes,
-                   together.strategy->displaces_rotary(), first_);
+    together.d = &together.part->advance(Q_meas_, together.lanes);
   }
 }
 
@@ -66,14 +65,19 @@ void FeedbackLanes::wait(Together& one) {
 }
 
 void FeedbackLanes::act() {
-  for (Together& together : all_) {
-    if (together.waiting > 0) act(together);
-  }
+  for (Together& together : all_) act(together);
 }
 
-void FeedbackLanes::act(Together& one) {
-  axes_.displace(one.part->advance(one.Q_waiting, one.waiting, one.last), first_ + one.last);
-  one.waiting = 0;
+void FeedbackLanes::act(Together& together) {
+  if (together.d != nullptr) {
+    axes_.displace(*together.d, together.lanes, together.strategy->displaces_rotary(), first_);
+    together.d = nullptr;
+  }
+  if (together.waiting > 0) {
+    axes_.displace(together.part->advance(together.Q_waiting, together.waiting, together.last),
+                   first_ + together.last);
+    together.waiting = 0;
+  }
 }
 
 }  // namespace servomill::sim

@@ -38,13 +38,14 @@ class FeedbackLanes {
     std::unique_ptr<strategies::FeedbackPart> part;
     LaneFlags lanes = {};
     std::size_t count = 0, last = 0;  // of the lanes in use
+    const JointLanes* d = nullptr;    // of several runs: acts, but the axes do not know yet
     JointLanes Q_waiting = {};        // readings of the only run, period by period
     std::size_t waiting = 0;          // periods
   };
   Together& of(std::size_t run);
   void use(Together& together, std::size_t lane, bool used);
   void wait(Together& one);
-  void act(Together& one);
+  void act(Together& together);
 
   ServoAxes& axes_;
   std::size_t first_;

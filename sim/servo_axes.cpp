@@ -115,6 +115,7 @@ ServoAxes::ServoAxes(std::vector<const MachineSettings*> machines, std::vector<i
       joints_(std::move(joints)),
       places_(machines_.size()),
       in_a_row_(machines_.size() == 1 && joints_.size() == kJoints),
+      blocks_of_joint_(fills_blocks() && joints_.size() == kJoints ? runs() / kLaneWidth : 0),
       params_(params_of(machines_, joints_)),
       way_(drive_way(schedule)),
       last_leg_(way_.legs.empty() ? 0 : way_.legs.size() - 1),
@@ -284,6 +285,16 @@ void ServoAxes::follow(const AxisSetPoint& set, std::size_t run) {
     row(&ServoBlock::Q_cmd) = set.Q_cmd;
     row(&ServoBlock::dQ_ff) = set.dQ_ff;
     row(&ServoBlock::ddQ_ff) = set.ddQ_ff;
+    return;
+  }
+  if (blocks_of_joint_ > 0) {
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      ServoBlock& servo = servos_[block_of(j, run)];
+      const auto joint = static_cast<int>(j);
+      servo.Q_cmd[run % kLaneWidth] = set.Q_cmd[joint];
+      servo.dQ_ff[run % kLaneWidth] = set.dQ_ff[joint];
+      servo.ddQ_ff[run % kLaneWidth] = set.ddQ_ff[joint];
+    }
     return;
   }
   for (const int j : joints_) {

@@ -201,6 +201,13 @@ class ServoAxes {
   template <class Blocks, class Member>
   Joints gathered(const Blocks& blocks, Member member, std::size_t run) const {
     if (in_a_row_) return Joints((blocks.front().*member).data());
+    if (blocks_of_joint_ > 0) {
+      Joints Q;
+      for (std::size_t j = 0; j < kJoints; ++j) {
+        Q[static_cast<int>(j)] = (blocks[block_of(j, run)].*member)[run % kLaneWidth];
+      }
+      return Q;
+    }
     return each_joint(run, [&](const Place& p) { return (blocks[p.block].*member)[p.place]; });
   }
   Joints joints_of(LaneArray ServoBlock::*member, std::size_t run) const {
@@ -213,6 +220,10 @@ class ServoAxes {
   auto row(LaneArray ServoBlock::*member) { return Joints::Map((servos_.front().*member).data()); }
   // Blocks hold one joint of eight runs each.
   bool fills_blocks() const { return runs() % kLaneWidth == 0; }
+  // Where they do and all joints take part.
+  std::size_t block_of(std::size_t joint, std::size_t run) const {
+    return joint * blocks_of_joint_ + run / kLaneWidth;
+  }
   // what(n, joint, place) for the joints of the runs first + n, up to eight.
   template <class What>
   void each_of_eight(std::size_t first, What what) const {
@@ -261,6 +272,7 @@ class ServoAxes {
   std::array<std::size_t, kJoints> first_lane_{};
   std::vector<std::array<Place, kJoints>> places_;  // by run
   bool in_a_row_ = false;  // one run only, and all joints take part: they lie side by side
+  std::size_t blocks_of_joint_ = 0;             // if the runs fill blocks and all joints take part
   std::vector<plant::FeedDriveParams> params_;  // by lane
   DriveWay way_;
   std::size_t leg_ = 0, last_leg_;    // the next one, the last of a round

@@ -96,6 +96,28 @@ class VelocityWindow {
   std::size_t oldest_ = 0;
 };
 
+// approached() period by period: of what was wanted, then of all but the last of `next`, which is
+// wanted from then on. Where no limit is felt on the way, that is the last but one.
+double approach_in_turn(const LaneArray& next, std::size_t periods, double most, double most_change,
+                        double& wanted, double& value) {
+  double low = std::min(wanted, value), high = std::max(wanted, value);
+  for (std::size_t n = 0; n + 1 < periods; ++n) {
+    low = std::min(low, next[n]);
+    high = std::max(high, next[n]);
+  }
+  constexpr double kBelowLimit = 0.99;  // no rounding leads beyond
+  if (high - low <= kBelowLimit * most_change && -most <= low && high <= most) {
+    value = periods > 1 ? next[periods - 2] : wanted;
+    wanted = next[periods - 1];
+    return value;
+  }
+  for (std::size_t n = 0; n < periods; ++n) {
+    value = approached(wanted, most, most_change, value);
+    wanted = next[n];
+  }
+  return value;
+}
+
 // Displaces the first joints: the linear ones, or all.
 template <int kDisplaced>
 class VirtualEncoder final : public FeedbackPart {
@@ -127,20 +149,9 @@ class VirtualEncoder final : public FeedbackPart {
     ShiftLanes next;
     find_in_turn(Q_meas, periods, run, next);
     Joints d = Joints::Zero();
-    Shifts wanted;
     for (int j = 0; j < kDisplaced; ++j) {
-      wanted[j] = wanted_[j][run];
-      d[j] = out_[j][run];
-    }
-    for (std::size_t n = 0; n < periods; ++n) {  // joints side by side: none waits for another
-      for (int j = 0; j < kDisplaced; ++j) {
-        d[j] = approached(wanted[j], params_.max[j], max_change_[j], d[j]);
-        wanted[j] = next[j][n];
-      }
-    }
-    for (int j = 0; j < kDisplaced; ++j) {
-      wanted_[j][run] = wanted[j];
-      out_[j][run] = d[j];
+      d[j] = approach_in_turn(next[j], periods, params_.max[j], max_change_[j], wanted_[j][run],
+                              out_[j][run]);
     }
     return d;
   }
