@@ -71,6 +71,10 @@ ToolPose less_what_errors_do(const ToolPose& P, const ToolPose& asked, const Too
   return {asked.p_WT + (P.p_WT - got.p_WT), (asked.k_W + (P.k_W - got.k_W)).normalized()};
 }
 
+bool is_met(const TrueJoints& found) {
+  return found.miss_p <= kPoseTolerance && found.miss_k <= kPoseTolerance;
+}
+
 }  // namespace
 
 TrueJoints nonideal_inverse_from(const VolumetricModel& model, const ToolPose& P,
@@ -83,12 +87,9 @@ TrueJoints nonideal_inverse_from(const VolumetricModel& model, const ToolPose& P
     out.miss_k = angle_between(P.k_W, got.k_W);
     return got;
   };
-  const auto is_there = [&] {
-    return out.miss_p <= kPoseTolerance && out.miss_k <= kPoseTolerance;
-  };
   double most_turn = kMostTurn;
   ToolPose got = look();
-  while (!is_there() && out.steps < kMaxPoseSteps) {
+  while (!is_met(out) && out.steps < kMaxPoseSteps) {
     const Step step =
         newton_step(model, out.Q, p_ST, P.p_WT - got.p_WT, P.k_W - got.k_W, most_turn);
     if (!step.dQ.allFinite()) break;
@@ -122,12 +123,14 @@ TrueJoints nonideal_inverse(const VolumetricModel& model, const InverseKinematic
   TrueJoints out;
   for (int i = 0; i < starts.count; ++i) {
     const Joints& Q_start = starts.all[static_cast<std::size_t>(i)].Q;
-    const TrueJoints found = nonideal_inverse_from(model, P, p_ST, Q_start);
-    if (i == 0 || found.is_reached()) out = found;
+    TrueJoints found = nonideal_inverse_from(model, P, p_ST, Q_start);
+    if (found.is_reached() && !ideal.is_within_travel(found.Q)) found.reach = Reach::travel;
+    // that a pose is met beyond the travel says more than that it is not
+    const bool is_better = found.is_reached() || (found.reach == Reach::travel && !is_met(out));
+    if (i == 0 || is_better) out = found;
     if (out.is_reached()) break;
   }
   out.is_singular = out.is_singular || asked.is_singular;
-  if (out.is_reached() && !ideal.is_within_travel(out.Q)) out.reach = Reach::travel;
   if (!out.is_reached() && asked.reach == Reach::parallel_axes) out.reach = asked.reach;
   return out;
 }

@@ -194,6 +194,30 @@ TEST(PoseInverse, SaysWhereTheErrorsLeadBeyondTheTravel) {
   }
 }
 
+// Only the last step of Newton leads beyond the end of B: the mirrored solution, with the other
+// sign of B and half a turn of C, is as good.
+TEST(PoseInverse, NearTheTravelTakesTheSolutionThatLiesWithin) {
+  const MachineChain chain = chain_of("[w C' B' X b Y Z t]");
+  constexpr double kSlope = 1e-3, kAngle = 40 * deg;
+  ErrorModel errors;
+  errors.component("EBB"_err) = polynomial({0.0, -kSlope});
+  const VolumetricModel model(chain, errors);
+  const ToolPose P{{0.02, 0.0, 0.1}, {std::sin(kAngle), 0.0, std::cos(kAngle)}};
+  const Joints Q_near = InverseKinematics(chain).nearest(P, kTip, Joints::Zero()).Q;
+  ASSERT_NEAR(Q_near[3], kAngle, kPoseTolerance);
+  const double B = kAngle / (1.0 - kSlope), begin = kAngle * (1.0 + kSlope);
+  for (const double end : {0.5 * (begin + B), B + (B - begin)}) {
+    InverseSettings settings;
+    settings.lower[3] = -60 * deg;
+    settings.upper[3] = end;
+    const InverseKinematics ideal(chain, settings);
+    const TrueJoints found = nonideal_inverse(model, ideal, P, kTip, Q_near);
+    EXPECT_TRUE(found.is_reached());
+    EXPECT_NEAR(found.Q[3], end < B ? -B : B, kPoseTolerance);
+    EXPECT_LT(miss(model, found.Q, kTip, P), 2.0 * kPoseTolerance);
+  }
+}
+
 TEST(PoseInverse, PositionOfAMachineThatLacksALinearAxisIsReported) {
   const MachineChain chain = chain_of("[w C' B' X b Y t]");
   const VolumetricModel model(chain, {});
