@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include "plant/kinematics/branches.h"
 #include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
 
@@ -68,9 +69,14 @@ Vector3d ToolCentrePoint::tool_axis(const Joints& Q) const {
   return plant::forward(chain(), Q, Vector3d::Zero()).k_W;
 }
 
+// A tool axis where the joints have the tip.
+ToolPose ToolCentrePoint::anywhere(const Vector3d& k, const Joints& Q) const {
+  return {plant::forward(chain(), Q, Vector3d::Zero()).p_WT, k};
+}
+
 ToolCentrePoint::Pointing ToolCentrePoint::point(const Vector3d& k, const Joints& Q_near) const {
-  const Vector3d anywhere = plant::forward(chain(), Q_near, Vector3d::Zero()).p_WT;
-  const plant::JointSolution found = inverse_.nearest({anywhere, k}, Vector3d::Zero(), Q_near);
+  const plant::JointSolution found =
+      inverse_.nearest(anywhere(k, Q_near), Vector3d::Zero(), Q_near);
   Pointing out{Q_near, {}};
   out.Q.tail<kJoints - kLinearJoints>() = found.Q.tail<kJoints - kLinearJoints>();
   if (found.reach == plant::Reach::orientation) {
@@ -112,32 +118,51 @@ bool ToolCentrePoint::keeps_circle(const RotaryKnot& from, RotaryKnot& to, const
   return true;
 }
 
-std::string ToolCentrePoint::jump_fault(const Joints& from, const Joints& to) const {
-  int joint = kLinearJoints;
+// Why the joints cannot go on continuously to the tool axis k.
+std::string ToolCentrePoint::jump_fault(const Joints& from, const Joints& to,
+                                        const Vector3d& k) const {
+  int joint = 0;
   (to - from).tail<kJoints - kLinearJoints>().cwiseAbs().maxCoeff(&joint);
   joint += kLinearJoints;
-  return fmt::format("{} would have to jump from {:.4f} to {:.4f} deg where its travel ends",
-                     chain().layout.letter_of(joint), from[joint] / deg, to[joint] / deg);
+  const char letter = chain().layout.letter_of(joint);
+  const auto ends = plant::joint_at_its_end(inverse_, anywhere(k, from), Vector3d::Zero(), from);
+  if (!ends) {
+    return fmt::format("{} would have to jump from {:.4f} to {:.4f} deg", letter, from[joint] / deg,
+                       to[joint] / deg);
+  }
+  const std::string other = *ends == joint ? "" : fmt::format("{} ", letter);
+  return fmt::format(
+      "{} comes to the end of its travel at {:.4f} deg, and otherwise {}would have "
+      "to jump from {:.4f} to {:.4f} deg",
+      chain().layout.letter_of(*ends), from[*ends] / deg, other, from[joint] / deg,
+      to[joint] / deg);
 }
 
-AxisTurn ToolCentrePoint::great_circle(const Joints& Q, const Vector3d& k_end) const {
-  const Vector3d k_begin = tool_axis(Q);
+// The first knot behind a singular direction on the branch of Q, which belongs to t.
+std::optional<RotaryKnot> ToolCentrePoint::depart(const RotaryKnot& start, double t,
+                                                  const Joints& Q, const Vector3d& k_begin,
+                                                  const Vector3d& k_end) const {
+  RotaryKnot knot{t, Q};
+  while (!keeps_circle(start, knot, k_begin, k_end)) {
+    knot.fraction *= 0.5;
+    if (knot.fraction * angle_between(k_begin, k_end) < kLeastTurn) return std::nullopt;
+    knot.Q = point(axis_between(k_begin, k_end, knot.fraction), knot.Q).Q;
+  }
+  return knot;
+}
+
+// To the end by the solutions nearest to those before.
+AxisTurn ToolCentrePoint::trace(const RotaryKnot& start, const Vector3d& k_begin,
+                                const Vector3d& k_end) const {
   AxisTurn out;
   out.angle = angle_between(k_begin, k_end);
-  if (out.angle > std::numbers::pi - kOpposite) {
-    out.fault = "the tool axis turns by 180 deg, so that no great circle is given";
-    return out;
-  }
-  if (out.angle < kStandingAxis) {
-    out.knots.push_back({1.0, Q});
-    return out;
-  }
-  RotaryKnot at{0.0, Q};
+  RotaryKnot at = start;
   double step = 1.0;
   while (at.fraction < 1.0) {
     const bool last = at.fraction + step >= 1.0;
     RotaryKnot next{last ? 1.0 : at.fraction + step};
-    const Pointing found = point(axis_between(k_begin, k_end, next.fraction), at.Q);
+    const Vector3d k = axis_between(k_begin, k_end, next.fraction);
+    const Pointing found = point(k, at.Q);
     if (!found.fault.empty()) {
       out.fault = last ? found.fault : fmt::format("on the way, {}", found.fault);
       return out;
@@ -148,11 +173,39 @@ AxisTurn ToolCentrePoint::great_circle(const Joints& Q, const Vector3d& k_end) c
       out.knots.push_back(at);
       step *= 2.0;
     } else if (step * out.angle < kLeastTurn) {
-      out.fault = jump_fault(at.Q, next.Q);
+      out.fault = jump_fault(at.Q, next.Q, k);
       return out;
     } else {
       step = 0.5 * (next.fraction - at.fraction);
     }
+  }
+  return out;
+}
+
+AxisTurn ToolCentrePoint::great_circle(const Joints& Q, const Vector3d& k_end) const {
+  const Vector3d k_begin = tool_axis(Q);
+  AxisTurn out;
+  out.angle = angle_between(k_begin, k_end);
+  if (out.angle > std::numbers::pi - kOpposite) {
+    out.fault = "the tool axis turns by 180 deg, so that no great circle is given";
+    return out;
+  }
+  const RotaryKnot start{0.0, Q};
+  if (out.angle < kStandingAxis) {
+    out.knots.push_back({1.0, Q});
+    return out;
+  }
+  out = trace(start, k_begin, k_end);
+  if (out.fault.empty() || inverse_.distance_from_singular(k_begin) > axis_tolerance_) return out;
+  const double t = std::min(1.0, axis_tolerance_ / out.angle);
+  const ToolPose just_off = anywhere(axis_between(k_begin, k_end, t), Q);
+  for (const Joints& branch : plant::departures(inverse_, just_off, Vector3d::Zero(), Q)) {
+    const auto knot = depart(start, t, branch, k_begin, k_end);
+    if (!knot) continue;
+    AxisTurn turn = trace(*knot, k_begin, k_end);
+    if (!turn.fault.empty()) continue;
+    turn.knots.insert(turn.knots.begin(), *knot);
+    return turn;
   }
   return out;
 }

@@ -65,7 +65,8 @@ class ToolCentrePoint {
   /// From the tool axis that the machine has at Q to k_end on the great circle between them,
   /// without a jump of a joint. Near a singular direction the joints turn much for a small angle of
   /// the tool axis; where the great circle passes within the tolerance of such a direction, it is
-  /// crossed with the joints that need not turn.
+  /// crossed with the joints that need not turn. From a singular direction it takes the nearest of
+  /// the branches (plant/kinematics/branches.h) that get to the end within the travel.
   ///
   ///     k(t) = k_0 cos(t theta) + n sin(t theta),  n in the plane of k_0 and k_end           (1)
   ///
@@ -87,7 +88,13 @@ class ToolCentrePoint {
  private:
   bool keeps_circle(const RotaryKnot& from, RotaryKnot& to, const Eigen::Vector3d& k_begin,
                     const Eigen::Vector3d& k_end) const;
-  std::string jump_fault(const Joints& from, const Joints& to) const;
+  AxisTurn trace(const RotaryKnot& start, const Eigen::Vector3d& k_begin,
+                 const Eigen::Vector3d& k_end) const;
+  std::optional<RotaryKnot> depart(const RotaryKnot& start, double t, const Joints& Q,
+                                   const Eigen::Vector3d& k_begin,
+                                   const Eigen::Vector3d& k_end) const;
+  ToolPose anywhere(const Eigen::Vector3d& k, const Joints& Q) const;
+  std::string jump_fault(const Joints& from, const Joints& to, const Eigen::Vector3d& k) const;
 
   plant::InverseKinematics inverse_;
   double axis_tolerance_;

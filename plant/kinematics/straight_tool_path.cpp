@@ -1,8 +1,12 @@
 #include "plant/kinematics/straight_tool_path.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
+
+#include "plant/kinematics/branches.h"
 
 namespace servomill::plant {
 namespace {
@@ -17,11 +21,39 @@ class Lineariser {
       : inverse_(inverse), p_ST_(p_ST), path_(path), tolerance_(tolerance), at_{0.0, Q_0} {}
 
   LinearisedPath run() {
+    const PathPoint start = at_;
     go_to(1.0, kMostSplits);
-    return std::move(out_);
+    if (out_.is_complete || !inverse_.nearest(path_.at(0.0), p_ST_, start.Q).is_singular) {
+      return std::move(out_);
+    }
+    LinearisedPath nearest = std::exchange(out_, {});
+    const double t = std::min(1.0, tolerance_.axis / path_.angle());
+    for (const Joints& Q : departures(inverse_, path_.at(t), p_ST_, start.Q)) {
+      at_ = start;
+      out_ = {};
+      depart(t, Q);
+      if (out_.is_complete) return std::move(out_);
+    }
+    return nearest;
   }
 
  private:
+  // From the singular direction to the end by the branch of Q, which belongs to t.
+  void depart(double t, Joints Q) {
+    for (int splits_left = kMostSplits; !holds(t, Q); --splits_left) {
+      if (splits_left == 0) {
+        out_.is_complete = false;
+        return;
+      }
+      t *= 0.5;
+      // the solution of this branch: its neighbour has the other sign of an axis
+      Q = inverse_.nearest(path_.at(t), p_ST_, Q).Q;
+    }
+    at_ = {t, Q};
+    out_.points.push_back(at_);
+    if (t < 1.0) go_to(1.0, kMostSplits);
+  }
+
   // Every solution is sought next to a point that holds, so that no branch is taken unseen.
   void go_to(double t, int splits_left) {
     const JointSolution next = inverse_.nearest(path_.at(t), p_ST_, at_.Q);

@@ -54,6 +54,8 @@ struct LinearisedPath {
 
 /// Points between which the joints may move linearly while the tool stays within the tolerance of
 /// its path: halves the way until it does. Each point is the solution nearest to the one before.
+/// Where that leads from a singular direction to the end of a travel, the other branches
+/// (branches.h) are followed in turn, and the first that arrives is taken.
 /// @param Q_0  joints at t = 0 (5; m, rad)
 LinearisedPath linearise(const InverseKinematics& inverse, const Eigen::Vector3d& p_ST,
                          const StraightToolPath& path, const Joints& Q_0,

@@ -305,6 +305,55 @@ TEST(SingularDirection, LeavingItTurnsTheFreeAxisFirstWithTheTipInPlace) {
   }
 }
 
+// Behind the singular direction the axis that tilts goes to one side or the other: the nearer one,
+// or the one that the travel allows.
+TEST(SingularDirection, IsLeftOnTheBranchThatArrives) {
+  TipMachine table = table_machine(), head = head_machine(), nutating = table_machine();
+  table.lower[3] = -10 * deg;
+  head.upper[3] = 10 * deg;
+  nutating.chain = plant::make_chain(plant::parse_structure("[w C' B' X b Y Z t]"));
+  plant::incline(nutating.chain.at(Axis::B), {0, 1, 1});
+  nutating.lower[3] = -10 * deg;
+  nutating.upper[3] = 190 * deg;
+  for (const TipMachine& machine : {table, head, nutating}) {
+    for (int phi = -180; phi < 180; phi += 30) {
+      const Vector3d k(0.5 * std::cos(phi * deg), 0.5 * std::sin(phi * deg), std::sqrt(0.75));
+      const Planned p(machine, fmt::format("G43.5 H1\nG1 X10 I{:.9f} J{:.9f} K{:.9f} F1000\n", k[0],
+                                           k[1], k[2]));
+      const Joints Q = p.trajectory.end();
+      EXPECT_LT((machine.pose(Q).k_W - k).norm(), 1e-9) << phi << ", as printed";
+      EXPECT_TRUE(machine.control()->inverse().is_within_travel(Q)) << phi << ": " << Q.transpose();
+      p.sample_line(2, kStep, [&](const Sample&, const ToolPose& P) {
+        const Vector3d across = Vector3d::UnitZ().cross(k).normalized();
+        EXPECT_LT(std::abs(P.k_W.dot(across)), p.machine.options.rotary_tolerance) << phi;
+      });
+    }
+  }
+}
+
+TEST(SingularDirection, IsLeftOnTheNearerBranchWhereBothArrive) {
+  const Planned p(table_machine(), "G43.5 H1\nG1 X10 I0 J-0.5 K0.866 F1000\n");
+  EXPECT_NEAR(std::abs(p.trajectory.end()[4]), 0.0, 1e-12);
+  TipMachine one_sided = table_machine();
+  (p.trajectory.end()[3] > 0.0 ? one_sided.upper : one_sided.lower)[3] = 0.0;
+  const Planned other(one_sided, "G43.5 H1\nG1 X10 I0 J-0.5 K0.866 F1000\n");
+  EXPECT_NEAR(std::abs(other.trajectory.end()[4]), 180 * deg, 1e-12);
+}
+
+// C at the end of its travel: it goes a turn back before the tool axis leaves the vertical.
+TEST(SingularDirection, IsLeftAFullTurnAwayWhereTheTravelEnds) {
+  TipMachine machine = table_machine();
+  machine.lower[3] = 0.0;
+  machine.lower[4] = -360 * deg;
+  machine.upper[4] = 360 * deg;
+  for (int phi = 0; phi < 360; phi += 15) {
+    const Planned p(machine,
+                    fmt::format("G0 C340\nG43.5 H1\nG1 X0 K1 F1000\nX10 I{:.9f} J{:.9f} K2\n",
+                                std::cos(phi * deg), std::sin(phi * deg)));
+    EXPECT_TRUE(machine.control()->inverse().is_within_travel(p.trajectory.end())) << phi;
+  }
+}
+
 // ------------------------------------------------------------------------------ corners, planes
 
 TEST(TipMotion, CornersOfTheTipStayWithinTheTolerance) {
@@ -411,9 +460,24 @@ TEST(TipMotion, AnAxisAtItsEndCannotGoOn) {
             "p.nc:3:1: error: on the way, the tool axis (0.000000, 0.425361, 0.905024) needs C = "
             "180.0000 deg; must be <= 170.0000");
   EXPECT_EQ(message(-120 * deg, round), "") << "A goes the other way from the begin";
-  EXPECT_EQ(message(-120 * deg, "G0 A26 C160\nG43.5 H1\nG1 I-0.342 J0.94 K2 F100\n"),
-            "p.nc:3:1: error: C would have to jump from 170.0000 to -10.0000 deg where its travel "
-            "ends");
+  EXPECT_EQ(
+      message(-120 * deg, "G0 A26 C160\nG43.5 H1\nG1 I-0.342 J0.94 K2 F100\n"),
+      "p.nc:3:1: error: C comes to the end of its travel at 170.0000 deg, and otherwise would "
+      "have to jump from 170.0000 to -10.0000 deg");
+}
+
+// Through the vertical A would go to the other side, but ends before.
+TEST(TipMotion, TheAxisThatIsAtItsEndIsNamed) {
+  TipMachine machine = table_machine();
+  machine.lower[3] = -10 * deg;
+  try {
+    machine.read("G0 A5\nG43.5 H1\nG1 I0 J0.5 K0.866 F100\n");
+    FAIL() << "A would have to pass its end, or C to jump";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "p.nc:3:1: error: A comes to the end of its travel at -10.0000 deg, and otherwise C "
+              "would have to jump from 0.0000 to -180.0000 deg");
+  }
 }
 
 TEST(TipMotion, WhatLinearAxesCannotReachIsSaidWithTheLine) {

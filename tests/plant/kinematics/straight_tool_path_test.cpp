@@ -149,6 +149,39 @@ TEST(Linearise, SaysWhereTheJointsWouldHaveToJump) {
   EXPECT_NEAR(line.t, 0.5, 1e-6);
 }
 
+// On the axis of C, where the tip stays while C turns.
+TEST(Linearise, LeavesASingularDirectionOnTheBranchThatArrives) {
+  InverseSettings settings;
+  settings.lower[3] = -10 * deg;
+  settings.upper[3] = 110 * deg;
+  const ToolPose a{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
+  const Joints Q_0 = machine(kStructures[0]).nearest(a, kTool, Joints::Zero()).Q;
+  for (const char* structure : kStructures) {
+    const InverseKinematics inverse(make_chain(parse_structure(structure)), settings);
+    for (int phi = -180; phi < 180; phi += 30) {
+      const Eigen::Vector3d k(0.5 * std::cos(phi * deg), 0.5 * std::sin(phi * deg),
+                              std::sqrt(0.75));
+      const StraightToolPath path(a, {{0.01, 0.0, 0.0}, k});
+      const auto line = linearise(inverse, kTool, path, Q_0, {1 * um, 1e-5});
+      ASSERT_TRUE(line.is_complete) << structure << " " << phi;
+      EXPECT_TRUE(inverse.is_within_travel(line.points.back().Q));
+      EXPECT_LT((forward(inverse.chain(), line.points.back().Q, kTool).k_W - k).norm(), kRounding);
+      Joints Q = Q_0;
+      double t = 0.0;
+      for (const PathPoint& point : line.points) {
+        for (double f = 0.0; f < 1.0; f += 0.1) {
+          const ToolPose wanted = path.at(t + f * (point.t - t));
+          const ToolPose is = forward(inverse.chain(), Q + f * (point.Q - Q), kTool);
+          EXPECT_LT((is.p_WT - wanted.p_WT).norm(), 1.01 * um);
+          EXPECT_LT(angle_between(is.k_W, wanted.k_W), 1.01e-5);
+        }
+        t = point.t;
+        Q = point.Q;
+      }
+    }
+  }
+}
+
 TEST(PostedSegment, ErrorsVanishAtBothEndsAndModelsMeetThemInTheMiddle) {
   Random random(4);
   for (const char* structure : kStructures) {
