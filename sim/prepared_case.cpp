@@ -355,6 +355,10 @@ class Preparation {
           controllers::travel_faults(*moves, machine_.chain.layout, start_, machine_.nc.lower,
                                      machine_.nc.upper, scenario_.program.file, tip);
       if (!faults.empty()) throw InputError(std::move(faults));
+      if (const auto slowed = controllers::slowed_inverse_time(*moves, machine_.chain.layout,
+                                                               start_, limits, options)) {
+        tip.slowed.push_back(*slowed);
+      }
       const auto blocks = std::count_if(moves->begin(), moves->end(),
                                         [](const Move& move) { return is_motion(move.kind); });
       return PlannedMotion{

@@ -66,7 +66,7 @@ class Tracer {
       at = knot;
     }
     motion.last = out_.chords.size();
-    note_speed(motion, move, Q_begin);
+    note_slowing(motion, move, Q_begin);
     out_.motions.push_back(motion);
     return {};
   }
@@ -144,7 +144,7 @@ class Tracer {
   bool split(const Point& a, const Point& b, const RotaryKnot& from, const RotaryKnot& to,
              int halvings_left) {
     if (halvings_left == 0 || error_of(a, b) <= kChordShare * T_) {
-      add(b);
+      add(b, to.is_even);
       return true;
     }
     const auto middle = point_at(0.5 * (a.t + b.t), from, to);
@@ -163,39 +163,80 @@ class Tracer {
     return worst;
   }
 
-  void add(const Point& b) {
+  void add(const Point& b, bool is_even) {
     const double arm = plant::jacobian(machine_.chain(), b.Q, p_ST_)
                            .J_pQ.rightCols<kJoints - kLinearJoints>()
                            .norm();
     const double of_axis = kAxisShare * axis_tolerance_;
     const double of_tip = arm > 0.0 ? kRotaryShare * T_ / arm : of_axis;
-    out_.chords.push_back({b.Q, b.t, kLinearShare * T_, std::min(of_axis, of_tip)});
+    out_.chords.push_back({b.Q, b.t, kLinearShare * T_, std::min(of_axis, of_tip), is_even});
     Q_ = b.Q;
   }
 
-  void note_speed(const TipMotion& motion, const Move& move, const Joints& Q_begin) {
+  // Speed, acceleration and jerk of the joints at the programmed feed, from the last chords.
+  class Rates {
+   public:
+    explicit Rates(const Joints& Q_begin) : last_{Derivative{0.0, Q_begin}} {}
+
+    void go_to(const JointChord& chord, double time) {
+      // divided differences, newest first
+      std::array<Derivative, kOrders + 1> now{Derivative{time, chord.end}};
+      double factor = 1.0;
+      for (std::size_t n = 1; n <= kOrders; ++n) {
+        const Derivative& before = last_[n - 1];
+        now[n] = {before.begin, (now[n - 1].value - before.value) / (time - before.begin)};
+        factor *= static_cast<double>(n);
+        rate_[n] = factor * now[n].value.cwiseAbs();
+      }
+      last_ = now;
+      even_ = chord.is_even ? even_ + 1 : 0;
+    }
+    // Of that order, from 1.
+    const Joints& of(std::size_t order) const { return rate_[order]; }
+    // Higher orders come from as many chords without a corner between them.
+    std::size_t known() const { return std::clamp<std::size_t>(even_, 1, kOrders); }
+
+    static constexpr std::size_t kOrders = 3;
+
+   private:
+    struct Derivative {
+      double begin = 0.0;  // s, of the chords it spans
+      Joints value = Joints::Zero();
+    };
+    std::array<Derivative, kOrders + 1> last_;
+    std::array<Joints, kOrders + 1> rate_;
+    std::size_t even_ = 0;
+  };
+
+  void note_slowing(const TipMotion& motion, const Move& move, const Joints& Q_begin) {
     if (motion.time == 0.0 || motion.first == motion.last) return;
+    const std::array<const Joints*, 3> limits = {&limits_.v, &limits_.a, &limits_.j};
     SlowedMotion worst;
-    double most = 1.0;
+    double least = 1.0;
     // a rotary joint first: where it is too slow the linear ones only follow it
     for (const auto& [first, end] : {std::pair(kLinearJoints, kJoints), {0, kLinearJoints}}) {
-      double t = 0.0;
-      Joints before = Q_begin;
+      Rates rates(Q_begin);
       for (const JointChord& chord : out_.chords_of(motion)) {
-        const double time = motion.time * (chord.fraction - t);
-        for (int j = first; j < end; ++j) {
-          const double rate = std::abs(chord.end[j] - before[j]) / time;
-          if (!layout_.has(j) || rate <= most * limits_.v[j]) continue;
-          most = rate / limits_.v[j];
-          worst = {move.line, j, rate, limits_.v[j],
-                   machine_.inverse().distance_from_singular(machine_.tool_axis(chord.end))};
+        rates.go_to(chord, motion.time * chord.fraction);
+        const double from_singular =
+            circle_ ? machine_.inverse().distance_from_singular(machine_.tool_axis(chord.end))
+                    : 0.5 * std::numbers::pi;
+        const std::size_t orders = from_singular < kNearSingular ? rates.known() : 1;
+        for (std::size_t n = 1; n <= orders; ++n) {
+          for (int j = first; j < end; ++j) {
+            if (!layout_.has(j) || rates.of(n)[j] <= (*limits[n - 1])[j]) continue;
+            const SlowedMotion here{move.line,      j,
+                                    rates.of(n)[j], (*limits[n - 1])[j],
+                                    from_singular,  static_cast<int>(n)};
+            if (here.share() >= least) continue;
+            least = here.share();
+            worst = here;
+          }
         }
-        t = chord.fraction;
-        before = chord.end;
       }
-      if (most > 1.0) break;
+      if (least < 1.0) break;
     }
-    if (most > 1.0) out_.slowed.push_back(worst);
+    if (least < 1.0) out_.slowed.push_back(worst);
   }
 
   const ToolCentrePoint& machine_;
@@ -238,21 +279,6 @@ TipMotions tip_motions(std::span<const Move> moves, const ToolCentrePoint& machi
   }
   if (!faults.empty()) throw InputError(std::move(faults));
   return tracer.take();
-}
-
-std::string to_string(const SlowedMotion& s, const JointLayout& layout) {
-  constexpr double kWaits = 1e-3;  // of the programmed feed: next to nothing
-  if (s.allowed < kWaits * s.needed) {
-    return fmt::format("in a singular direction of the tool axis the tip waits while {} turns",
-                       layout.letter_of(s.joint));
-  }
-  const bool is_linear_joint = s.joint < kLinearJoints;
-  const double unit = is_linear_joint ? mm : deg;
-  return fmt::format(
-      "the programmed feed needs {} at {:.4g} {}/s, {:.2f} deg from a singular direction of the "
-      "tool axis; it can do {:.4g}: the feed falls to {:.3g} %",
-      layout.letter_of(s.joint), s.needed / unit, is_linear_joint ? "mm" : "deg",
-      s.singular_angle / deg, s.allowed / unit, 100.0 * s.allowed / s.needed);
 }
 
 }  // namespace servomill::controllers

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "controllers/path/path_limits.h"
+#include "controllers/path/slowed_motion.h"
 #include "controllers/path/tool_centre_point.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/move.h"
@@ -34,6 +35,7 @@ struct JointChord {
   double fraction = 0.0;          // of the move, where the chord ends
   double tolerance_linear = 0.0;  // m, for rounding
   double tolerance_rotary = 0.0;  // rad
+  bool is_even = true;            // on a curve without corners (RotaryKnot)
 };
 
 /// One move under tool control.
@@ -43,18 +45,12 @@ struct TipMotion {
   double time = 0.0;                // s, by the programmed feed; 0: as fast as the joints can
 };
 
-/// A move whose feed the joints cannot follow, as near a singular direction.
-struct SlowedMotion {
-  int line = 0;
-  int joint = 0;
-  double needed = 0.0, allowed = 0.0;  // m/s or rad/s: at the programmed feed, and the limit
-  double singular_angle = 0.0;         // rad, of the tool axis from a singular direction there
-};
-
 struct TipMotions {
   std::vector<JointChord> chords;
-  std::vector<TipMotion> motions;    // in the order of the moves
-  std::vector<SlowedMotion> slowed;  // the worst place of each line
+  std::vector<TipMotion> motions;  // in the order of the moves
+  // The worst place of each line: by speed wherever it is, by acceleration and jerk where the tool
+  // axis turns near a singular direction.
+  std::vector<SlowedMotion> slowed;
 
   const TipMotion* of(std::size_t move) const;
   std::span<const JointChord> chords_of(const TipMotion& motion) const {
@@ -65,15 +61,12 @@ struct TipMotions {
 /// @param moves   of a program; those without tool control are only followed
 /// @param tips    p_ST (3; m) by number of tool offset
 /// @param start   joints before the first move (5; m, rad)
-/// @param limits  speeds of which `slowed` tells
+/// @param limits  of which `slowed` tells
 /// @param file    of the program, for faults
 /// @throws InputError with every move that the machine cannot do
 TipMotions tip_motions(std::span<const Move> moves, const ToolCentrePoint& machine,
                        const std::map<int, Eigen::Vector3d>& tips, const Joints& start,
                        const JointLimits& limits, const PathOptions& options,
                        const std::string& file);
-
-/// "C would have to turn ..." for the report of a run.
-std::string to_string(const SlowedMotion& slowed, const JointLayout& layout);
 
 }  // namespace servomill::controllers

@@ -1,0 +1,48 @@
+/// Where the joints cannot follow the programmed feed.
+#pragma once
+
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "controllers/path/path_limits.h"
+#include "plant/vocabulary/move.h"
+
+namespace servomill::controllers {
+
+/// A place where the programmed feed needs more of a joint than its speed, acceleration or jerk.
+struct SlowedMotion {
+  int line = 0;
+  int joint = 0;
+  double needed = 0.0,
+         allowed = 0.0;  // m/s^order or rad/s^order: at the programmed feed, the limit
+  double singular_angle = 0.5 * std::numbers::pi;  // rad, of the tool axis from a singular
+                                                   // direction there; far off if that is no reason
+  int order = 1;                                   // 1 speed, 2 acceleration, 3 jerk
+  std::size_t others = 0;                          // blocks that are slowed down, too
+
+  /// Of the feed, what is left: the derivative of that order goes with its power. That of a feed
+  /// which stays the same; where it has to fall for a moment only, it falls somewhat farther.
+  double share() const;
+};
+
+/// Where the tool axis is nearer to a singular direction, that is why a joint turns fast: more than
+/// five times as fast as the tool axis.
+inline constexpr double kNearSingular = 0.2;  // rad
+
+/// "the programmed feed needs C at ..."
+std::string to_string(const SlowedMotion& slowed, const JointLayout& layout);
+
+/// The block in inverse time (G93), without tool control, that asks most of a joint beyond its
+/// speed, and how many others do; of arcs only their mean speeds are seen. Feeds in units per
+/// minute are what an NC may fall short of without a word.
+/// @param moves  of a program
+/// @param start  joints before the first move (5; m, rad)
+std::optional<SlowedMotion> slowed_inverse_time(std::span<const Move> moves,
+                                                const JointLayout& layout, const Joints& start,
+                                                const JointLimits& limits,
+                                                const PathOptions& options);
+
+}  // namespace servomill::controllers
