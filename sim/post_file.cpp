@@ -130,20 +130,25 @@ std::string header(const PostRequest& request, const controllers::PostOptions& o
 
 }  // namespace
 
-PostedFile post_file(PostRequest request) {
+PostedFile post_file(PostRequest request, std::vector<controllers::Warning>* of_refused) {
   const MachineSettings machine = read_changed_machine(request.machine_file, request.changes);
+  std::vector<controllers::Warning> ignored;
+  std::vector<controllers::Warning>& told = of_refused != nullptr ? *of_refused : ignored;
   const controllers::ClData data = controllers::read_cl_data(
-      read_file(request.cl_file, {}, "cutter location file"), request.cl_file);
+      read_file(request.cl_file, {}, "cutter location file"), request.cl_file, &told);
+  told = data.warnings;
   refuse_unknown_length(request, machine.chain);
   controllers::PostOptions& options = request.options;
   options.start = joints_of(request.start, machine.chain.layout);
+  options.v_max = machine.nc.v_max;
   take_tools(request, data, options);
 
   plant::InverseSettings settings;
   settings.lower = machine.nc.lower;
   settings.upper = machine.nc.upper;
   const plant::InverseKinematics inverse(machine.chain, settings);
-  controllers::Posted posted = controllers::post(data, request.cl_file, inverse, options);
+  controllers::Posted posted = controllers::post(data, request.cl_file, inverse, options, &told);
+  told.clear();
 
   controllers::PrintOptions print;
   print.axes = names_of(machine.chain.layout);

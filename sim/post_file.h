@@ -25,8 +25,9 @@ struct PostedFile {
   std::size_t locations = 0, inserted = 0;
 };
 
+/// @param of_refused  where a fault ends it: receives the warnings until then
 /// @throws InputError as the reader of the machine, of the tool table, of the locations and the
 /// post-processor do
-PostedFile post_file(PostRequest request);
+PostedFile post_file(PostRequest request, std::vector<controllers::Warning>* of_refused = nullptr);
 
 }  // namespace servomill::sim

@@ -80,7 +80,8 @@ std::optional<double> number_in(std::string_view text) {
 // What both forms share: the result, and everything that is said about the file.
 class ClReader {
  public:
-  explicit ClReader(const std::string& file) : file_(file) {}
+  ClReader(const std::string& file, std::vector<Warning>* of_refused)
+      : file_(file), of_refused_(of_refused) {}
 
  protected:
   Place place(Spot spot) const { return {file_, spot.line, spot.column}; }
@@ -123,15 +124,19 @@ class ClReader {
     if (faults_.empty() && out_.locations() == 0) {
       faults_.push_back({{file_}, "holds no cutter location"});
     }
-    if (!faults_.empty()) throw InputError(std::move(faults_));
     std::stable_sort(
         out_.warnings.begin(), out_.warnings.end(), [](const Warning& a, const Warning& b) {
           return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
         });
-    return std::move(out_);
+    if (faults_.empty()) return std::move(out_);
+    if (of_refused_ != nullptr) {
+      of_refused_->insert(of_refused_->end(), out_.warnings.begin(), out_.warnings.end());
+    }
+    throw InputError(std::move(faults_));
   }
 
   const std::string& file_;
+  std::vector<Warning>* of_refused_;
   ClData out_;
   std::vector<Fault> faults_;
 };
@@ -140,7 +145,7 @@ class ClReader {
 
 class AptReader : ClReader {
  public:
-  explicit AptReader(const std::string& file) : ClReader(file) {}
+  using ClReader::ClReader;
 
   ClData read(std::string_view text) {
     PlacedText statement;
@@ -242,18 +247,22 @@ class AptReader : ClReader {
     return false;
   }
 
+  [[noreturn]] void refuse_other_way(Spot at, std::string_view name) const {
+    fail(at, fmt::format("{} changes where the tool goes and is not supported; write the locations "
+                         "out as GOTO",
+                         name));
+  }
+
   void unknown(Spot at, const std::string& name) {
-    static constexpr std::array<std::string_view, 27> kChangeTheWay = {
-        "CIRCLE", "COPY",   "CUTCOM", "CYCLE", "GOBACK", "GODLTA", "GODOWN", "GOFWD",  "GOHOME",
-        "GOLFT",  "GORGT",  "GOUP",   "INDEX", "MODE",   "MOVARC", "MSYS",   "OFSTNO", "ORIGIN",
-        "ROTABL", "ROTATE", "ROTHED", "TLLFT", "TLON",   "TLRGT",  "TMARK",  "TRACUT", "TRANS"};
+    static constexpr std::array<std::string_view, 26> kChangeTheWay = {
+        "CIRCLE", "COPY",   "CUTCOM", "GOBACK", "GODLTA", "GODOWN", "GOFWD",  "GOHOME", "GOLFT",
+        "GORGT",  "GOUP",   "INDEX",  "MODE",   "MOVARC", "MSYS",   "OFSTNO", "ORIGIN", "ROTABL",
+        "ROTATE", "ROTHED", "TLLFT",  "TLON",   "TLRGT",  "TMARK",  "TRACUT", "TRANS"};
     static constexpr std::array<std::string_view, 10> kDescribe = {
         "CUTTER", "END-OF-PATH", "FROM",   "INTOL",     "MACHIN",
         "OUTTOL", "PAINT",       "TLDATA", "TOOL PATH", "TOLER"};
     if (std::find(kChangeTheWay.begin(), kChangeTheWay.end(), name) != kChangeTheWay.end()) {
-      fail(at, fmt::format("{} changes where the tool goes and is not supported; write the "
-                           "locations out as GOTO",
-                           name));
+      refuse_other_way(at, name);
     }
     const bool describes = std::find(kDescribe.begin(), kDescribe.end(), name) != kDescribe.end();
     // what follows a word without '/' is no part of it
@@ -425,11 +434,17 @@ class AptReader : ClReader {
   void optional_stop(Spot at, const Words&) { add(MoveKind::stop, at).number = 1; }
   void end(Spot, const Words&) { ended_ = true; }
 
+  void cycle(Spot at, const Words& words) {
+    if (words.size() == 1 && is(words[0], "OFF")) return;
+    refuse_other_way(at, "CYCLE");
+  }
+
   // whether GOTO has an axis is seen from its numbers
   void multi_axis(Spot, const Words&) {}
 
-  static constexpr std::array<Major, 12> kMajors = {{
+  static constexpr std::array<Major, 13> kMajors = {{
       {"COOLNT", &AptReader::coolant},
+      {"CYCLE", &AptReader::cycle},
       {"DELAY", &AptReader::delay},
       {"FEDRAT", &AptReader::feed_rate},
       {"FINI", &AptReader::end},
@@ -458,7 +473,7 @@ class AptReader : ClReader {
 
 class CsvReader : ClReader {
  public:
-  explicit CsvReader(const std::string& file) : ClReader(file) {}
+  using ClReader::ClReader;
 
   ClData read(std::string_view text) {
     int line = 0;
@@ -564,9 +579,10 @@ std::size_t ClData::locations() const {
                     [](const ClRecord& record) { return is_motion(record.kind); }));
 }
 
-ClData read_cl_data(std::string_view text, const std::string& file) {
-  return in_capitals(file).ends_with(".CSV") ? CsvReader(file).read(text)
-                                             : AptReader(file).read(text);
+ClData read_cl_data(std::string_view text, const std::string& file,
+                    std::vector<Warning>* of_refused) {
+  return in_capitals(file).ends_with(".CSV") ? CsvReader(file, of_refused).read(text)
+                                             : AptReader(file, of_refused).read(text);
 }
 
 }  // namespace servomill::controllers

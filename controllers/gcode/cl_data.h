@@ -12,6 +12,7 @@
 ///     SPINDL/n[,RPM][,CLW|CCLW]  SPINDL/ON|OFF
 ///     COOLNT/ON|FLOOD|MIST|OFF
 ///     LOADTL/n                DELAY/s                  STOP  OPSTOP  PPRINT text  FINI
+///     CYCLE/OFF               of no effect, for cycles are not read
 ///
 /// CSV, in files whose name ends in `.csv`: a header, then a line a location. Columns x, y, z
 /// (x_mm or x_in say the unit, x is in mm), i, j, k and, if wanted, feed (mm/min); lines that begin
@@ -60,9 +61,11 @@ struct ClData {
   std::size_t locations() const;
 };
 
-/// @param file  name for messages; its ending tells the form
+/// @param file        name for messages; its ending tells the form
+/// @param of_refused  where a fault ends it: receives the warnings
 /// @throws InputError with every fault: among them a tool axis without a direction, a file without
 /// a location
-ClData read_cl_data(std::string_view text, const std::string& file);
+ClData read_cl_data(std::string_view text, const std::string& file,
+                    std::vector<Warning>* of_refused = nullptr);
 
 }  // namespace servomill::controllers

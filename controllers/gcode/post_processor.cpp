@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "controllers/path/slowed_motion.h"
+#include "plant/kinematics/branches.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
@@ -12,46 +16,88 @@ namespace {
 
 constexpr double kStandingTip = 1e-9;    // m; a shorter way of the tip is none
 constexpr std::size_t kMostFaults = 20;  // a machine that is too small has one a location
-constexpr std::string_view kJumps =
-    "the tool axis passes a singular direction, or the end of a rotary axis' travel, where the "
-    "axes "
-    "would have to jump; lead it past at a distance, or retract there";
+constexpr double kJustOff = 1e-7;        // rad; so near to a singular direction axes begin to tilt
+constexpr double kSameAxis = 1e-9;       // rad; tool axes nearer to each other are one
+constexpr double kSameAngle = 1e-6;      // rad; a free axis so near to its place need not turn
+constexpr int kMostHalvings = 20;
+constexpr std::string_view kRemedies =
+    "lead the tool axis past at a distance, retract there, or let the axes begin elsewhere "
+    "(--start)";
+
+using Eigen::Vector3d;
 
 class Post {
  public:
   Post(const ClData& data, const std::string& file, const plant::InverseKinematics& inverse,
        const PostOptions& options)
-      : data_(data), file_(file), inverse_(inverse), options_(options), Q_(options.start) {}
+      : data_(data), file_(file), inverse_(inverse), options_(options), Q_(options.start) {
+    const double T = options.tolerance.tip;
+    switch (options.mode) {
+      case PostMode::joints:
+        chord_ = kChordTolerance * T;
+        rounding_ = T - chord_;
+        break;
+      case PostMode::locations:
+        chord_ = rounding_ = T;  // no chord, but for the choice of solutions
+        break;
+      case PostMode::tip:  // the NC keeps the tip where it belongs
+        chord_ = std::numeric_limits<double>::infinity();
+        rounding_ = T;
+        break;
+    }
+  }
 
-  Posted run() {
+  Posted run(std::vector<Warning>* of_refused) {
     tool_ = options_.tool;
     bool loads_tool = false;
     for (const ClRecord& record : data_.records) loads_tool |= record.kind == MoveKind::tool;
     if (!loads_tool && tool_ > 0) load(tool_, 0);
-    for (const ClRecord& record : data_.records) {
-      if (faults_.size() >= kMostFaults) break;
+    for (std::size_t i = 0; i < data_.records.size() && faults_.size() < kMostFaults; ++i) {
+      const ClRecord& record = data_.records[i];
       if (is_motion(record.kind)) {
-        go_to(record);
+        go_to(i);
       } else if (record.kind == MoveKind::tool) {
         load(record.number, record.line);
       } else {
         pass_on(record);
       }
     }
-    if (!faults_.empty()) throw InputError(std::move(faults_));
-    if (singular_ > 0) {
-      out_.warnings.push_back(
-          {{file_, first_singular_, 0},
-           fmt::format("the tool axis is singular, here and at {} more locations: a rotary axis "
-                       "keeps its angle",
-                       singular_ - 1)});
+    sum_up();
+    if (faults_.empty()) return std::move(out_);
+    if (of_refused != nullptr) {
+      of_refused->insert(of_refused->end(), out_.warnings.begin(), out_.warnings.end());
     }
-    return std::move(out_);
+    throw InputError(std::move(faults_));
   }
 
  private:
   void fault(int line, std::string message) {
     faults_.push_back({{file_, line, 0}, std::move(message)});
+  }
+
+  void warn(int line, std::string message) {
+    out_.warnings.push_back({{file_, line, 0}, std::move(message)});
+  }
+
+  // What is told of once.
+  void sum_up() {
+    if (singular_ > 0) {
+      warn(first_singular_,
+           fmt::format("the tool axis is singular, here and at {} more locations: a rotary axis is "
+                       "free",
+                       singular_ - 1));
+    }
+    if (bent_ > 0) {
+      const std::string more =
+          bent_ == 1 ? "" : fmt::format(", and by more than the tolerance on {} more", bent_ - 1);
+      warn(most_bent_,
+           fmt::format("on the way here the axes lead the tip {:.4g} mm off the straight "
+                       "way{}; only --classical inserts no points",
+                       bend_ / mm, more));
+    }
+    if (slowed_) {
+      warn(slowed_->line, to_string(*slowed_, inverse_.chain().layout));
+    }
   }
 
   Move& add(MoveKind kind, int line) {
@@ -60,7 +106,7 @@ class Post {
     move.line = line;
     move.work_offset = options_.work_system;
     move.tool_offset = tool_;
-    move.path_tolerance = options_.tolerance.tip;
+    move.path_tolerance = rounding_;
     move.s_begin = move.s_end = s_;
     return move;
   }
@@ -84,28 +130,143 @@ class Post {
     move.text = record.text;
   }
 
-  void go_to(const ClRecord& record) {
-    ToolPose P = record.P;
-    P.p_WT += options_.part_zero;
-    if (record.kind == MoveKind::rapid || !has_location_) return jump_to(P, record);
+  ToolPose pose_of(const ClRecord& record) const {
+    return {record.P.p_WT + options_.part_zero, record.P.k_W};
+  }
+
+  void go_to(std::size_t i) {
+    const ClRecord& record = data_.records[i];
+    if (record.kind == MoveKind::rapid || !has_location_) return jump_to(i);
     const double feed = record.feed > 0.0 ? record.feed : options_.feed;
     if (feed == 0.0) {
       if (!missed_feed_)
         fault(record.line, "no feed is given for this location; add FEDRAT or --feed");
       missed_feed_ = true;
-      return jump_to(P, record);
+      return jump_to(i);
     }
-    feed_to(P, record.line, feed);
+    feed_to(pose_of(record), record.line, feed);
   }
 
-  void jump_to(const ToolPose& P, const ClRecord& record) {
-    const plant::JointSolution next = inverse_.nearest(P, p_ST_, Q_);
+  void jump_to(std::size_t i) {
+    const ClRecord& record = data_.records[i];
+    const ToolPose P = pose_of(record);
+    plant::JointSolution next = inverse_.nearest(P, p_ST_, Q_);
     if (!next.is_reached()) return fault(record.line, reason(next, inverse_));
     note_singular(next, record.line);
+    if (next.is_singular) next.Q = looking_ahead(i, P, next.Q);
     block(MoveKind::rapid, record.line, P, next.Q, 0.0, 0.0);
     here_ = P;
     has_location_ = true;
   }
+
+  // ---- the free axis of a singular direction
+
+  // Joints at P, with a tool axis that is singular, that need not change where the feed moves that
+  // follow lead the tool axis away; Q if none do.
+  Joints looking_ahead(std::size_t i, const ToolPose& P, const Joints& Q) const {
+    std::vector<ToolPose> upright = {P};
+    for (std::size_t n = i + 1; n < data_.records.size(); ++n) {
+      const ClRecord& record = data_.records[n];
+      if (record.kind == MoveKind::rapid || record.kind == MoveKind::tool) return Q;
+      if (!is_motion(record.kind)) continue;
+      const ToolPose next = pose_of(record);
+      const double turn = angle_between(P.k_W, next.k_W);
+      if (turn >= plant::kRoundTurn) return Q;
+      if (turn < kSameAxis) {
+        upright.push_back(next);
+        continue;
+      }
+      const plant::StraightToolPath way(upright.back(), next);
+      for (const Joints& branch : branches(way, Q)) {
+        const auto Q_here = on_branch(P, branch);
+        if (Q_here && stays_free(upright, *Q_here) && arrives(way, branch)) return *Q_here;
+      }
+      return Q;
+    }
+    return Q;
+  }
+
+  static ToolPose just_off(const plant::StraightToolPath& way) {
+    return way.at(std::min(1.0, kJustOff / way.angle()));
+  }
+
+  std::vector<Joints> branches(const plant::StraightToolPath& way, const Joints& Q_near) const {
+    return plant::departures(inverse_, just_off(way), p_ST_, Q_near);
+  }
+
+  // The joints of a branch, where the direction is still singular.
+  std::optional<Joints> on_branch(const ToolPose& P, const Joints& branch) const {
+    const plant::JointSolution found = inverse_.nearest(P, p_ST_, branch);
+    return found.is_reached() ? std::optional(found.Q) : std::nullopt;
+  }
+
+  bool stays_free(const std::vector<ToolPose>& upright, const Joints& Q) const {
+    return std::all_of(upright.begin(), upright.end(),
+                       [&](const ToolPose& P) { return on_branch(P, Q).has_value(); });
+  }
+
+  // Whether a branch arrives, without changing to another in the singular direction.
+  bool arrives(const plant::StraightToolPath& way, const Joints& branch) const {
+    return linearised({just_off(way), way.at(1.0)}, branch).is_complete;
+  }
+
+  plant::LinearisedPath linearised(const plant::StraightToolPath& way, const Joints& Q) const {
+    return plant::linearise(inverse_, p_ST_, way, Q, {chord_, options_.tolerance.axis});
+  }
+
+  // Turns the free axis with the tip in place, if that lets the tool axis go the way. The blocks
+  // that it takes, or nullopt.
+  struct Departure {
+    std::vector<Joints> turn;
+    plant::LinearisedPath way;
+  };
+  std::optional<Departure> departure(const plant::StraightToolPath& way) const {
+    if (way.angle() < kSameAxis || !inverse_.nearest(here_, p_ST_, Q_).is_singular) return {};
+    for (const Joints& branch : branches(way, Q_)) {
+      const auto Q = on_branch(here_, branch);
+      if (!Q || !arrives(way, branch)) continue;
+      Departure out;
+      if (turn_of(*Q) > kSameAngle && !turn_in_place(Q_, *Q, kMostHalvings, out.turn)) continue;
+      out.way = linearised(way, *Q);
+      if (out.way.is_complete) return out;
+    }
+    return {};
+  }
+
+  double turn_of(const Joints& Q) const {
+    return (Q - Q_).tail<kJoints - kLinearJoints>().cwiseAbs().maxCoeff();
+  }
+
+  // Chords from Q_0 to Q_1 on which the tip stays here.
+  bool turn_in_place(const Joints& Q_0, const Joints& Q_1, int halvings_left,
+                     std::vector<Joints>& out) const {
+    const Joints middle = 0.5 * (Q_0 + Q_1);
+    const Vector3d tip = plant::forward(inverse_.chain(), middle, p_ST_).p_WT;
+    if ((tip - here_.p_WT).norm() <= chord_ || halvings_left == 0) {
+      out.push_back(Q_1);
+      return true;
+    }
+    const auto between = on_branch(here_, middle);
+    return between && turn_in_place(Q_0, *between, halvings_left - 1, out) &&
+           turn_in_place(*between, Q_1, halvings_left - 1, out);
+  }
+
+  void turn_here(const std::vector<Joints>& turn, int line) {
+    if (turn.empty()) return;
+    int joint = 0;
+    const double angle =
+        (turn.back() - Q_).tail<kJoints - kLinearJoints>().cwiseAbs().maxCoeff(&joint);
+    warn(line,
+         fmt::format("{} turns by {:.6g} deg with the tip in place before the tool axis leaves "
+                     "a singular direction; a retract there would avoid it",
+                     inverse_.chain().layout.letter_of(kLinearJoints + joint), angle / deg));
+    for (const Joints& Q : turn) {
+      block(MoveKind::feed, line, here_, Q, 0.0, turn_of(Q) / options_.turn_rate);
+    }
+    out_.inserted += turn.size();
+  }
+
+  // ---- feed moves
 
   void feed_to(const ToolPose& P, int line, double feed) {
     if (angle_between(here_.k_W, P.k_W) >= plant::kRoundTurn) {
@@ -115,21 +276,21 @@ class Post {
     if (!end.is_reached()) return fault(line, reason(end, inverse_));
     note_singular(end, line);
     const plant::StraightToolPath path(here_, P);
-    plant::ToolTolerance tolerance = options_.tolerance;
-    if (options_.mode == PostMode::tip) {  // the NC keeps the tip where it belongs
-      tolerance.tip = std::numeric_limits<double>::infinity();
-    }
     plant::LinearisedPath way;
-    way.points = {{1.0, end.Q}};
-    if (options_.mode != PostMode::locations) {
-      way = plant::linearise(inverse_, p_ST_, path, Q_, tolerance);
+    if (options_.mode == PostMode::locations) {
+      note_bend(path, end.Q, line);
+      way.points = {{1.0, end.Q}};
+    } else if (auto leaving = departure(path)) {
+      turn_here(leaving->turn, line);
+      way = std::move(leaving->way);
+    } else {
+      way = linearised(path, Q_);
     }
     if (!way.is_complete) {
+      fault(line, fmt::format("at {:.1f} % of the way here {}", 100.0 * way.t, why_not(way, path)));
       here_ = P;
       Q_ = end.Q;
-      const std::string why =
-          way.failure.is_reached() ? std::string(kJumps) : reason(way.failure, inverse_);
-      return fault(line, fmt::format("at {:.1f} % of the way here {}", 100.0 * way.t, why));
+      return;
     }
     out_.inserted += way.points.size() - 1;
     double t = 0.0;
@@ -142,6 +303,58 @@ class Post {
       t = point.t;
     }
     here_ = P;
+  }
+
+  std::string why_not(const plant::LinearisedPath& way, const plant::StraightToolPath& path) const {
+    if (!way.failure.is_reached()) return reason(way.failure, inverse_);
+    const Joints& Q = way.points.empty() ? Q_ : way.points.back().Q;
+    const auto joint = plant::joint_at_its_end(inverse_, path.at(way.t), p_ST_, Q);
+    if (!joint) {
+      return fmt::format(
+          "the tool axis passes a singular direction, where the axes would have to "
+          "jump; {}",
+          kRemedies);
+    }
+    const bool linear = *joint < kLinearJoints;
+    return fmt::format(
+        "axis {} comes to the end of its travel at {:.6g} {}, and otherwise the axes "
+        "would have to jump; {}",
+        inverse_.chain().layout.letter_of(*joint), Q[*joint] / (linear ? mm : deg),
+        linear ? "mm" : "deg", kRemedies);
+  }
+
+  // How far a block to Q alone leads the tip off its way.
+  void note_bend(const plant::StraightToolPath& path, const Joints& Q, int line) {
+    constexpr int kLooks = 16;
+    double worst = 0.0;
+    for (int n = 1; n < kLooks; ++n) {
+      const double t = static_cast<double>(n) / kLooks;
+      const Vector3d tip = plant::forward(inverse_.chain(), Q_ + t * (Q - Q_), p_ST_).p_WT;
+      worst = std::max(worst, (tip - path.at(t).p_WT).norm());
+    }
+    if (worst <= options_.tolerance.tip) return;
+    ++bent_;
+    if (worst <= bend_) return;
+    bend_ = worst;
+    most_bent_ = line;
+  }
+
+  // The NC slows down where a posted time is too short.
+  void note_speed(int line, const ToolPose& P, const Joints& Q, double time) {
+    if (!(time > 0.0)) return;
+    // under tip control linear joints go elsewhere than to Q in between
+    const int first = options_.mode == PostMode::tip ? kLinearJoints : 0;
+    bool counts = false;
+    for (int j = first; j < kJoints; ++j) {
+      if (!inverse_.chain().layout.has(j)) continue;
+      SlowedMotion here{line, j, std::abs(Q[j] - Q_[j]) / time, options_.v_max[j],
+                        inverse_.distance_from_singular(P.k_W)};
+      if (!(here.needed > here.allowed)) continue;
+      if (!counts) ++too_fast_;
+      counts = true;
+      if (!slowed_ || here.share() < slowed_->share()) slowed_ = here;
+    }
+    if (slowed_) slowed_->others = too_fast_ - 1;
   }
 
   // One block to the joints Q, on which the tip takes its way (m) in that time (s).
@@ -161,6 +374,7 @@ class Post {
       const bool in_time = options_.mode != PostMode::tip || !moves_tip;
       move.feed_mode = in_time ? FeedMode::inverse_time : FeedMode::units_per_minute;
       const double turn = (Q - Q_).tail<kJoints - kLinearJoints>().norm();
+      note_speed(line, P, Q, time);
       // a block of no time at all: nothing moves
       move.feed = time > 0.0 ? (moves_tip ? way : turn) / time : options_.turn_rate;
     }
@@ -178,6 +392,7 @@ class Post {
   const std::string& file_;
   const plant::InverseKinematics& inverse_;
   const PostOptions& options_;
+  double chord_ = 0.0, rounding_ = 0.0;  // m, shares of the tolerance of the tip
   Posted out_;
   std::vector<Fault> faults_;
   Joints Q_;
@@ -189,6 +404,11 @@ class Post {
   double s_ = 0.0;
   std::size_t singular_ = 0;
   int first_singular_ = 0;
+  std::size_t bent_ = 0;  // blocks that lead the tip off by more than the tolerance
+  double bend_ = 0.0;     // m, at most
+  int most_bent_ = 0;     // its line
+  std::size_t too_fast_ = 0;
+  std::optional<SlowedMotion> slowed_;
 };
 
 }  // namespace
@@ -217,8 +437,8 @@ std::string reason(const plant::JointSolution& solution, const plant::InverseKin
 }
 
 Posted post(const ClData& data, const std::string& file, const plant::InverseKinematics& inverse,
-            const PostOptions& options) {
-  return Post(data, file, inverse, options).run();
+            const PostOptions& options, std::vector<Warning>* of_refused) {
+  return Post(data, file, inverse, options).run(of_refused);
 }
 
 }  // namespace servomill::controllers

@@ -1,6 +1,7 @@
 /// Cutter locations to canonical moves of one machine, ready to be printed as G-code.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,13 @@ struct PostOptions {
   double feed = 0.0;              // m/s, where the data give none; 0: they must
   double turn_rate = 1.0;         // rad/s of the tool axis where the tip stands still
   Joints start = Joints::Zero();  // m, rad; chooses among the solutions of the first location
+  // m/s, rad/s: of which posted times are told to ask too much
+  Joints v_max = Joints::Constant(std::numeric_limits<double>::infinity());
 };
+
+/// Of the tolerance of the tip, for the chords between inserted points; the rest is the NC's to
+/// round corners with (G64 P).
+inline constexpr double kChordTolerance = 0.5;
 
 struct Posted {
   std::vector<Move> moves;  // `line` is that of the cutter location
@@ -41,14 +48,20 @@ struct Posted {
 /// Rapids, and the first location whatever it is, become rapids of the joints; points are inserted
 /// in feed moves only. The feed is that of the tip in the workpiece: without tip control each block
 /// says how long it takes (G93), for an NC would take F as the speed of X, Y and Z in the machine.
-/// Corners may be rounded by the tolerance of the tip (G64 P).
+/// The tolerance of the tip is shared by the chords of `PostMode::joints` and the rounding of
+/// corners (G64 P); other modes leave all of it to the latter.
 ///
-/// @param file     name for messages
-/// @param inverse  with the travel of the machine
+/// Where the tool axis is singular an axis is free. A rapid turns it to where it will be when the
+/// tool axis leaves that direction, if such a location follows; a feed to that direction leaves it,
+/// and it turns with the tip in place before the tool axis goes on, of which a warning tells.
+///
+/// @param file        name for messages
+/// @param inverse     with the travel of the machine
+/// @param of_refused  where a fault ends it: receives the warnings
 /// @throws InputError with every location that the machine cannot reach, or cannot reach from the
 /// one before without a jump of its axes; every feed and tool that is not known
 Posted post(const ClData& data, const std::string& file, const plant::InverseKinematics& inverse,
-            const PostOptions& options);
+            const PostOptions& options, std::vector<Warning>* of_refused = nullptr);
 
 /// The part of a message that says why a pose has no joints.
 std::string reason(const plant::JointSolution& solution, const plant::InverseKinematics& inverse);

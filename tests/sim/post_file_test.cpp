@@ -33,8 +33,11 @@ TEST(PostFile, ShippedProgramsArePostedFromShippedLocations) {
   example1.start = "C=180";
   const PostedFile posted = post_file(example1);
   EXPECT_EQ(posted.program, shipped("example1.ngc"));
-  ASSERT_EQ(posted.warnings.size(), 1u);
+  ASSERT_EQ(posted.warnings.size(), 2u);
   EXPECT_EQ(posted.warnings[0].message, "tool axis has length 1.00199; taken as a unit vector");
+  EXPECT_EQ(posted.warnings[1].message,
+            "on the way here the axes lead the tip 0.156 mm off the straight way; only --classical "
+            "inserts no points");
 
   PostRequest table32 = request_of("table32.csv");
   table32.options.feed = 300 * mm_per_min;
@@ -87,7 +90,7 @@ TEST(PostFile, HeaderSaysWhatTheNcMustKnow) {
       "(tip within 2.5 um, tool axis within 50 urad of the straight way)\n"
       "(part zero [G55]: X10 Y-20 Z30.5 in the machine, rotary axes at zero)\n"
       "(tool 1: length 110 mm)\n"
-      "G21 G90 G91.1 G94 G17 G40 G80\nT1 M6\nG55\nG43 H1\nG64 P0.0025\nG0 X"))
+      "G21 G90 G91.1 G94 G17 G40 G80\nT1 M6\nG55\nG43 H1\nG64 P0.00125\nG0 X"))
       << program.substr(0, 400);
 }
 

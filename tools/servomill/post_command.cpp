@@ -49,6 +49,17 @@ void tell(const std::vector<controllers::Warning>& warnings) {
   }
 }
 
+// Odd things explain faults.
+sim::PostedFile post(sim::PostRequest request) {
+  std::vector<controllers::Warning> warnings;
+  try {
+    return sim::post_file(std::move(request), &warnings);
+  } catch (const InputError&) {
+    tell(warnings);
+    throw;
+  }
+}
+
 std::string program_name(const Options& options) {
   if (options.has("output")) return options.get<std::string>("output");
   return std::filesystem::path(options.word()).stem().string() + ".ngc";
@@ -108,8 +119,10 @@ int post_command(const Arguments& arguments) {
                 "changes a key of the machine, such as axis.A.centre_mm=[0,0,-150]");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.ngc"),
                 "program; default: PART.ngc in the current folder");
-  options.add()("tolerance", po::value<double>()->default_value(1.0, "1")->value_name("UM"),
-                "by which the tip may leave the straight way, um");
+  options.add()(
+      "tolerance", po::value<double>()->default_value(1.0, "1")->value_name("UM"),
+      "by which the tip may leave the straight way, um: half of it for the chords between "
+      "inserted points, half for the NC to round corners (G64 P)");
   options.add()("axis-tolerance",
                 po::value<double>()->default_value(100.0, "100")->value_name("URAD"),
                 "by which the tool axis may leave its great circle, urad");
@@ -136,7 +149,7 @@ int post_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
 
   const std::string name = program_name(options);
-  const sim::PostedFile posted = sim::post_file(request_of(options));
+  const sim::PostedFile posted = post(request_of(options));
   tell(posted.warnings);
   sim::write_text_file(name, posted.program, options.has("force"));
   if (!options.has("quiet")) {

@@ -294,5 +294,27 @@ TEST(ClData, AllFaultsAreToldAtOnce) {
             "p.cls:3:12: error: tool axis (0, 0, 0) has no direction");
 }
 
+TEST(ClApt, EndOfACycleThatNeverWasIsNothing) {
+  const ClData data = apt("CYCLE/OFF\nGOTO/1,2,3\ncycle / off\n");
+  EXPECT_EQ(data.records.size(), 1u);
+  EXPECT_TRUE(data.warnings.empty());
+  const std::string refused =
+      "p.cls:1:1: error: CYCLE changes where the tool goes and is not supported; write the "
+      "locations out as GOTO";
+  EXPECT_EQ(apt_fault("CYCLE/DRILL,10,MMPM,100\nGOTO/1,2,3\n"), refused);
+  EXPECT_EQ(apt_fault("CYCLE/ON\nGOTO/1,2,3\n"), refused);
+  EXPECT_EQ(apt_fault("CYCLE\nGOTO/1,2,3\n"), refused);
+}
+
+TEST(ClData, WarningsOfWhatIsRefusedAreKept) {
+  for (const auto& [file, text] : {std::pair("p.cls", "GOTO/0,0,0,0,0,2\nGOTO/1\n"),
+                                   {"p.csv", "x,y,z,i,j,k\n0,0,0,0,0,2\n0,0,0,0,0,0\n"}}) {
+    std::vector<Warning> warnings;
+    EXPECT_THROW(read_cl_data(text, file, &warnings), InputError);
+    ASSERT_EQ(warnings.size(), 1u) << file;
+    EXPECT_EQ(warnings[0].message, "tool axis has length 2; taken as a unit vector");
+  }
+}
+
 }  // namespace
 }  // namespace servomill::controllers

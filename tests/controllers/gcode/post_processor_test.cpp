@@ -1,14 +1,19 @@
 #include "controllers/gcode/post_processor.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 
 #include "controllers/gcode/printer.h"
+#include "controllers/path/trajectory.h"
 #include "tests/controllers/gcode/program.h"
 
 namespace servomill::controllers {
 namespace {
+
+using Eigen::Vector3d;
 
 constexpr double kPrintTol = 1e-9;  // m, rad: seven decimals of mm and deg, seen from 0.3 m
 const char* const kTableTable = "[w C' A' b X Y Z t]";
@@ -201,7 +206,7 @@ TEST(Post, WholeProgramAsPrinted) {
   PrintOptions print;
   print.axes = "XYZAC";
   EXPECT_EQ(print_program(post(data, "p.cls", machine(kTableTable), options).moves, print, "").text,
-            "G21 G90 G91.1 G94 G17 G40 G80\nT1 M6\nS600\nM3\nM8\nG54\nG43 H1\nG64 P0.001\n"
+            "G21 G90 G91.1 G94 G17 G40 G80\nT1 M6\nS600\nM3\nM8\nG54\nG43 H1\nG64 P0.0005\n"
             "G0 X0 Y0 Z10 A0 C0\nG93\nG1 Z0 F60\nG1 X10 F60\nM5\nM30\n");
   options.mode = PostMode::tip;
   print.tip_control = true;
@@ -216,7 +221,7 @@ TEST(Post, SingularToolAxisIsToldOnce) {
   ASSERT_EQ(posted.warnings.size(), 1u);
   EXPECT_EQ(to_string(posted.warnings[0]),
             "p.cls:1: warning: the tool axis is singular, here and at 2 more locations: a rotary "
-            "axis keeps its angle");
+            "axis is free");
 }
 
 TEST(Post, Faults) {
@@ -241,11 +246,193 @@ TEST(Post, Faults) {
 TEST(Post, ATableThatTiltsToOneSideCannotPassTheVertical) {
   EXPECT_EQ(
       fault_of_post(cl("GOTO/0,0,0,0,-0.6,0.8\nGOTO/5,0,0,0,0.6,0.8\n"), machine(kTableTable, 0.0)),
-      "p.cls:2: error: at 50.0 % of the way here the tool axis passes a singular direction, or "
-      "the end of a rotary axis' travel, where the axes would have to jump; lead it past at a "
-      "distance, or retract there");
+      "p.cls:2: error: at 50.0 % of the way here axis A comes to the end of its travel at 0 deg, "
+      "and otherwise the axes would have to jump; lead the tool axis past at a distance, retract "
+      "there, or let the axes begin elsewhere (--start)");
   EXPECT_EQ(
       fault_of_post(cl("GOTO/0,0,0,0,-0.6,0.8\nGOTO/5,0,0,0,0.6,0.8\n"), machine(kTableTable)), "");
+}
+
+// ------------------------------------------------------------------ tolerance, speeds, warnings
+
+// Chords and the rounding of corners (G64 P) share the tolerance of the tip.
+TEST(Post, ChordsAndRoundingTogetherKeepToTheTolerance) {
+  const PostOptions options = usual_options();
+  const Vector3d p_ST(0.0, 0.0, -100.0 * mm);
+  const auto inverse = machine(kTableTable);
+  const ClData data = wandering(6);
+  const auto moves = read_again(post(data, "p.cls", inverse, options), options);
+  const JointLayout& layout = inverse.chain().layout;
+  const auto distance_from_way = [&](const Vector3d& tip) {
+    double nearest = 1e9;
+    for (std::size_t n = 1; n < data.records.size(); ++n) {
+      const Vector3d a = data.records[n - 1].P.p_WT + options.part_zero;
+      const Vector3d d = data.records[n].P.p_WT + options.part_zero - a;
+      const double t = std::clamp((tip - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
+      nearest = std::min(nearest, (tip - a - t * d).norm());
+    }
+    return nearest;
+  };
+  double chords = 0.0;
+  for (std::size_t i = 1; i < moves.size(); ++i) {
+    const Joints Q = layout.joints(moves[i - 1].end_machine);
+    const Joints step = layout.joints(moves[i].end_machine) - Q;
+    for (double f = 0.0; f < 1.0; f += 0.05) {
+      chords = std::max(
+          chords, distance_from_way(plant::forward(inverse.chain(), Q + f * step, p_ST).p_WT));
+    }
+  }
+  constexpr double kPlaces = 0.01;  // of the tolerance: chords are looked at in three places
+  EXPECT_LE(chords + moves.back().path_tolerance,
+            (1.0 + kPlaces) * options.tolerance.tip + kPrintTol);
+  EXPECT_GT(chords + moves.back().path_tolerance, 0.7 * options.tolerance.tip);
+
+  JointLimits limits;
+  limits.v << 0.5, 0.5, 0.5, 10.0, 10.0;
+  limits.a << 5.0, 5.0, 5.0, 50.0, 50.0;
+  limits.j << 100.0, 100.0, 100.0, 1000.0, 1000.0;
+  const Trajectory trajectory =
+      plan(moves, layout, layout.joints(moves.front().end_machine), limits, {}, {});
+  Trajectory::Cursor cursor{};
+  double worst = 0.0;
+  for (double t = 0.0; t < trajectory.duration(); t += 0.5e-3) {
+    worst = std::max(
+        worst, distance_from_way(
+                   plant::forward(inverse.chain(), trajectory.at(t, cursor).Q_ref, p_ST).p_WT));
+  }
+  EXPECT_LT(worst, options.tolerance.tip);
+}
+
+TEST(Post, TimesThatAskTooMuchOfAnAxisAreTold) {
+  PostOptions options = usual_options();
+  options.v_max << 1.0, 1.0, 1.0, 10.0, 20.0;
+  // 10 mm past the vertical at 0.01: C turns by 174 deg, most of it within 0.2 mm
+  const auto past = [&](double distance) {
+    return post(cl(fmt::format("GOTO/0,0,0,-0.2,{0},1\nGOTO/10,0,0,0.2,{0},1\n", distance)),
+                "p.cls", machine(kTableTable), options);
+  };
+  EXPECT_TRUE(std::none_of(past(0.1).warnings.begin(), past(0.1).warnings.end(), [](const auto& w) {
+    return w.message.starts_with("the programmed feed");
+  }));
+  options.feed = 0.5;
+  const Posted fast = past(0.01);
+  ASSERT_FALSE(fast.warnings.empty());
+  const Warning& warning = fast.warnings.back();
+  EXPECT_EQ(warning.place.line, 2);
+  EXPECT_TRUE(warning.message.starts_with("the programmed feed needs C at ")) << warning.message;
+  EXPECT_NE(warning.message.find("deg from a singular direction of the tool axis; it can do 1146: "
+                                 "the feed falls to "),
+            std::string::npos)
+      << warning.message;
+}
+
+TEST(Post, WhatClassicalPostsBendIsTold) {
+  PostOptions options = usual_options();
+  options.mode = PostMode::locations;
+  const Posted posted = post(cl("GOTO/10,0,0,0,-0.1,1\nGOTO/30,0,0,0.3,-0.3,1\nGOTO/30,1,0\n"),
+                             "p.cls", machine(kTableTable), options);
+  const auto inverse = machine(kTableTable);
+  const Joints Q_0 = inverse.chain().layout.joints(posted.moves[1].end_machine);
+  const Joints Q_1 = inverse.chain().layout.joints(posted.moves[2].end_machine);
+  double bend = 0.0;
+  for (double t = 0.0; t < 1.0; t += 0.0625) {
+    const Vector3d way = options.part_zero + Vector3d(10 + 20 * t, 0, 0) * mm;
+    bend = std::max(
+        bend,
+        (plant::forward(inverse.chain(), Q_0 + t * (Q_1 - Q_0), Vector3d(0, 0, -100 * mm)).p_WT -
+         way)
+            .norm());
+  }
+  ASSERT_EQ(posted.warnings.size(), 1u);
+  EXPECT_EQ(to_string(posted.warnings.back()),
+            fmt::format("p.cls:2: warning: on the way here the axes lead the tip {:.4g} mm off the "
+                        "straight way; only --classical inserts no points",
+                        bend / mm));
+}
+
+TEST(Post, WarningsOfWhatIsRefusedAreKept) {
+  std::vector<Warning> warnings;
+  const ClData data = cl("GOTO/0,0,0\nGOTO/900,0,0\n");
+  EXPECT_THROW(post(data, "p.cls", machine(kTableTable), usual_options(), &warnings), InputError);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].place.line, 1);
+}
+
+// ------------------------------------------------------------------------ singular directions
+
+// Joints of the feed moves, in order.
+std::vector<Joints> joints_of(const Posted& posted, const plant::InverseKinematics& inverse) {
+  std::vector<Joints> out;
+  for (const Move& move : posted.moves) {
+    if (is_motion(move.kind)) out.push_back(inverse.chain().layout.joints(move.end_machine));
+  }
+  return out;
+}
+
+// A part that begins upright beside the axis of C and then tilts: the rapid turns C to where it
+// will be, and nothing has to turn while cutting.
+TEST(Post, LooksAheadForTheAngleThatIsFree) {
+  for (const PostMode mode : {PostMode::joints, PostMode::tip, PostMode::locations}) {
+    for (int phi = -180; phi < 180; phi += 45) {
+      PostOptions options = usual_options();
+      options.mode = mode;
+      const auto inverse = machine(kTableTable, -0.1);  // A tilts to one side
+      const std::string part =
+          fmt::format("RAPID\nGOTO/40,10,30\nGOTO/40,10,0\nGOTO/45,10,0\nGOTO/50,15,0,{},{},1\n",
+                      0.5 * std::cos(phi * deg), 0.5 * std::sin(phi * deg));
+      const Posted posted = post(cl(part), "p.cls", inverse, options);
+      const auto joints = joints_of(posted, inverse);
+      EXPECT_NEAR(joints.back()[4], joints.front()[4], 1e-6) << phi;
+      EXPECT_NEAR(joints.back()[3], std::atan(0.5), 1e-9) << phi;
+      EXPECT_LT(joints.size(), 200u);
+    }
+  }
+}
+
+// It comes to the vertical from one side and leaves it to another.
+TEST(Post, TurnsTheFreeAxisWithTheTipInPlace) {
+  const Vector3d p_ST(0.0, 0.0, -100.0 * mm);
+  PostOptions options = usual_options();
+  const std::string part = "GOTO/40,10,0,0,-0.5,1\nGOTO/45,10,0,0,0,1\nGOTO/50,15,0,0.5,0,1\n";
+  const Vector3d upright = Vector3d(45, 10, 0) * mm + options.part_zero;
+  const auto inverse = machine(kTableTable);
+  const Posted posted = post(cl(part), "p.cls", inverse, options);
+  double turned = 0.0, time = 0.0;
+  for (std::size_t i = 1; i < posted.moves.size(); ++i) {
+    const Move& move = posted.moves[i];
+    const Joints Q_0 = inverse.chain().layout.joints(posted.moves[i - 1].end_machine);
+    const Joints Q_1 = inverse.chain().layout.joints(move.end_machine);
+    if (move.line != 3 || move.s_end > move.s_begin) continue;
+    turned += std::abs(Q_1[4] - Q_0[4]);
+    time += std::abs(Q_1[4] - Q_0[4]) / move.feed;
+    for (double f = 0.0; f <= 1.0; f += 0.1) {
+      const ToolPose P = plant::forward(inverse.chain(), Q_0 + f * (Q_1 - Q_0), p_ST);
+      EXPECT_LT((P.p_WT - upright).norm(), 1.01 * kChordTolerance * options.tolerance.tip);
+      EXPECT_LT(angle_between(P.k_W, Vector3d::UnitZ()), 1e-9);
+    }
+  }
+  EXPECT_NEAR(turned, 90 * deg, 1e-6);
+  EXPECT_NEAR(time, 90 * deg / options.turn_rate, 1e-6);
+  ASSERT_GE(posted.warnings.size(), 1u);
+  EXPECT_EQ(
+      to_string(posted.warnings.front()),
+      "p.cls:3: warning: C turns by 90 deg with the tip in place before the tool axis leaves a "
+      "singular direction; a retract there would avoid it");
+  // the NC with tip control turns it in one block
+  options.mode = PostMode::tip;
+  const Posted tip = post(cl(part), "p.cls", inverse, options);
+  EXPECT_EQ(std::count_if(tip.moves.begin(), tip.moves.end(),
+                          [](const Move& m) { return m.line == 3 && m.s_end == m.s_begin; }),
+            1);
+}
+
+TEST(Post, LeavesASingularDirectionOnTheBranchThatArrives) {
+  const auto inverse = machine(kTableTable, -0.1);
+  for (const double y : {-0.5, 0.5}) {
+    const Posted posted = post(cl(fmt::format("GOTO/0,0,0\nGOTO/10,0,0,0,{},0.866\n", y)), "p.cls",
+                               inverse, usual_options());
+    EXPECT_GT(joints_of(posted, inverse).back()[3], 0.0);
+  }
 }
 
 }  // namespace
