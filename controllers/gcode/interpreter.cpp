@@ -24,6 +24,7 @@ namespace {
 constexpr double kIntegerTol = 1e-4;     // as LinuxCNC, for words that must be integers
 constexpr double kTurnsTol = 1e-3;       // as LinuxCNC, for P of an arc
 constexpr double kLeastVector = 1e-6;    // length of a tool axis; below it is zero
+constexpr double kLeaning = 1e-4;        // rad of the tool axis off Z of a tilted plane
 constexpr double kSlowestInverse = 0.1;  // mm, inch or deg per minute; as LinuxCNC
 
 // Axis words of a group of letters, as they stand in parameters: mm and degrees.
@@ -227,6 +228,7 @@ class Interpreter::Machine {
   }
   Eigen::Vector3d programmed_axis();
   double turn_towards(const Eigen::Vector3d& k, AxisWords& end) const;
+  void warn_of_leaning_tool();
 
   void straight();
   void arc();
@@ -262,6 +264,7 @@ class Interpreter::Machine {
   std::size_t given_ = 0;
   std::vector<std::pair<int, double>> new_numbers_;
   std::vector<Fault> warnings_;
+  std::shared_ptr<const WorkPlane> cut_plane_;  // the last in which a tool cut
 };
 
 const std::array<Interpreter::Machine::Step, 21> Interpreter::Machine::kSteps = {
@@ -759,6 +762,26 @@ double Interpreter::Machine::turn_towards(const Eigen::Vector3d& k, AxisWords& e
   return turn.angle;
 }
 
+// Once for each tilted plane in which it cuts.
+void Interpreter::Machine::warn_of_leaning_tool() {
+  if (!state_.plane || state_.tool_control != ToolControl::none || cut_plane_ == state_.plane)
+    return;
+  cut_plane_ = state_.plane;
+  const AxisWords now = state_.to_machine(state_.position);
+  Eigen::Vector3d k = Eigen::Vector3d::UnitZ();  // with nothing turned
+  if (setup_.machine) {
+    k = setup_.machine->tool_axis(setup_.machine->chain().layout.joints(now));
+  } else if (!rotary_not_at_zero(now).empty()) {
+    return;
+  }
+  const double angle = angle_between(k, state_.direction_in_workpiece(Eigen::Vector3d::UnitZ()));
+  if (angle < kLeaning) return;
+  const bool can_turn = !setup_.machine || setup_.machine->number_of_rotary_axes() > 0;
+  warnings_.push_back({{file_, lines_.number(), request().motion.column},
+                       fmt::format("the tool stands {:.4f} deg off Z of the tilted work plane{}",
+                                   angle / deg, can_turn ? "; G53.1 turns it there" : "")});
+}
+
 void Interpreter::Machine::path_control() {
   const int code = request().code(Group::g_path_control);
   if (code < 0) return;
@@ -999,6 +1022,7 @@ void Interpreter::Machine::straight() {
   const bool is_rapid = request().motion_code() == 0;
   if (!is_rapid) require_feed();
   if (!has_any_axis() && !has_vector()) return;
+  if (!is_rapid) warn_of_leaning_tool();
   AxisWords end = programmed_end();
   const double length = (end - state_.position).head<3>().norm();
   double angle = (end - state_.position).tail<3>().norm();
@@ -1085,6 +1109,7 @@ void Interpreter::Machine::arc() {
   const double length =
       ArcSweep(state_.position.head<3>(), end.head<3>(), centre.head<3>(), n, turns).length();
   const double angle = (end - state_.position).tail<3>().norm();
+  warn_of_leaning_tool();
   move_to(MoveKind::arc, end, length, move_feed(end, length, angle));
   out_.back().arc = {n, centre.head<3>(), turns};
   if (state_.plane) {

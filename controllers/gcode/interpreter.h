@@ -80,7 +80,8 @@ class Interpreter {
   /// @throws InputError at a block with an error; the moves before it are lost
   std::vector<Move> rest();
 
-  /// What was put right in the blocks so far: tool axes that were not of unit length.
+  /// What was put right, or is odd, in the blocks so far: tool axes that were not of unit length,
+  /// tools that cut in a tilted plane without standing along its Z.
   const std::vector<Fault>& warnings() const;
 
  private:

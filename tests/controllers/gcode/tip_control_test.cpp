@@ -148,6 +148,34 @@ TEST(TiltedPlane, G53_1PutsTheToolAlongZWithoutMovingTheLinearAxes) {
   }
 }
 
+TEST(TiltedPlane, ACutWithoutG53_1IsToldOnceAPlane) {
+  const auto warnings = [](const ProgramSetup& setup, const std::string& text) {
+    Interpreter interpreter("G43 H1\n" + text + "\nM2\n", "p.nc", setup);
+    interpreter.rest();
+    std::vector<std::string> out;
+    for (const Fault& w : interpreter.warnings()) {
+      out.push_back(to_string(w.place) + " " + w.message);
+    }
+    return out;
+  };
+  using Told = std::vector<std::string>;
+  const ProgramSetup table = table_machine().setup();
+  const Told told = {
+      "p.nc:4:1 the tool stands 35.0000 deg off Z of the tilted work plane; G53.1 "
+      "turns it there"};
+  EXPECT_EQ(warnings(table, "G68.2 I25 J35\nG0 X0\nG1 X1 Y0 F100\nG2 X5 I2\nG69\nG1 X3"), told);
+  EXPECT_EQ(warnings(usual_setup(), "G68.2 I25 J35\nG0 X0 Y0\nG2 X5 I2.5 F100"), told);
+  EXPECT_EQ(warnings(table, "G68.2 I25 J35\nG0 X0\nG53.1\nG1 X1 F100"), Told{});
+  EXPECT_EQ(warnings(table, "G68.2 X3 K20\nG1 X1 F100"), Told{}) << "a plane that is not tilted";
+  EXPECT_EQ(warnings(table, "G68.2 J35\nG0 X1"), Told{}) << "nothing is cut";
+  EXPECT_EQ(warnings(table, "G68.2 J35\nG1 X1 F1\nG69\nG68.2 J5\nG1 X1").size(), 2U);
+  EXPECT_EQ(warnings(table, "G68.2 J35\nG43.4 H1\nG1 X1 F1"), Told{}) << "G43.4 turns by words";
+  TipMachine three = table_machine();
+  three.chain = plant::make_chain(plant::parse_structure("[w X' b Y Z t]"));
+  EXPECT_EQ(warnings(three.setup(), "G68.2 J35\nG1 X1 F1"),
+            Told{"p.nc:3:1 the tool stands 35.0000 deg off Z of the tilted work plane"});
+}
+
 TEST(TiltedPlane, EndsWhereTheAxesStand) {
   for (const TipMachine& machine : {table_machine(), head_machine()}) {
     const auto moves =
