@@ -28,7 +28,7 @@ void add(MemoKey& key, const controllers::ToolTable& tools) {
 }
 
 void add(MemoKey& key, const plant::ErrorFunction& function) {
-  const auto& [polynomial, harmonics, tables] = function;
+  const auto& [polynomial, harmonics, tables, reversals] = function;
   const auto add_all = [&key](const std::vector<double>& values) {
     key.add(values.size());
     for (const double value : values) key.add(value);
@@ -44,6 +44,11 @@ void add(MemoKey& key, const plant::ErrorFunction& function) {
   for (const auto& [s, error] : tables) {
     add_all(s);
     add_all(error);
+  }
+  key.add(reversals.size());
+  for (const auto& [width, distance] : reversals) {
+    add_all(width);
+    key.add(distance);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -23,6 +24,12 @@ double slope(const LinearTable& table, std::size_t i) {
 
 bool all_zero(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return v == 0.0; });
+}
+
+double polynomial_at(const std::vector<double>& c, double s) {
+  double sum = 0.0;
+  for (std::size_t i = c.size(); i-- > 0;) sum = sum * s + c[i];
+  return sum;
 }
 
 }  // namespace
@@ -47,9 +54,12 @@ double LinearTable::derivative(double at) const {
   return i == 0 || i == s.size() ? 0.0 : slope(*this, i);
 }
 
+double Reversal::value(double s) const { return polynomial_at(width, s); }
+
+bool Reversal::is_zero() const { return all_zero(width); }
+
 double ErrorFunction::value(double s) const {
-  double sum = 0.0;
-  for (std::size_t i = polynomial.size(); i-- > 0;) sum = sum * s + polynomial[i];
+  double sum = polynomial_at(polynomial, s);
   for (const Harmonic& h : harmonics) sum += h.value(s);
   for (const LinearTable& t : tables) sum += t.value(s);
   return sum;
@@ -65,28 +75,40 @@ double ErrorFunction::derivative(double s) const {
   return sum;
 }
 
+double ErrorFunction::width(double s) const {
+  double sum = 0.0;
+  for (const Reversal& r : reversals) sum += r.value(s);
+  return sum;
+}
+
 bool ErrorFunction::is_zero() const {
   return all_zero(polynomial) &&
          std::all_of(harmonics.begin(), harmonics.end(),
                      [](const Harmonic& h) { return h.amplitude == 0.0; }) &&
          std::all_of(tables.begin(), tables.end(),
-                     [](const LinearTable& t) { return all_zero(t.error); });
+                     [](const LinearTable& t) { return all_zero(t.error); }) &&
+         std::all_of(reversals.begin(), reversals.end(), std::mem_fn(&Reversal::is_zero));
 }
 
 ErrorFunction constant(double c) { return polynomial({c}); }
 
 ErrorFunction polynomial(std::vector<double> coefficients) {
-  return {std::move(coefficients), {}, {}};
+  return {std::move(coefficients), {}, {}, {}};
 }
 
 ErrorFunction harmonic(double amplitude, double period, double phase) {
   assert(period > 0.0);
-  return {{}, {{amplitude, period, phase}}, {}};
+  return {{}, {{amplitude, period, phase}}, {}, {}};
+}
+
+ErrorFunction reversal(std::vector<double> width, double distance) {
+  assert(distance > 0.0);
+  return {{}, {}, {}, {{std::move(width), distance}}};
 }
 
 ErrorFunction linear_table(std::vector<double> s, std::vector<double> error) {
   assert(!table_fault(s, error));
-  return {{}, {}, {{std::move(s), std::move(error)}}};
+  return {{}, {}, {{std::move(s), std::move(error)}}, {}};
 }
 
 std::optional<std::string> table_fault(const std::vector<double>& s,
@@ -113,6 +135,7 @@ ErrorFunction operator+(const ErrorFunction& f, const ErrorFunction& g) {
   for (std::size_t i = 0; i < g.polynomial.size(); ++i) sum.polynomial[i] += g.polynomial[i];
   sum.harmonics.insert(sum.harmonics.end(), g.harmonics.begin(), g.harmonics.end());
   sum.tables.insert(sum.tables.end(), g.tables.begin(), g.tables.end());
+  sum.reversals.insert(sum.reversals.end(), g.reversals.begin(), g.reversals.end());
   return sum;
 }
 
@@ -122,6 +145,18 @@ ErrorFunction scaled(const ErrorFunction& f, double factor) {
   for (Harmonic& h : out.harmonics) h.amplitude *= factor;
   for (LinearTable& t : out.tables) {
     for (double& e : t.error) e *= factor;
+  }
+  for (Reversal& r : out.reversals) {
+    for (double& w : r.width) w *= factor;
+  }
+  return out;
+}
+
+ErrorFunction travelling(const ErrorFunction& f, double direction) {
+  ErrorFunction out = f;
+  out.reversals.clear();
+  for (const Reversal& r : f.reversals) {
+    out = out + scaled(polynomial(r.width), 0.5 * direction);
   }
   return out;
 }

@@ -27,16 +27,34 @@ struct LinearTable {
   bool operator==(const LinearTable&) const = default;
 };
 
-/// Sum of a polynomial, harmonics and tables; zero when empty. Values are m for errors along X, Y,
-/// Z and rad for errors about A, B, C; the coordinate s is m for linear axes and rad for rotary
-/// ones.
+/// Hysteresis: an error that depends on the direction of travel, by width(s) / 2 on either side of
+/// the mean, direction(s) width(s) / 2 in between (plant/geometry/travel_memory.h).
+/// Source: polynomials with a hysteresis term, Slamani, Mayer, Cloutier, Modeling and experimental
+/// validation of machine tool motion errors using degree optimized polynomial including motion
+/// hysteresis, Experimental Techniques 35 (2011) 37-44.
+struct Reversal {
+  std::vector<double>
+      width;              // m or rad: w0 + w1 s + ..., error travelling up minus travelling down
+  double distance = 1.0;  // m or rad of travel that a change of direction takes, > 0
+  double value(double s) const;
+  bool is_zero() const;
+  bool operator==(const Reversal&) const = default;
+};
+
+/// Sum of a polynomial, harmonics and tables, the mean of both directions of travel, and of
+/// reversals; zero when empty. Values are m for errors along X, Y, Z and rad for errors about A, B,
+/// C; the coordinate s is m for linear axes and rad for rotary ones.
 struct ErrorFunction {
   std::vector<double> polynomial;  // c0 + c1 s + c2 s^2 + ...
   std::vector<Harmonic> harmonics;
   std::vector<LinearTable> tables;
+  std::vector<Reversal> reversals;
 
+  /// Of the mean of both directions, as its derivative.
   double value(double s) const;
   double derivative(double s) const;
+  /// Error travelling up minus error travelling down, long after a change of direction.
+  double width(double s) const;
 
   /// True only if the function vanishes everywhere because all its numbers do.
   bool is_zero() const;
@@ -46,6 +64,8 @@ struct ErrorFunction {
 ErrorFunction constant(double c);
 ErrorFunction polynomial(std::vector<double> coefficients);
 ErrorFunction harmonic(double amplitude, double period, double phase = 0.0);
+/// @pre distance > 0
+ErrorFunction reversal(std::vector<double> width, double distance);
 /// @pre table_fault(s, error) is nullopt
 ErrorFunction linear_table(std::vector<double> s, std::vector<double> error);
 
@@ -55,5 +75,8 @@ std::optional<std::string> table_fault(const std::vector<double>& s,
 
 ErrorFunction operator+(const ErrorFunction& f, const ErrorFunction& g);
 ErrorFunction scaled(const ErrorFunction& f, double factor);
+/// The error of an axis that travels on and on: mean + direction width / 2, without reversals.
+/// @param direction  1: up, -1: down, 0: the mean
+ErrorFunction travelling(const ErrorFunction& f, double direction);
 
 }  // namespace servomill::plant

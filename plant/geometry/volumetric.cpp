@@ -64,7 +64,7 @@ VolumetricModel::VolumetricModel(const MachineChain& chain, const ErrorModel& er
 }
 
 VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
-                                                   const ErrorModel& errors) {
+                                                   const ErrorModel& errors) const {
   Prepared out;
   for (const Axis direction : kAllAxes) {
     const int lane = lane_of(direction);
@@ -78,6 +78,11 @@ VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
       out.harmonics.push_back({lane, h.amplitude, h.omega(), h.phase, same_wave});
     }
     for (const LinearTable& t : f.tables) out.tables.push_back({lane, t});
+    for (const Reversal& r : f.reversals) {
+      if (r.is_zero()) continue;
+      const auto play = std::find(plays().begin(), plays().end(), Play{axis.joint, r.distance});
+      out.reversals.push_back({lane, static_cast<std::size_t>(play - plays().begin()), r});
+    }
   }
   for (const Axis direction : kAllAxes) {
     out.location[lane_of(direction)] = errors.location({direction, axis.axis, true});
@@ -110,6 +115,15 @@ VolumetricModel::Screw VolumetricModel::derivatives(const Prepared& errors, doub
   return e;
 }
 
+VolumetricModel::Screw VolumetricModel::reversals(const Prepared& errors, double q,
+                                                  std::span<const double> directions) {
+  Screw e = Screw::Zero();
+  for (const auto& r : errors.reversals) {
+    e[r.lane] += 0.5 * directions[r.play] * r.reversal.value(q);
+  }
+  return e;
+}
+
 ToolPose VolumetricModel::forward(const Joints& Q, const Vector3d& p_ST) const {
   ToolPose P;
   evaluation_->tool(Q, p_ST, P.p_WT.data());
@@ -134,12 +148,50 @@ void VolumetricModel::errors(std::span<const Joints> Q, const Vector3d& p_ST,
   if (!Q.empty()) evaluation_->errors(Q, p_ST, out.front().dp_W.data());
 }
 
+const std::vector<Play>& VolumetricModel::plays() const { return evaluation_->plays(); }
+
+ToolPose VolumetricModel::forward(const Joints& Q, const Vector3d& p_ST,
+                                  std::span<const double> directions) const {
+  ToolPose P;
+  evaluation_->tool(Q, p_ST, directions, P.p_WT.data());
+  return P;
+}
+
+VolumetricError VolumetricModel::error(const Joints& Q, const Vector3d& p_ST,
+                                       std::span<const double> directions) const {
+  VolumetricError e;
+  evaluation_->error(Q, p_ST, directions, e.dp_W.data());
+  return e;
+}
+
+void VolumetricModel::poses(std::span<const Joints> Q, const Vector3d& p_ST,
+                            std::span<const double> directions, std::span<ToolPose> out) const {
+  const std::size_t each = plays().size();
+  assert(out.size() == Q.size() && directions.size() == each * Q.size());
+  for (std::size_t n = 0; n < Q.size(); ++n) {
+    out[n] = forward(Q[n], p_ST, directions.subspan(n * each, each));
+  }
+}
+
 VolumetricError VolumetricModel::first_order_error(const Joints& Q, const Vector3d& p_ST) const {
+  return first_order(Q, p_ST, [](const Prepared& e, double q) { return values(e, q); });
+}
+
+VolumetricError VolumetricModel::first_order_error(const Joints& Q, const Vector3d& p_ST,
+                                                   std::span<const double> directions) const {
+  return first_order(Q, p_ST, [directions](const Prepared& e, double q) -> Screw {
+    return values(e, q) + reversals(e, q, directions);
+  });
+}
+
+template <class Values>
+VolumetricError VolumetricModel::first_order(const Joints& Q, const Vector3d& p_ST,
+                                             Values values_at) const {
   ToolPose P{p_ST, Vector3d::UnitZ()};
   VolumetricError sum;
   for (std::size_t i = chain_.axes.size(); i-- > 0;) {
     const ChainAxis& a = chain_.axes[i];
-    const Screw component = values(errors_[i], Q[a.joint]);
+    const Screw component = values_at(errors_[i], Q[a.joint]);
     const JointMotion m = motion_at(a, Q[a.joint]);
     const auto add_screw = [&](const Screw& screw) {
       const Vector3d shift = a.R_MA * shift_of(screw), turn = a.R_MA * turn_of(screw);

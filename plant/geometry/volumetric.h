@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "plant/geometry/error_model.h"
+#include "plant/geometry/travel_memory.h"
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/lanes.h"
 
@@ -33,6 +34,8 @@ struct VolumetricError {
 ///   (5) linear_jacobian(chain, Q) joint_offset(Q) = error(Q).dp_W
 ///   (6) poses(Q...), errors(Q...), joint_offsets(Q...) = forward(Q), error(Q), joint_offset(Q) of
 ///       each, bit for bit
+///   (7) forward(Q, p_ST, directions) is that of a machine with travelling(f, direction) for each
+///       error f; without directions it is the mean of both, all of them 0
 class VolumetricModel {
  public:
   VolumetricModel(const MachineChain& chain, const ErrorModel& errors);
@@ -72,6 +75,21 @@ class VolumetricModel {
   void joint_offsets(const LaneArray (&Q)[kJoints], const Eigen::Vector3d& p_ST,
                      LaneArray (&out)[kLinearJoints]) const;
 
+  /// What errors with hysteresis have to remember (TravelMemory); empty on most machines, which
+  /// pay nothing for it.
+  const std::vector<Play>& plays() const;
+
+  /// The same where axes have travelled: directions of each of plays(), -1 to 1.
+  ToolPose forward(const Joints& Q, const Eigen::Vector3d& p_ST,
+                   std::span<const double> directions) const;
+  VolumetricError error(const Joints& Q, const Eigen::Vector3d& p_ST,
+                        std::span<const double> directions) const;
+  VolumetricError first_order_error(const Joints& Q, const Eigen::Vector3d& p_ST,
+                                    std::span<const double> directions) const;
+  /// @param directions  of each pose, one pose behind the other
+  void poses(std::span<const Joints> Q, const Eigen::Vector3d& p_ST,
+             std::span<const double> directions, std::span<ToolPose> out) const;
+
   /// Derivatives of forward() with respect to all joints, error functions included.
   PoseJacobian jacobian(const Joints& Q, const Eigen::Vector3d& p_ST) const;
 
@@ -104,6 +122,12 @@ class VolumetricModel {
     std::vector<Screw> polynomial;  // c0, c1, ...
     std::vector<PreparedHarmonic> harmonics;
     std::vector<PreparedTable> tables;
+    struct PreparedReversal {
+      int lane;
+      std::size_t play;
+      Reversal reversal;
+    };
+    std::vector<PreparedReversal> reversals;
     Screw location = Screw::Zero();
     Eigen::Matrix3d R_location = Eigen::Matrix3d::Identity();  // of L
   };
@@ -113,8 +137,11 @@ class VolumetricModel {
 
   static Eigen::Vector3d shift_of(const Screw& e) { return e.head<3>(); }
   static Eigen::Vector3d turn_of(const Screw& e) { return e.segment<3>(4); }
-  static Prepared prepare(const ChainAxis& axis, const ErrorModel& errors);
+  Prepared prepare(const ChainAxis& axis, const ErrorModel& errors) const;
   static Screw values(const Prepared& errors, double q);
+  static Screw reversals(const Prepared& errors, double q, std::span<const double> directions);
+  template <class Values>
+  VolumetricError first_order(const Joints& Q, const Eigen::Vector3d& p_ST, Values values) const;
   static Screw derivatives(const Prepared& errors, double q);
 
   MachineChain chain_;

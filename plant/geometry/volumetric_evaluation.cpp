@@ -167,6 +167,19 @@ void PreparedFunctions::add(std::size_t axis, std::size_t component, std::size_t
   functions_.has_angles = functions_.has_angles || component >= 3;
 }
 
+void PreparedFunctions::add_reversals(std::size_t axis, std::size_t component, std::size_t joint,
+                                      const ErrorFunction& f) {
+  for (const Reversal& r : f.reversals) {
+    if (r.is_zero()) continue;
+    const Play play{static_cast<int>(joint), r.distance};
+    const auto place = std::find(plays_.begin(), plays_.end(), play) - plays_.begin();
+    if (static_cast<std::size_t>(place) == plays_.size()) plays_.push_back(play);
+    Reversal half = r;
+    for (double& w : half.width) w *= 0.5;
+    reversals_.push_back({axis, component, joint, static_cast<std::size_t>(place), half});
+  }
+}
+
 void PreparedFunctions::add_coefficient(std::size_t power, std::size_t component, std::size_t axis,
                                         double value) {
   if (value == 0.0) return;  // does not raise the degree
@@ -209,7 +222,7 @@ VolumetricFunctions PreparedFunctions::finish() {
   functions_.degree = powers_.size() - 1;
   functions_.waves = waves_.data();
   functions_.harmonics = harmonics_.data();
-  functions_.has_terms = !waves_.empty() || !tables_.empty();
+  functions_.has_terms = !waves_.empty() || !tables_.empty() || !reversals_.empty();
   functions_.is_cubic = powers_.size() == kCubic && !functions_.has_terms;
   return functions_;
 }
@@ -255,7 +268,10 @@ void VolumetricEvaluation::add_steps_of(const ChainAxis& axis, const ErrorModel&
   const auto functions = functions_of(axis, errors);
   const Faults faults(axis, errors, functions);
   const auto joint = static_cast<std::size_t>(axis.joint);
-  for (std::size_t i = 0; i < kErrorComponents; ++i) functions_.add(joint, i, joint, functions[i]);
+  for (std::size_t i = 0; i < kErrorComponents; ++i) {
+    functions_.add(joint, i, joint, functions[i]);
+    functions_.add_reversals(joint, i, joint, functions[i]);
+  }
   VolumetricStep step{};
   step.direction = static_cast<std::uint8_t>(index_of(axis.axis) % 3);
   step.joint = static_cast<std::uint8_t>(axis.joint);
@@ -361,6 +377,21 @@ void VolumetricEvaluation::one_with_tables(VolumetricKernel::One call, const Joi
                        [&](std::size_t axis, std::size_t component, double value) {
                          data.tables.e[component][axis] += value;
                        });
+  call(program_, &data, Q.data(), p_ST.data(), out);
+}
+
+void VolumetricEvaluation::one_with_reversals(VolumetricKernel::One call, const Joints& Q,
+                                              const Vector3d& p_ST,
+                                              std::span<const double> directions,
+                                              double* out) const {
+  assert(directions.size() == plays().size());
+  OnePoseData data{};
+  const auto at = [&](std::size_t joint) { return Q[static_cast<int>(joint)]; };
+  const auto add = [&](std::size_t axis, std::size_t component, double value) {
+    data.tables.e[component][axis] += value;
+  };
+  functions_.tables_at(at, add);
+  functions_.reversals_at(at, directions, add);
   call(program_, &data, Q.data(), p_ST.data(), out);
 }
 

@@ -7,6 +7,7 @@
 
 #include "plant/geometry/error_model.h"
 #include "plant/geometry/straight_kernel.h"
+#include "plant/geometry/travel_memory.h"
 #include "plant/geometry/volumetric_kernel.h"
 #include "plant/kinematics/chain.h"
 
@@ -36,9 +37,24 @@ class PreparedFunctions {
   /// @param axis   as the program counts axes
   /// @param joint  its place in Joints
   void add(std::size_t axis, std::size_t component, std::size_t joint, const ErrorFunction& f);
+  /// Adds its reversals, which `add` leaves out.
+  void add_reversals(std::size_t axis, std::size_t component, std::size_t joint,
+                     const ErrorFunction& f);
 
   /// All that were added. Points into this.
   VolumetricFunctions finish();
+
+  /// Of the reversals, each once.
+  const std::vector<Play>& plays() const { return plays_; }
+  /// add(axis, component, value) for the value of each reversal at q(joint).
+  /// @param directions  of each play
+  template <class Coordinate, class Add>
+  void reversals_at(const Coordinate& q, std::span<const double> directions,
+                    const Add& add_value) const {
+    for (const HalfReversal& r : reversals_) {
+      add_value(r.axis, r.component, directions[r.play] * r.half.value(q(r.joint)));
+    }
+  }
 
   bool has_tables() const { return !tables_.empty(); }
   /// add(axis, component, value) for the value of each table at q(joint).
@@ -51,6 +67,10 @@ class PreparedFunctions {
   struct Table {
     std::size_t axis, component, joint;
     TableLookup lookup;
+  };
+  struct HalfReversal {
+    std::size_t axis, component, joint, play;
+    Reversal half;  // of its width
   };
   struct Wave {
     std::size_t axis, component;
@@ -65,6 +85,8 @@ class PreparedFunctions {
   std::vector<VolumetricWaves> waves_;
   std::vector<VolumetricHarmonic> harmonics_;
   std::vector<Table> tables_;
+  std::vector<HalfReversal> reversals_;
+  std::vector<Play> plays_;
   VolumetricFunctions functions_{};
 };
 
@@ -85,6 +107,18 @@ class VolumetricEvaluation {
     one(kernel_.error, Q, p_ST, out);
   }
   void offset(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const;
+
+  /// What reversals need; where directions are not given, the mean of both is meant.
+  const std::vector<Play>& plays() const { return functions_.plays(); }
+  void tool(const Joints& Q, const Eigen::Vector3d& p_ST, std::span<const double> directions,
+            double* out) const {
+    one_with_reversals(kernel_.tool, Q, p_ST, directions, out);
+  }
+  void error(const Joints& Q, const Eigen::Vector3d& p_ST, std::span<const double> directions,
+             double* out) const {
+    one_with_reversals(kernel_.error, Q, p_ST, directions, out);
+  }
+
   void tools(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
   void errors(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
   void offsets(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
@@ -119,6 +153,8 @@ class VolumetricEvaluation {
   }
   void one_with_tables(VolumetricKernel::One call, const Joints& Q, const Eigen::Vector3d& p_ST,
                        double* out) const;
+  void one_with_reversals(VolumetricKernel::One call, const Joints& Q, const Eigen::Vector3d& p_ST,
+                          std::span<const double> directions, double* out) const;
   void many(VolumetricKernel::Many call, std::size_t numbers, std::span<const Joints> Q,
             const Eigen::Vector3d& p_ST, double* out) const;
   void eight_with_tables(VolumetricKernel::Many call, const Joints* Q, const Eigen::Vector3d& p_ST,
