@@ -177,9 +177,9 @@ def main(arguments):
             ("length", 200.0, "of the S, mm"), ("width", 90.0, "of the S at its base, mm"),
             ("height", 40.0, "of the flank, mm"), ("top-width", 66.0, "width of the S at the top, mm"),
             ("shift", 6.0, "of the top along X, mm"), ("tool-diameter", 16.0, "of the end mill, mm"),
-            ("feed", 2000.0, "of the tip, mm/min"),
-            ("tolerance", 0.005, "by which the tip may leave its curve between locations, mm"),
-            ("axis-tolerance", 100.0, "by which the tool axis may, urad"),
+            ("feed", 1000.0, "of the tip, mm/min"),
+            ("tolerance", 0.002, "by which the tip may leave its curve between locations, mm"),
+            ("axis-tolerance", 40.0, "by which the tool axis may, urad"),
             ("path-tolerance", 0.0001, "G64 P of a program, mm")):
         reader.add_argument(f"--{name}", type=float, default=default, metavar="X", help=f"{meaning} (default: {default:g})")
     reader.add_argument("--side", choices=("left", "right"), default="left",
