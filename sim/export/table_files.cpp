@@ -223,7 +223,8 @@ std::string component_csv(const TableExport& e,
   for (std::size_t i = 0; i < line.points; ++i) {
     text += shortest(line.entry(i) / unit_of(line.joint));
     for (const CompensationTable* table : tables) {
-      text += "," + fixed(table->error[i] / (table->is_angle() ? urad : um), 4);
+      text += ',';
+      text += fixed(table->error[i] / (table->is_angle() ? urad : um), 4);
     }
     text += "\n";
   }
