@@ -2,29 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <string_view>
 #include <utility>
 
-#include "controllers/gcode/arc_geometry.h"
-#include "controllers/gcode/modal_state.h"
-#include "controllers/gcode/parameters.h"
-#include "controllers/gcode/parser.h"
-#include "controllers/gcode/request.h"
+#include "controllers/gcode/interpreter_machine.h"
 #include "plant/vocabulary/arc_sweep.h"
-#include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
 namespace {
 
-constexpr double kIntegerTol = 1e-4;     // as LinuxCNC, for words that must be integers
 constexpr double kTurnsTol = 1e-3;       // as LinuxCNC, for P of an arc
-constexpr double kLeastVector = 1e-6;    // length of a tool axis; below it is zero
-constexpr double kLeaning = 1e-4;        // rad of the tool axis off Z of a tilted plane
 constexpr double kSlowestInverse = 0.1;  // mm, inch or deg per minute; as LinuxCNC
 
 // Axis words of a group of letters, as they stand in parameters: mm and degrees.
@@ -35,58 +26,11 @@ double from_parameter_unit(int axis, double value) {
   return value * (is_linear(kAllAxes[static_cast<std::size_t>(axis)]) ? mm : deg);
 }
 
-bool is_blank(std::string_view line) {
-  return line.find_first_not_of(" \t\r") == std::string_view::npos;
-}
-
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
-
-// The lines of a program, with the rules for '%'.
-class Lines {
- public:
-  explicit Lines(std::string_view text) : rest_(text) {}
-
-  bool next(std::string_view& line) {
-    if (rest_.empty()) return false;
-    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-    line = rest_.substr(0, end);
-    rest_.remove_prefix(std::min(end + 1, rest_.size()));
-    ++number_;
-    return true;
-  }
-  int number() const { return number_; }
-  /// How many are left.
-  std::size_t count() const {
-    const auto ends = std::count(rest_.begin(), rest_.end(), '\n');
-    return static_cast<std::size_t>(ends) + (rest_.empty() || rest_.back() == '\n' ? 0 : 1);
-  }
-
- private:
-  std::string_view rest_;
-  int number_ = 0;
-};
-
-// What a '%' means where it stands.
-enum class Percent { start, end, misplaced };
-
-class PercentRule {
- public:
-  void saw_line() { first_ = false; }
-  Percent saw_percent() {
-    const Percent meaning = first_ ? Percent::start : open_ ? Percent::end : Percent::misplaced;
-    if (meaning == Percent::start) open_ = true;
-    first_ = false;
-    return meaning;
-  }
-
- private:
-  bool first_ = true;
-  bool open_ = false;
-};
 
 constexpr std::string_view kMisplacedPercent =
     "'%' ends a program only if another '%' is its first line";
@@ -99,173 +43,6 @@ std::array<AxisWords, 9> ProgramSetup::zero_offsets() {
   offsets.fill(AxisWords::Zero());
   return offsets;
 }
-
-class Interpreter::Machine {
- public:
-  Machine(std::string text, std::string file, ProgramSetup setup)
-      : text_(std::move(text)),
-        file_(std::move(file)),
-        setup_(std::move(setup)),
-        parameters_({[this](int number) { return system_number(number); },
-                     [this](std::string_view name) { return system_name(name); }}),
-        parser_(file_, setup_.block_delete),
-        lines_(text_) {
-    for (const auto& [name, value] : setup_.parameters) set_initial(name, value);
-    for (int system = 1; system <= kWorkSystems; ++system) store_setup_offset(system);
-    if (setup_.work_system < 1 || setup_.work_system > kWorkSystems) {
-      throw InputError({file_, 0, 0}, fmt::format("work system {}; must be in 1 ... {}",
-                                                  setup_.work_system, kWorkSystems));
-    }
-    state_.tool = setup_.tool;
-    load_work_system(setup_.work_system);
-    state_.position = state_.from_account(setup_.start);
-    parameters_.commit();
-  }
-
-  std::optional<Move> next() {
-    while (given_ == out_.size()) {
-      out_.clear();
-      given_ = 0;
-      if (ended_ || !read_block()) return std::nullopt;
-    }
-    return std::move(out_[given_++]);
-  }
-
-  std::vector<Move> rest() {
-    out_.erase(out_.begin(), out_.begin() + static_cast<std::ptrdiff_t>(given_));
-    given_ = 0;
-    // of long programs most lines are moves; of many blank ones nothing should be held
-    constexpr std::size_t kMostReserved = 1U << 18;
-    out_.reserve(out_.size() + std::min(lines_.count(), kMostReserved));
-    while (!ended_ && read_block()) {
-    }
-    return std::exchange(out_, {});
-  }
-
-  const std::vector<Fault>& warnings() const { return warnings_; }
-
- private:
-  // ---- setup
-  void set_initial(const std::string& name, double value);
-  void store_setup_offset(int system);
-
-  // ---- reading
-  bool read_block();
-  void run_block();
-  [[noreturn]] void fail(int column, std::string message) const {
-    throw InputError({file_, lines_.number(), column}, std::move(message));
-  }
-  void assign_parameters();
-
-  // ---- words
-  const Request& request() const { return request_; }
-  [[noreturn]] void fail_at(char letter, std::string message) const {
-    fail(request_.word(letter).column, std::move(message));
-  }
-  double unit_of(Axis axis) const { return is_linear(axis) ? state_.unit : deg; }
-  bool has_axis(int i) const { return request_.has(letter(axis_at(i))); }
-  static Axis axis_at(int i) { return kAllAxes[static_cast<std::size_t>(i)]; }
-  /// SI value of an axis word.
-  double axis_word(int i) const { return request_[letter(axis_at(i))] * unit_of(axis_at(i)); }
-  bool has_any_axis() const {
-    for (int i = 0; i < kAxisWords; ++i) {
-      if (has_axis(i)) return true;
-    }
-    return false;
-  }
-  int integer(char letter, double tolerance = kIntegerTol) const;
-
-  // ---- steps of a block, in the order of execution
-  using Step = void (Machine::*)();
-  static const std::array<Step, 21> kSteps;
-  void messages();
-  void feed_mode();
-  void feed();
-  void spindle_speed();
-  void select_tool();
-  void change_tool();
-  void spindle();
-  void coolant();
-  void override_switches() {}
-  void dwell();
-  void plane();
-  void units();
-  void cutter_compensation() {}
-  void tool_length();
-  void set_table_offset(bool is_added);
-  ToolControl tool_control_of(int code) const;
-  void work_system();
-  void work_plane();
-  void path_control();
-  void distance();
-  void non_modal();
-  void motion();
-  void stop();
-
-  void set_offsets();                     // G10
-  void set_work_offset(int system);       // G10 L2
-  void set_current_position(int system);  // G10 L20
-  void load_work_system(int system);
-  void refresh_if_active(int system);
-  void go_home(int first_parameter);     // G28 G30
-  void store_home(int first_parameter);  // G28.1 G30.1
-  void shift_position(bool is_g52);      // G92 G52
-  void drop_shift(bool forget);          // G92.1 G92.2
-  void restore_shift();                  // G92.3
-  void store_shift();
-  const ToolEntry& tool_named(char letter, int number) const;
-
-  // tool-centre-point control and tilted planes
-  std::string rotary_not_at_zero(const AxisWords& machine) const;
-  AxisWords machine_now(int column) const;
-  void stand_at(const AxisWords& machine, int column);
-  void orient_tool();  // G53.1
-  void refuse_while_tip_is_controlled() const;
-  void refuse_rotary_words() const;
-  bool has_vector() const {
-    return state_.tool_control == ToolControl::tool_axis &&
-           (request_.has('I') || request_.has('J') || request_.has('K'));
-  }
-  Eigen::Vector3d programmed_axis();
-  double turn_towards(const Eigen::Vector3d& k, AxisWords& end) const;
-  void warn_of_leaning_tool();
-
-  void straight();
-  void arc();
-  ArcCentre arc_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end, bool clockwise);
-  int arc_turns(bool clockwise) const;
-  AxisWords programmed_end() const;
-  AxisWords machine_end() const;
-  double move_feed(const AxisWords& end, double length, double angle) const;
-  void require_feed() const;
-
-  // ---- output
-  Move& emit(MoveKind kind);
-  void move_to(MoveKind kind, const AxisWords& end, double length, double feed);
-  void emit_spindle();
-
-  // ---- parameters that the system sets
-  double system_number(int number) const;
-  std::optional<double> system_name(std::string_view name) const;
-
-  std::string text_;
-  std::string file_;
-  ProgramSetup setup_;
-  Parameters parameters_;
-  Parser parser_;
-  Lines lines_;
-  PercentRule percent_;
-  Block block_;
-  Request request_;
-  ModalState state_;
-  ModalState before_;  // the block
-  bool ended_ = false;
-  std::vector<Move> out_;
-  std::size_t given_ = 0;
-  std::vector<std::pair<int, double>> new_numbers_;
-  std::vector<Fault> warnings_;
-  std::shared_ptr<const WorkPlane> cut_plane_;  // the last in which a tool cut
-};
 
 const std::array<Interpreter::Machine::Step, 21> Interpreter::Machine::kSteps = {
     &Machine::messages,
@@ -542,20 +319,6 @@ void Interpreter::Machine::tool_length() {
   stand_at(machine, column);
 }
 
-// What the codes of the group of G43 leave in force.
-ToolControl Interpreter::Machine::tool_control_of(int code) const {
-  if (code != 434 && code != kVectorControl) return ToolControl::none;
-  const int column = request().of(Group::g_tool_length).column;
-  if (setup_.machine && setup_.machine->number_of_rotary_axes() == 0) {
-    fail(column, fmt::format("{}: the machine has no rotary axis", code_name('G', code)));
-  }
-  if (code == 434) return ToolControl::rotary_axes;
-  if (!setup_.machine) {
-    fail(column, "G43.5: where the rotary axes go depends on the machine, and none is given");
-  }
-  return ToolControl::tool_axis;
-}
-
 // G43 and G43.2
 void Interpreter::Machine::set_table_offset(bool is_added) {
   const bool has_H = request().has('H');
@@ -584,202 +347,6 @@ void Interpreter::Machine::work_system() {
   if (code < 0) return;
   const int system = code <= 590 ? (code - 530) / 10 : 6 + code - 590;
   if (system != state_.work_system) load_work_system(system);
-}
-
-// ------------------------------------------------- tool-centre-point control and tilted planes
-
-// Where no machine is known, tip and axes differ by the tool if nothing is turned.
-std::string Interpreter::Machine::rotary_not_at_zero(const AxisWords& machine) const {
-  for (int i = kLinearJoints; i < kAxisWords; ++i) {
-    if (machine[i] == 0.0) continue;
-    return fmt::format(
-        "{} stands at {:g} deg: where the tip is depends on the machine, and none "
-        "is given",
-        letter(axis_at(i)), machine[i] / deg);
-  }
-  return {};
-}
-
-// Positions of the axes, also while the tip is controlled.
-AxisWords Interpreter::Machine::machine_now(int column) const {
-  const AxisWords account = state_.to_account(state_.position);
-  if (!state_.controls_tip()) return account;
-  if (setup_.machine) {
-    const auto machine = setup_.machine->machine_words(account, state_.p_ST());
-    if (!machine) fail(column, "the linear axes cannot bring the tip to where it is now");
-    return *machine;
-  }
-  const std::string why = rotary_not_at_zero(account);
-  if (!why.empty()) fail(column, why);
-  AxisWords machine = account;
-  machine.head<3>() -= state_.p_ST();
-  return machine;
-}
-
-void Interpreter::Machine::stand_at(const AxisWords& machine, int column) {
-  if (!state_.controls_tip()) {
-    state_.position = state_.from_account(machine);
-    return;
-  }
-  AxisWords tip = machine;
-  if (setup_.machine) {
-    tip = setup_.machine->tip_words(machine, state_.p_ST());
-  } else {
-    const std::string why = rotary_not_at_zero(machine);
-    if (!why.empty()) fail(column, why);
-    tip.head<3>() += state_.p_ST();
-  }
-  state_.position = state_.from_account(tip);
-}
-
-void Interpreter::Machine::work_plane() {
-  const int code = request().code(Group::g_work_plane);
-  if (code < 0) return;
-  const int column = request().of(Group::g_work_plane).column;
-  if (code == 690) {
-    if (!state_.plane) return;
-    const AxisWords machine = machine_now(column);
-    state_.plane.reset();
-    stand_at(machine, column);
-    return;
-  }
-  if (state_.plane) fail(column, "G68.2 in a tilted work plane; G69 first");
-  if (state_.tool_offset_number == kOtherToolOffset) {
-    fail(column, "G68.2 with a tool offset of G43.1 or G43.2; use G43 H");
-  }
-  refuse_rotary_words();
-  const AxisWords machine = machine_now(column);
-  WorkPlane plane;
-  for (int i = 0; i < kLinearJoints; ++i) {
-    if (has_axis(i)) plane.origin[i] = axis_word(i);
-  }
-  const auto turn = [&](char letter, const Eigen::Vector3d& about) {
-    return Eigen::AngleAxisd(request()[letter] * deg, about).toRotationMatrix();
-  };
-  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
-  plane.R = turn('I', z) * turn('J', x) * turn('K', z);
-  state_.plane = std::make_shared<const WorkPlane>(plane);
-  stand_at(machine, column);
-}
-
-void Interpreter::Machine::orient_tool() {
-  const int column = request().of(Group::g_non_modal).column;
-  if (!state_.plane) fail(column, "G53.1 without a tilted work plane; G68.2 first");
-  if (request().motion.code != nullptr) {
-    fail(request().motion.column, "G53.1 must stand without motion in its block");
-  }
-  if (!setup_.machine) {
-    fail(column, "G53.1: where the rotary axes go depends on the machine, and none is given");
-  }
-  if (setup_.machine->number_of_rotary_axes() == 0) {
-    fail(column, "G53.1: the machine has no rotary axis");
-  }
-  const AxisWords machine = machine_now(column);
-  const JointLayout& layout = setup_.machine->chain().layout;
-  const auto found = setup_.machine->point(state_.direction_in_workpiece(Eigen::Vector3d::UnitZ()),
-                                           layout.joints(machine));
-  if (!found.fault.empty()) fail(column, fmt::format("G53.1: {}", found.fault));
-  AxisWords turned = machine;
-  const AxisWords words = layout.words(found.Q);
-  for (int i = kLinearJoints; i < kAxisWords; ++i) {
-    if (layout.joint_of(axis_at(i))) turned[i] = words[i];
-  }
-  stand_at(turned, column);
-  if (state_.tool_control == ToolControl::tool_axis) {
-    state_.tool_axis = setup_.machine->tool_axis(found.Q);
-  }
-  Move& move = emit(MoveKind::rapid);
-  move.tool_control = ToolControl::none;
-  move.end_machine = turned;
-}
-
-// Codes whose words, or whose account of the position, are those of the axes.
-void Interpreter::Machine::refuse_while_tip_is_controlled() const {
-  const Request::Chosen& chosen = request().of(Group::g_non_modal);
-  if (chosen.code == nullptr) return;
-  const int code = chosen.code->tenths;
-  if (code == 40 || code == 531) return;
-  const bool speaks_of_axes =
-      code == 530 || code == 280 || code == 281 || code == 300 || code == 301;
-  if (state_.plane) {
-    fail(chosen.column, fmt::format("{} in a tilted work plane; G69 first", code_name('G', code)));
-  }
-  if (state_.tool_control != ToolControl::none && speaks_of_axes) {
-    fail(chosen.column,
-         fmt::format("{} under tool-centre-point control; G49 first", code_name('G', code)));
-  }
-}
-
-void Interpreter::Machine::refuse_rotary_words() const {
-  const bool has_vectors = state_.tool_control == ToolControl::tool_axis;
-  for (int i = kLinearJoints; i < kAxisWords; ++i) {
-    if (!has_axis(i)) continue;
-    const char name = letter(axis_at(i));
-    if (has_vectors) {
-      fail_at(name, fmt::format("{} word under G43.5; I J K give the tool axis", name));
-    }
-    if (state_.plane && state_.tool_control == ToolControl::none) {
-      fail_at(name, fmt::format("{} word in a tilted work plane; G53.1 turns the tool, G43.4 moves "
-                                "rotary axes",
-                                name));
-    }
-    if (request().code(Group::g_work_plane) == 682) {
-      fail_at(name, fmt::format("{} word with G68.2; its angles are I J K", name));
-    }
-  }
-}
-
-// The tool axis of a block under G43.5, in W.
-Eigen::Vector3d Interpreter::Machine::programmed_axis() {
-  if (!has_vector()) {
-    if (state_.tool_axis.isZero(0.0)) {
-      fail(request().motion.column, "G43.5 without I J K in its first move");
-    }
-    return state_.tool_axis;
-  }
-  const Eigen::Vector3d given(request()['I'], request()['J'], request()['K']);
-  const char first = request().has('I') ? 'I' : request().has('J') ? 'J' : 'K';
-  const double length = given.norm();
-  if (!(length > kLeastVector)) fail_at(first, "the tool axis I J K has length zero");
-  if (std::abs(length - 1.0) > kAxisLengthTolerance) {
-    warnings_.push_back(
-        {{file_, lines_.number(), request().word(first).column},
-         fmt::format("the tool axis I J K has length {:.6g}; taken as a unit vector", length)});
-  }
-  return (state_.direction_in_workpiece(given) / length).normalized();
-}
-
-// Puts the rotary words of `end` to where the tool axis is k. Returns the angle of the turn, rad.
-double Interpreter::Machine::turn_towards(const Eigen::Vector3d& k, AxisWords& end) const {
-  const JointLayout& layout = setup_.machine->chain().layout;
-  const AxisWords now = state_.to_machine(state_.position);
-  const AxisTurn turn = setup_.machine->great_circle(layout.joints(now), k);
-  if (!turn.fault.empty()) fail(request().motion.column, turn.fault);
-  const AxisWords words = layout.words(turn.knots.back().Q);
-  for (int i = kLinearJoints; i < kAxisWords; ++i) {
-    if (layout.joint_of(axis_at(i))) end[i] = state_.position[i] + (words[i] - now[i]);
-  }
-  return turn.angle;
-}
-
-// Once for each tilted plane in which it cuts.
-void Interpreter::Machine::warn_of_leaning_tool() {
-  if (!state_.plane || state_.tool_control != ToolControl::none || cut_plane_ == state_.plane)
-    return;
-  cut_plane_ = state_.plane;
-  const AxisWords now = state_.to_machine(state_.position);
-  Eigen::Vector3d k = Eigen::Vector3d::UnitZ();  // with nothing turned
-  if (setup_.machine) {
-    k = setup_.machine->tool_axis(setup_.machine->chain().layout.joints(now));
-  } else if (!rotary_not_at_zero(now).empty()) {
-    return;
-  }
-  const double angle = angle_between(k, state_.direction_in_workpiece(Eigen::Vector3d::UnitZ()));
-  if (angle < kLeaning) return;
-  const bool can_turn = !setup_.machine || setup_.machine->number_of_rotary_axes() > 0;
-  warnings_.push_back({{file_, lines_.number(), request().motion.column},
-                       fmt::format("the tool stands {:.4f} deg off Z of the tilted work plane{}",
-                                   angle / deg, can_turn ? "; G53.1 turns it there" : "")});
 }
 
 void Interpreter::Machine::path_control() {

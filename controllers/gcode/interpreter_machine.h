@@ -1,0 +1,192 @@
+/// The machine that the interpreter runs a program on: what it remembers, and the steps of a block.
+/// Private to the interpreter (interpreter.cpp, tip_control.cpp).
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "controllers/gcode/arc_geometry.h"
+#include "controllers/gcode/interpreter.h"
+#include "controllers/gcode/modal_state.h"
+#include "controllers/gcode/parameters.h"
+#include "controllers/gcode/parser.h"
+#include "controllers/gcode/program_lines.h"
+#include "controllers/gcode/request.h"
+
+namespace servomill::controllers {
+
+inline constexpr double kIntegerTol = 1e-4;  // as LinuxCNC, for words that must be integers
+
+class Interpreter::Machine {
+ public:
+  Machine(std::string text, std::string file, ProgramSetup setup)
+      : text_(std::move(text)),
+        file_(std::move(file)),
+        setup_(std::move(setup)),
+        parameters_({[this](int number) { return system_number(number); },
+                     [this](std::string_view name) { return system_name(name); }}),
+        parser_(file_, setup_.block_delete),
+        lines_(text_) {
+    for (const auto& [name, value] : setup_.parameters) set_initial(name, value);
+    for (int system = 1; system <= kWorkSystems; ++system) store_setup_offset(system);
+    if (setup_.work_system < 1 || setup_.work_system > kWorkSystems) {
+      throw InputError({file_, 0, 0}, fmt::format("work system {}; must be in 1 ... {}",
+                                                  setup_.work_system, kWorkSystems));
+    }
+    state_.tool = setup_.tool;
+    load_work_system(setup_.work_system);
+    state_.position = state_.from_account(setup_.start);
+    parameters_.commit();
+  }
+
+  std::optional<Move> next() {
+    while (given_ == out_.size()) {
+      out_.clear();
+      given_ = 0;
+      if (ended_ || !read_block()) return std::nullopt;
+    }
+    return std::move(out_[given_++]);
+  }
+
+  std::vector<Move> rest() {
+    out_.erase(out_.begin(), out_.begin() + static_cast<std::ptrdiff_t>(given_));
+    given_ = 0;
+    // of long programs most lines are moves; of many blank ones nothing should be held
+    constexpr std::size_t kMostReserved = 1U << 18;
+    out_.reserve(out_.size() + std::min(lines_.count(), kMostReserved));
+    while (!ended_ && read_block()) {
+    }
+    return std::exchange(out_, {});
+  }
+
+  const std::vector<Fault>& warnings() const { return warnings_; }
+
+ private:
+  // ---- setup
+  void set_initial(const std::string& name, double value);
+  void store_setup_offset(int system);
+
+  // ---- reading
+  bool read_block();
+  void run_block();
+  [[noreturn]] void fail(int column, std::string message) const {
+    throw InputError({file_, lines_.number(), column}, std::move(message));
+  }
+  void assign_parameters();
+
+  // ---- words
+  const Request& request() const { return request_; }
+  [[noreturn]] void fail_at(char letter, std::string message) const {
+    fail(request_.word(letter).column, std::move(message));
+  }
+  double unit_of(Axis axis) const { return is_linear(axis) ? state_.unit : deg; }
+  bool has_axis(int i) const { return request_.has(letter(axis_at(i))); }
+  static Axis axis_at(int i) { return kAllAxes[static_cast<std::size_t>(i)]; }
+  /// SI value of an axis word.
+  double axis_word(int i) const { return request_[letter(axis_at(i))] * unit_of(axis_at(i)); }
+  bool has_any_axis() const {
+    for (int i = 0; i < kAxisWords; ++i) {
+      if (has_axis(i)) return true;
+    }
+    return false;
+  }
+  int integer(char letter, double tolerance = kIntegerTol) const;
+
+  // ---- steps of a block, in the order of execution
+  using Step = void (Machine::*)();
+  static const std::array<Step, 21> kSteps;
+  void messages();
+  void feed_mode();
+  void feed();
+  void spindle_speed();
+  void select_tool();
+  void change_tool();
+  void spindle();
+  void coolant();
+  void override_switches() {}
+  void dwell();
+  void plane();
+  void units();
+  void cutter_compensation() {}
+  void tool_length();
+  void set_table_offset(bool is_added);
+  ToolControl tool_control_of(int code) const;
+  void work_system();
+  void work_plane();
+  void path_control();
+  void distance();
+  void non_modal();
+  void motion();
+  void stop();
+
+  void set_offsets();                     // G10
+  void set_work_offset(int system);       // G10 L2
+  void set_current_position(int system);  // G10 L20
+  void load_work_system(int system);
+  void refresh_if_active(int system);
+  void go_home(int first_parameter);     // G28 G30
+  void store_home(int first_parameter);  // G28.1 G30.1
+  void shift_position(bool is_g52);      // G92 G52
+  void drop_shift(bool forget);          // G92.1 G92.2
+  void restore_shift();                  // G92.3
+  void store_shift();
+  const ToolEntry& tool_named(char letter, int number) const;
+
+  // tool-centre-point control and tilted planes
+  std::string rotary_not_at_zero(const AxisWords& machine) const;
+  AxisWords machine_now(int column) const;
+  void stand_at(const AxisWords& machine, int column);
+  void orient_tool();  // G53.1
+  void refuse_while_tip_is_controlled() const;
+  void refuse_rotary_words() const;
+  bool has_vector() const {
+    return state_.tool_control == ToolControl::tool_axis &&
+           (request_.has('I') || request_.has('J') || request_.has('K'));
+  }
+  Eigen::Vector3d programmed_axis();
+  double turn_towards(const Eigen::Vector3d& k, AxisWords& end) const;
+  void warn_of_leaning_tool();
+
+  void straight();
+  void arc();
+  ArcCentre arc_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end, bool clockwise);
+  int arc_turns(bool clockwise) const;
+  AxisWords programmed_end() const;
+  AxisWords machine_end() const;
+  double move_feed(const AxisWords& end, double length, double angle) const;
+  void require_feed() const;
+
+  // ---- output
+  Move& emit(MoveKind kind);
+  void move_to(MoveKind kind, const AxisWords& end, double length, double feed);
+  void emit_spindle();
+
+  // ---- parameters that the system sets
+  double system_number(int number) const;
+  std::optional<double> system_name(std::string_view name) const;
+
+  std::string text_;
+  std::string file_;
+  ProgramSetup setup_;
+  Parameters parameters_;
+  Parser parser_;
+  Lines lines_;
+  PercentRule percent_;
+  Block block_;
+  Request request_;
+  ModalState state_;
+  ModalState before_;  // the block
+  bool ended_ = false;
+  std::vector<Move> out_;
+  std::size_t given_ = 0;
+  std::vector<std::pair<int, double>> new_numbers_;
+  std::vector<Fault> warnings_;
+  std::shared_ptr<const WorkPlane> cut_plane_;  // the last in which a tool cut
+};
+
+}  // namespace servomill::controllers

@@ -1,0 +1,227 @@
+// Tool-centre-point control and tilted work planes: G43.4 G43.5 G53.1 G68.2 G69.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "controllers/gcode/interpreter_machine.h"
+#include "plant/vocabulary/tool_axis.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr double kLeastVector = 1e-6;  // length of a tool axis; below it is zero
+constexpr double kLeaning = 1e-4;      // rad of the tool axis off Z of a tilted plane
+
+}  // namespace
+
+// What the codes of the group of G43 leave in force.
+ToolControl Interpreter::Machine::tool_control_of(int code) const {
+  if (code != 434 && code != kVectorControl) return ToolControl::none;
+  const int column = request().of(Group::g_tool_length).column;
+  if (setup_.machine && setup_.machine->number_of_rotary_axes() == 0) {
+    fail(column, fmt::format("{}: the machine has no rotary axis", code_name('G', code)));
+  }
+  if (code == 434) return ToolControl::rotary_axes;
+  if (!setup_.machine) {
+    fail(column, "G43.5: where the rotary axes go depends on the machine, and none is given");
+  }
+  return ToolControl::tool_axis;
+}
+
+// Where no machine is known, tip and axes differ by the tool if nothing is turned.
+std::string Interpreter::Machine::rotary_not_at_zero(const AxisWords& machine) const {
+  for (int i = kLinearJoints; i < kAxisWords; ++i) {
+    if (machine[i] == 0.0) continue;
+    return fmt::format(
+        "{} stands at {:g} deg: where the tip is depends on the machine, and none "
+        "is given",
+        letter(axis_at(i)), machine[i] / deg);
+  }
+  return {};
+}
+
+// Positions of the axes, also while the tip is controlled.
+AxisWords Interpreter::Machine::machine_now(int column) const {
+  const AxisWords account = state_.to_account(state_.position);
+  if (!state_.controls_tip()) return account;
+  if (setup_.machine) {
+    const auto machine = setup_.machine->machine_words(account, state_.p_ST());
+    if (!machine) fail(column, "the linear axes cannot bring the tip to where it is now");
+    return *machine;
+  }
+  const std::string why = rotary_not_at_zero(account);
+  if (!why.empty()) fail(column, why);
+  AxisWords machine = account;
+  machine.head<3>() -= state_.p_ST();
+  return machine;
+}
+
+void Interpreter::Machine::stand_at(const AxisWords& machine, int column) {
+  if (!state_.controls_tip()) {
+    state_.position = state_.from_account(machine);
+    return;
+  }
+  AxisWords tip = machine;
+  if (setup_.machine) {
+    tip = setup_.machine->tip_words(machine, state_.p_ST());
+  } else {
+    const std::string why = rotary_not_at_zero(machine);
+    if (!why.empty()) fail(column, why);
+    tip.head<3>() += state_.p_ST();
+  }
+  state_.position = state_.from_account(tip);
+}
+
+void Interpreter::Machine::work_plane() {
+  const int code = request().code(Group::g_work_plane);
+  if (code < 0) return;
+  const int column = request().of(Group::g_work_plane).column;
+  if (code == 690) {
+    if (!state_.plane) return;
+    const AxisWords machine = machine_now(column);
+    state_.plane.reset();
+    stand_at(machine, column);
+    return;
+  }
+  if (state_.plane) fail(column, "G68.2 in a tilted work plane; G69 first");
+  if (state_.tool_offset_number == kOtherToolOffset) {
+    fail(column, "G68.2 with a tool offset of G43.1 or G43.2; use G43 H");
+  }
+  refuse_rotary_words();
+  const AxisWords machine = machine_now(column);
+  WorkPlane plane;
+  for (int i = 0; i < kLinearJoints; ++i) {
+    if (has_axis(i)) plane.origin[i] = axis_word(i);
+  }
+  const auto turn = [&](char letter, const Eigen::Vector3d& about) {
+    return Eigen::AngleAxisd(request()[letter] * deg, about).toRotationMatrix();
+  };
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
+  plane.R = turn('I', z) * turn('J', x) * turn('K', z);
+  state_.plane = std::make_shared<const WorkPlane>(plane);
+  stand_at(machine, column);
+}
+
+void Interpreter::Machine::orient_tool() {
+  const int column = request().of(Group::g_non_modal).column;
+  if (!state_.plane) fail(column, "G53.1 without a tilted work plane; G68.2 first");
+  if (request().motion.code != nullptr) {
+    fail(request().motion.column, "G53.1 must stand without motion in its block");
+  }
+  if (!setup_.machine) {
+    fail(column, "G53.1: where the rotary axes go depends on the machine, and none is given");
+  }
+  if (setup_.machine->number_of_rotary_axes() == 0) {
+    fail(column, "G53.1: the machine has no rotary axis");
+  }
+  const AxisWords machine = machine_now(column);
+  const JointLayout& layout = setup_.machine->chain().layout;
+  const auto found = setup_.machine->point(state_.direction_in_workpiece(Eigen::Vector3d::UnitZ()),
+                                           layout.joints(machine));
+  if (!found.fault.empty()) fail(column, fmt::format("G53.1: {}", found.fault));
+  AxisWords turned = machine;
+  const AxisWords words = layout.words(found.Q);
+  for (int i = kLinearJoints; i < kAxisWords; ++i) {
+    if (layout.joint_of(axis_at(i))) turned[i] = words[i];
+  }
+  stand_at(turned, column);
+  if (state_.tool_control == ToolControl::tool_axis) {
+    state_.tool_axis = setup_.machine->tool_axis(found.Q);
+  }
+  Move& move = emit(MoveKind::rapid);
+  move.tool_control = ToolControl::none;
+  move.end_machine = turned;
+}
+
+// Codes whose words, or whose account of the position, are those of the axes.
+void Interpreter::Machine::refuse_while_tip_is_controlled() const {
+  const Request::Chosen& chosen = request().of(Group::g_non_modal);
+  if (chosen.code == nullptr) return;
+  const int code = chosen.code->tenths;
+  if (code == 40 || code == 531) return;
+  const bool speaks_of_axes =
+      code == 530 || code == 280 || code == 281 || code == 300 || code == 301;
+  if (state_.plane) {
+    fail(chosen.column, fmt::format("{} in a tilted work plane; G69 first", code_name('G', code)));
+  }
+  if (state_.tool_control != ToolControl::none && speaks_of_axes) {
+    fail(chosen.column,
+         fmt::format("{} under tool-centre-point control; G49 first", code_name('G', code)));
+  }
+}
+
+void Interpreter::Machine::refuse_rotary_words() const {
+  const bool has_vectors = state_.tool_control == ToolControl::tool_axis;
+  for (int i = kLinearJoints; i < kAxisWords; ++i) {
+    if (!has_axis(i)) continue;
+    const char name = letter(axis_at(i));
+    if (has_vectors) {
+      fail_at(name, fmt::format("{} word under G43.5; I J K give the tool axis", name));
+    }
+    if (state_.plane && state_.tool_control == ToolControl::none) {
+      fail_at(name, fmt::format("{} word in a tilted work plane; G53.1 turns the tool, G43.4 moves "
+                                "rotary axes",
+                                name));
+    }
+    if (request().code(Group::g_work_plane) == 682) {
+      fail_at(name, fmt::format("{} word with G68.2; its angles are I J K", name));
+    }
+  }
+}
+
+// The tool axis of a block under G43.5, in W.
+Eigen::Vector3d Interpreter::Machine::programmed_axis() {
+  if (!has_vector()) {
+    if (state_.tool_axis.isZero(0.0)) {
+      fail(request().motion.column, "G43.5 without I J K in its first move");
+    }
+    return state_.tool_axis;
+  }
+  const Eigen::Vector3d given(request()['I'], request()['J'], request()['K']);
+  const char first = request().has('I') ? 'I' : request().has('J') ? 'J' : 'K';
+  const double length = given.norm();
+  if (!(length > kLeastVector)) fail_at(first, "the tool axis I J K has length zero");
+  if (std::abs(length - 1.0) > kAxisLengthTolerance) {
+    warnings_.push_back(
+        {{file_, lines_.number(), request().word(first).column},
+         fmt::format("the tool axis I J K has length {:.6g}; taken as a unit vector", length)});
+  }
+  return (state_.direction_in_workpiece(given) / length).normalized();
+}
+
+// Puts the rotary words of `end` to where the tool axis is k. Returns the angle of the turn, rad.
+double Interpreter::Machine::turn_towards(const Eigen::Vector3d& k, AxisWords& end) const {
+  const JointLayout& layout = setup_.machine->chain().layout;
+  const AxisWords now = state_.to_machine(state_.position);
+  const AxisTurn turn = setup_.machine->great_circle(layout.joints(now), k);
+  if (!turn.fault.empty()) fail(request().motion.column, turn.fault);
+  const AxisWords words = layout.words(turn.knots.back().Q);
+  for (int i = kLinearJoints; i < kAxisWords; ++i) {
+    if (layout.joint_of(axis_at(i))) end[i] = state_.position[i] + (words[i] - now[i]);
+  }
+  return turn.angle;
+}
+
+// Once for each tilted plane in which it cuts.
+void Interpreter::Machine::warn_of_leaning_tool() {
+  if (!state_.plane || state_.tool_control != ToolControl::none || cut_plane_ == state_.plane)
+    return;
+  cut_plane_ = state_.plane;
+  const AxisWords now = state_.to_machine(state_.position);
+  Eigen::Vector3d k = Eigen::Vector3d::UnitZ();  // with nothing turned
+  if (setup_.machine) {
+    k = setup_.machine->tool_axis(setup_.machine->chain().layout.joints(now));
+  } else if (!rotary_not_at_zero(now).empty()) {
+    return;
+  }
+  const double angle = angle_between(k, state_.direction_in_workpiece(Eigen::Vector3d::UnitZ()));
+  if (angle < kLeaning) return;
+  const bool can_turn = !setup_.machine || setup_.machine->number_of_rotary_axes() > 0;
+  warnings_.push_back({{file_, lines_.number(), request().motion.column},
+                       fmt::format("the tool stands {:.4f} deg off Z of the tilted work plane{}",
+                                   angle / deg, can_turn ? "; G53.1 turns it there" : "")});
+}
+
+}  // namespace servomill::controllers
