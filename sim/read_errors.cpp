@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -35,19 +36,6 @@ ErrorFunction read_harmonic(Reader& table, const Units& units) {
   return period > 0.0 ? plant::harmonic(amplitude, period, phase) : ErrorFunction{};
 }
 
-// Coefficients c_n in value unit per travel unit^n; SI inside.
-ErrorFunction read_polynomial(Reader& table, const Units& units) {
-  const std::string key = units.value("polynomial");
-  auto coefficients = table.reals(key, units.value_quantity());
-  const double travel = units.travel_is_length ? mm : deg;
-  double scale = 1.0;
-  for (double& c : coefficients) {
-    c *= scale;
-    scale /= travel;
-  }
-  return plant::polynomial(std::move(coefficients));
-}
-
 ErrorFunction read_table(Reader& table, const Units& units) {
   auto at = table.reals(units.travel("at"), units.travel_quantity());
   auto values = table.reals(units.value("value"), units.value_quantity());
@@ -64,12 +52,39 @@ ErrorFunction read_table(Reader& table, const Units& units) {
   return plant::linear_table(std::move(at), std::move(values));
 }
 
+// c_n in value unit per travel unit^n; SI inside.
+std::vector<double> read_coefficients(Reader& table, const std::string& key, const Units& units) {
+  auto coefficients = table.reals(key, units.value_quantity());
+  const double travel = units.travel_is_length ? mm : deg;
+  double scale = 1.0;
+  for (double& c : coefficients) {
+    c *= scale;
+    scale /= travel;
+  }
+  return coefficients;
+}
+
+ErrorFunction read_reversal(Reader& table, const Units& units) {
+  const std::string constant = units.value("width"), curve = units.value("width_polynomial");
+  std::vector<double> width = {0.0};
+  if (table.has(curve)) width = read_coefficients(table, curve, units);
+  if (table.has(constant) || !table.has(curve)) {
+    width.resize(std::max<std::size_t>(width.size(), 1));
+    width.front() += table.real(constant, units.value_quantity());
+  }
+  const double distance =
+      table.real(units.travel("distance"), units.travel_quantity(), {above(0.0)});
+  return distance > 0.0 ? plant::reversal(std::move(width), distance) : ErrorFunction{};
+}
+
 ErrorFunction read_function(Reader& table, const Units& units) {
   ErrorFunction sum;
   if (table.has(units.value("constant"))) {
     sum = sum + plant::constant(table.real(units.value("constant"), units.value_quantity()));
   }
-  if (table.has(units.value("polynomial"))) sum = sum + read_polynomial(table, units);
+  if (const std::string key = units.value("polynomial"); table.has(key)) {
+    sum = sum + plant::polynomial(read_coefficients(table, key, units));
+  }
   if (table.has("harmonic")) {
     if (table.is("harmonic", Value::Type::list)) {
       for (Reader& one : table.tables("harmonic")) sum = sum + read_harmonic(one, units);
@@ -121,7 +136,12 @@ plant::ErrorModel read_errors(Reader& model, const JointLayout& layout) {
       aliases[key] = model.text(key);
     } else {
       Reader table = model.table(key);
-      errors.component(*name) = read_function(table, units_of(*name));
+      const Units units = units_of(*name);
+      errors.component(*name) = read_function(table, units);
+      if (table.has("reversal")) {
+        Reader reversal = table.table("reversal");
+        errors.component(*name) = errors.component(*name) + read_reversal(reversal, units);
+      }
     }
   }
   for (const auto& [key, other] : aliases) {

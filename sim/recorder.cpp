@@ -165,11 +165,12 @@ class Recorder::Rows {
 
   Series& series() { return series_; }
 
-  void add(const std::vector<Snapshot>& block) {
+  void add(const std::vector<Snapshot>& block, std::span<const double> directions) {
+    const std::size_t plays = truth_.plays().size();
     double* row = series_.add_rows(block.size());
     for (std::size_t first = 0; first < block.size();) {
       const std::size_t end = find_places(block, first);
-      find_poses();
+      find_poses(directions.subspan(first * plays, (end - first) * plays));
       for (std::size_t n = first; n < end; ++n) {
         make_row(block[n], n - first, row);
         rounding_.apply(row);
@@ -181,7 +182,7 @@ class Recorder::Rows {
 
  private:
   std::size_t find_places(const std::vector<Snapshot>& block, std::size_t first);
-  void find_poses();
+  void find_poses(std::span<const double> directions);
   void make_row(const Snapshot& now, std::size_t place, double* to);
 
   const MachineSettings& machine_;
@@ -228,13 +229,17 @@ std::size_t Recorder::Rows::find_places(const std::vector<Snapshot>& block, std:
 }
 
 // Where the tool is and where it should be.
-void Recorder::Rows::find_poses() {
+void Recorder::Rows::find_poses(std::span<const double> directions) {
   const auto tip = tips_.find(path_.piece(pieces_.front()).tool_offset);
   p_ST_ = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;
   nominal_.resize(Q_prog_.size());
   actual_.resize(Q_prog_.size());
   ideal_.poses(Q_prog_, p_ST_, nominal_);
-  truth_.poses(Q_true_, p_ST_, actual_);
+  if (directions.empty()) {
+    truth_.poses(Q_true_, p_ST_, actual_);
+  } else {
+    truth_.poses(Q_true_, p_ST_, directions, actual_);
+  }
   if (imposed_ == nullptr) return;
   displacement_.resize(Q_prog_.size());
   imposed_->joint_offsets(Q_prog_, p_ST_, displacement_);
@@ -289,30 +294,34 @@ Recorder::Recorder(const MachineSettings& machine, const plant::VolumetricModel&
                    const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
                    bool rotary_displaced)
     : rows_(std::make_unique<Rows>(machine, truth, imposed, path, tips, format, rotary_displaced)) {
-  filling_.reserve(kBlockRows);
+  filling_.snapshots.reserve(kBlockRows);
+  filling_.directions.reserve(kBlockRows * truth.plays().size());
 }
 
 Recorder::~Recorder() = default;
 
 void Recorder::reserve(std::size_t rows) { rows_->series().reserve(rows); }
 
-void Recorder::record(const Snapshot& now) {
-  filling_.push_back(now);
-  if (filling_.size() == kBlockRows) hand_over();
+void Recorder::record(const Snapshot& now, std::span<const double> directions) {
+  filling_.snapshots.push_back(now);
+  filling_.directions.insert(filling_.directions.end(), directions.begin(), directions.end());
+  if (filling_.snapshots.size() == kBlockRows) hand_over();
 }
 
 void Recorder::hand_over() {
   background_.wait();
   std::swap(filling_, working_);
-  filling_.reserve(kBlockRows);
-  filling_.clear();
-  background_.post([this] { rows_->add(working_); });
+  filling_.snapshots.reserve(kBlockRows);
+  filling_.snapshots.clear();
+  filling_.directions.reserve(working_.directions.size());
+  filling_.directions.clear();
+  background_.post([this] { rows_->add(working_.snapshots, working_.directions); });
 }
 
 Series Recorder::take() {
   background_.wait();
-  rows_->add(filling_);
-  filling_.clear();
+  rows_->add(filling_.snapshots, filling_.directions);
+  filling_ = {};
   return std::move(rows_->series());
 }
 

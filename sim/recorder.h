@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "plant/geometry/volumetric.h"
@@ -45,7 +46,8 @@ class Recorder {
   Recorder& operator=(const Recorder&) = delete;
 
   void reserve(std::size_t rows);
-  void record(const Snapshot& now);
+  /// @param directions  in which axes have travelled: of each of the truth's plays()
+  void record(const Snapshot& now, std::span<const double> directions = {});
   /// All rows; once.
   Series take();
 
@@ -54,9 +56,13 @@ class Recorder {
   void hand_over();
 
   std::unique_ptr<Rows> rows_;
-  std::vector<Snapshot> filling_;
-  std::vector<Snapshot> working_;  // what the thread turns into rows
-  Background background_;          // last: its thread uses the others
+  struct Block {
+    std::vector<Snapshot> snapshots;
+    std::vector<double> directions;  // of each snapshot, one behind the other
+  };
+  Block filling_;
+  Block working_;          // what the thread turns into rows
+  Background background_;  // last: its thread uses the others
 };
 
 }  // namespace servomill::sim

@@ -115,6 +115,25 @@ class References {
   std::vector<std::unique_ptr<Reference>> all_;
 };
 
+// The directions in which the axes of the true machine travelled.
+class Travel {
+ public:
+  Travel(const plant::VolumetricModel& truth, const Joints& Q)
+      : memory_(truth.plays(), Q), directions_(memory_.size()) {}
+  // Nothing has to be remembered on most machines.
+  bool matters() const { return !memory_.empty(); }
+  void go_to(const Joints& Q) { memory_.travel(Q); }
+  // Once at Q, which is not remembered: recording changes nothing.
+  std::span<const double> at(const Joints& Q) {
+    memory_.directions(Q, directions_);
+    return directions_;
+  }
+
+ private:
+  plant::TravelMemory memory_;
+  std::vector<double> directions_;
+};
+
 // What belongs to one case among those that run in lockstep: set point, feedback hardware,
 // recorder.
 class CaseRun {
@@ -131,6 +150,7 @@ class CaseRun {
         recorded_(references.of(in.reference, set_point_.delay())),
         recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format,
                   in.program_displaces_rotary),
+        travel_(in.truth, Joints::Zero()),
         last_ticks_(in.machine.joints()) {
     end_ =
         static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
@@ -178,8 +198,11 @@ class CaseRun {
     for (const int j : axes_.joints()) {
       now.torque[j] = in_.machine.drives[static_cast<std::size_t>(j)].Kt * now.current[j];
     }
-    recorder_.record(now);
+    recorder_.record(now, travel_.at(now.Q_true));
   }
+
+  bool remembers_travel() const { return travel_.matters(); }
+  void remember_travel() { travel_.go_to(axes_.Q_true(run_)); }
 
   void interrupt(Tick n) { result_.outcome = interrupted(nc_.periods.seconds(n)); }
 
@@ -207,6 +230,7 @@ class CaseRun {
       }
     }
     axes_.settle(Q, d, run_);
+    travel_ = {in_.truth, axes_.Q_true(run_)};
   }
 
   CaseInputs& in_;
@@ -217,6 +241,7 @@ class CaseRun {
   SetPoint set_point_;
   Reference &reference_, &recorded_;
   Recorder recorder_;
+  Travel travel_;
   LastTicks last_ticks_;
   Tick end_ = 0;
   AxisSetPoint set_;
@@ -237,6 +262,7 @@ class Lockstep {
       runs_.push_back(
           std::make_unique<CaseRun>(in, axes_, feedbacks_[run / kLaneWidth], run, references_));
       longest_ = std::max(longest_, runs_.back()->end());
+      any_remembers_travel_ |= runs_.back()->remembers_travel();
     }
   }
 
@@ -278,7 +304,10 @@ class Lockstep {
       if (!axes_.all_well()) supervise(n);
     }
     if (due & kCurrentLoop) axes_.run_current_loops();
-    if (due & kVelocityLoop) axes_.run_velocity_loops();
+    if (due & kVelocityLoop) {
+      axes_.run_velocity_loops();
+      if (any_remembers_travel_) each([](CaseRun& run) { run.remember_travel(); });
+    }
     if (due & kRecord) each([&](CaseRun& run) { run.record(n); });
   }
 
@@ -322,6 +351,7 @@ class Lockstep {
   References references_;
   std::vector<std::unique_ptr<CaseRun>> runs_;
   std::vector<FeedbackLanes> feedbacks_;  // of eight runs each
+  bool any_remembers_travel_ = false;
   Tick longest_ = 0;
   Tick next_end_ = 0;  // until then none of them ends
 };
@@ -335,13 +365,15 @@ class IdealRun {
         set_point_(in.machine.nc, in.reference, std::move(in.set_points)),
         feedback_(in.feedback ? in.feedback->feedback(model_period_of(in)) : nullptr),
         recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format,
-                  in.program_displaces_rotary) {}
+                  in.program_displaces_rotary),
+        travel_(in.truth, Joints::Zero()) {}
 
   CaseResult run(const StopFlag& stop, std::atomic<float>& progress) {
     CaseResult result;
     const double end = in_.reference.duration() + in_.settle_time;
     Tick n = 0;
     AxisSetPoint set = set_point_.settle();
+    travel_ = {in_.truth, Q_true_of(set)};
     for (; periods_.seconds(n) <= end; n += periods_.position) {
       progress.store(static_cast<float>(periods_.seconds(n) / end), std::memory_order_relaxed);
       if (stop.load(std::memory_order_relaxed)) {
@@ -349,6 +381,7 @@ class IdealRun {
         break;
       }
       set = set_point_.advance(in_.reference.at(periods_.seconds(n), cursor_));
+      if (travel_.matters()) travel_.go_to(Q_true_of(set));
       if (n % in_.record_period == 0) record(n, set);
     }
     result.simulated_time = periods_.seconds(n);
@@ -362,15 +395,21 @@ class IdealRun {
     now.time = periods_.seconds(n);
     now.s = in_.reference.at(now.time - set_point_.delay(), record_cursor_).s;
     now.Q_ref = set.Q_ref;
-    now.Q_cmd = now.Q_read = now.Q_true = set.Q_cmd;
-    for (int k = 0; feedback_ && k < 50; ++k) {  // Q_true + d(Q_true) = Q_cmd
-      const Joints before = now.Q_true;
-      now.Q_true = set.Q_cmd - feedback_->settle(before);
-      if (now.Q_true == before) break;
-    }
-    now.Q_meas = now.Q_true;
+    now.Q_cmd = now.Q_read = set.Q_cmd;
+    now.Q_meas = now.Q_true = Q_true_of(set);
     now.dQ_true = set.dQ_ff;
-    recorder_.record(now);
+    recorder_.record(now, travel_.at(now.Q_true));
+  }
+
+  // Q_true + d(Q_true) = Q_cmd
+  Joints Q_true_of(const AxisSetPoint& set) {
+    Joints Q_true = set.Q_cmd;
+    for (int k = 0; feedback_ && k < 50; ++k) {
+      const Joints before = Q_true;
+      Q_true = set.Q_cmd - feedback_->settle(before);
+      if (Q_true == before) break;
+    }
+    return Q_true;
   }
 
   CaseInputs& in_;
@@ -378,6 +417,7 @@ class IdealRun {
   SetPoint set_point_;
   std::unique_ptr<strategies::FeedbackPart> feedback_;
   Recorder recorder_;
+  Travel travel_;
   controllers::Trajectory::Cursor cursor_, record_cursor_;
 };
 

@@ -47,13 +47,17 @@ void write_errors(Hdf5Group& root, const Scenario& scenario) {
       for (const Axis direction : kAllAxes) {
         const auto& f = components[static_cast<std::size_t>(index_of(direction))];
         if (f.is_zero()) continue;
-        std::vector<double> values(kErrorSamples);
-        std::transform(q.begin(), q.end(), values.begin(),
-                       [&](double at) { return f.value(at) / um; });  // um is urad
-        group.list(fmt::format("E{}{}", letter(direction), letter(axis)), values,
-                   {is_linear(direction) ? "um" : "urad",
-                    fmt::format("error E{}{}", letter(direction), letter(axis))},
-                   "position");
+        const auto write = [&](const std::string& dataset, const std::string& what, auto value_at) {
+          std::vector<double> values(kErrorSamples);
+          std::transform(q.begin(), q.end(), values.begin(),
+                         [&](double at) { return value_at(at) / um; });  // um is urad
+          group.list(dataset, values, {is_linear(direction) ? "um" : "urad", what}, "position");
+        };
+        const std::string error = fmt::format("E{}{}", letter(direction), letter(axis));
+        write(error, "error " + error, [&](double at) { return f.value(at); });
+        if (f.reversals.empty()) continue;
+        write(error + "_width", error + " travelling up minus travelling down",
+              [&](double at) { return f.width(at); });
       }
     }
   }

@@ -127,6 +127,20 @@ void add_notes(const TableExport& e, std::vector<std::string>& out) {
         "note: {}: the control does not repeat the table: beyond 0 and 360 deg the end values hold",
         title_of(e, table)));
   }
+  for (const TableLine& line : e.lines) {
+    const Axis axis = *e.source.chain.layout.axis[static_cast<std::size_t>(line.joint)];
+    for (const Axis direction : kAllAxes) {
+      const plant::ErrorName name{direction, axis, false};
+      const plant::ErrorFunction& error = e.source.errors.component(name);
+      if (error.reversals.empty()) continue;
+      const double most =
+          std::max(std::abs(error.width(line.from)), std::abs(error.width(line.to)));
+      out.push_back(
+          fmt::format("note: {} depends on the direction of travel, by {} at the ends of "
+                      "the travel; the tables hold the mean",
+                      to_string(name), size_of(!is_linear(direction), most)));
+    }
+  }
   if (!e.rules().power_of_two) return;
   for (const TableLine& line : e.lines) {
     const double exponent = std::log2(line.spacing / kGridStep);
