@@ -227,6 +227,44 @@ class CaseFaults {
   std::vector<Found> found_;
 };
 
+// Less than this is not told of.
+constexpr double kTellTip = 0.1 * um;
+constexpr double kTellAxis = 1.0 * urad;
+
+// Largest values of a run and the lines of the program where they occur.
+struct LargestLeftover {
+  double tip = 0.0, axis = 0.0;  // m, rad
+  double line_of_tip = 0.0, line_of_axis = 0.0;
+};
+
+LargestLeftover largest_leftover(const strategies::Strategy& strategy, const Series& servo,
+                                 const MachineSettings& machine) {
+  constexpr std::size_t kPlaces = 2000;
+  const std::size_t line = servo.column("line").value(), rapid = servo.column("rapid").value();
+  const std::size_t stride = servo.rows() / kPlaces + 1;
+  LargestLeftover out;
+  for (std::size_t n = 0; n < servo.rows(); n += stride) {
+    if (servo.at(n, rapid) != 0.0) continue;
+    Joints Q = Joints::Zero();
+    for (const int j : machine.joints()) {
+      const bool linear = j < kLinearJoints;
+      const auto column =
+          servo.column(linear ? "ref_linear" : "ref_rotary", machine.chain.layout.letter_of(j));
+      Q[j] = servo.at(n, column.value()) * (linear ? mm : deg);
+    }
+    const auto left = strategy.uncorrectable(Q).value_or(strategies::Leftover{});
+    if (left.tip > out.tip) {
+      out.tip = left.tip;
+      out.line_of_tip = servo.at(n, line);
+    }
+    if (left.axis > out.axis) {
+      out.axis = left.axis;
+      out.line_of_axis = servo.at(n, line);
+    }
+  }
+  return out;
+}
+
 controllers::PathOptions path_options(const Scenario& scenario, const MachineSettings& machine) {
   controllers::PathOptions options;
   options.tolerance = machine.nc.path_tolerance;
@@ -388,14 +426,16 @@ struct PreparedCase::Parts {
   SharedMotion motion;
   SharedModel truth, imposed;
   const MachineSettings& machine() const { return scenario.machine_of(spec); }
+  Joints machine_start;
 };
 
 PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, PreparationCache* cache)
-    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}}) {
+    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, Joints::Zero()}) {
   PreparationCache own;
   const Preparation prepare(scenario, spec, cache != nullptr ? *cache : own);
   Parts& parts = *parts_;
   parts.program = prepare.program();
+  parts.machine_start = prepare.start();
   if (parts.program->path.size() == 0) throw InputError({scenario.program.file}, "moves no axis");
   refuse_absent_axes(*parts.program, scenario);
   refuse_start_outside(scenario, parts.machine(), prepare.start());
@@ -442,6 +482,9 @@ CaseInputs PreparedCase::inputs() const {
     if (auto part = strategy->set_point()) inputs.set_points.push_back(std::move(part));
     if (strategy->displaces_feedback()) inputs.feedback = strategy.get();
     if (strategy->rewrites()) inputs.program_displaces_rotary |= strategy->displaces_rotary();
+    if (p.scenario.record.uncorrectable && strategy->uncorrectable(p.machine_start)) {
+      inputs.recorded_corrections.push_back(strategy.get());
+    }
   }
   return inputs;
 }
@@ -465,9 +508,37 @@ CaseOutput PreparedCase::output(CaseResult result) const {
   return out;
 }
 
+std::vector<std::string> PreparedCase::uncorrectable(const Series& servo) const {
+  const Parts& p = *parts_;
+  std::vector<std::string> out;
+  for (std::size_t k = 0; k < p.strategies.size(); ++k) {
+    if (!p.strategies[k]->uncorrectable(p.machine_start)) continue;
+    const LargestLeftover found = largest_leftover(*p.strategies[k], servo, p.machine());
+    const auto at_line = [&](double line) {
+      return fmt::format("{}:{:.0f}", p.scenario.program.file, line);
+    };
+    if (found.axis > kTellAxis) {
+      out.push_back(
+          fmt::format("{}: warning: case {}: strategy {} cannot correct {:.1f} urad of "
+                      "the tool axis here, the most of the run",
+                      at_line(found.line_of_axis), p.spec.name, p.spec.strategies[k].entry->name,
+                      found.axis / urad));
+    }
+    if (found.tip > kTellTip) {
+      out.push_back(
+          fmt::format("{}: warning: case {}: strategy {} cannot correct {:.2f} um of the "
+                      "tip here, the most of the run",
+                      at_line(found.line_of_tip), p.spec.name, p.spec.strategies[k].entry->name,
+                      found.tip / um));
+    }
+  }
+  return out;
+}
+
 CaseOutput PreparedCase::run(const StopFlag& stop, std::atomic<float>& progress) const {
   CaseInputs given = inputs();
   CaseOutput out = output(simulate(given, stop, progress));
+  for (std::string& note : uncorrectable(out.result.servo)) out.notes.push_back(std::move(note));
   progress = 1.0F;
   return out;
 }

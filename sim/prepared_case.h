@@ -56,7 +56,11 @@ class PreparedCase {
   /// What there is to say about a run of `inputs()`.
   CaseOutput output(CaseResult result) const;
 
-  /// output(simulate(inputs()))
+  /// What strategies of this case cannot correct, one line for each, from places spread over the
+  /// feed motion of a run.
+  std::vector<std::string> uncorrectable(const Series& servo) const;
+
+  /// output(simulate(inputs())), and what is uncorrectable among its notes
   CaseOutput run(const StopFlag& stop, std::atomic<float>& progress) const;
 
  private:

@@ -24,8 +24,8 @@ std::string letters(const MachineSettings& machine, const std::vector<int>& join
   return out;
 }
 
-std::vector<Signal> signals(const std::string& linear, const std::string& rotary,
-                            bool with_imposed) {
+std::vector<Signal> signals(const std::string& linear, const std::string& rotary, bool with_imposed,
+                            bool with_uncorrectable) {
   std::vector<Signal> all = {
       {"time", "s", "time since the start of the program", "", ""},
       {"s", "mm", "arc length on the path of the original program", "", ""},
@@ -66,6 +66,14 @@ std::vector<Signal> signals(const std::string& linear, const std::string& rotary
   all.push_back({"tool_axis_true", "1", "unit tool axis, in the workpiece", "IJK", kIjk});
   all.push_back({"contour_error", "um",
                  "distance of the true tool centre point to the nominal path", "", ""});
+  if (with_uncorrectable) {
+    all.push_back({"uncorrectable_tip", "um",
+                   "distance of the tip that the corrected axes cannot take away, believed", "",
+                   ""});
+    all.push_back({"uncorrectable_axis", "urad",
+                   "angle of the tool axis that the corrected axes cannot take away, believed", "",
+                   ""});
+  }
   return all;
 }
 
@@ -145,19 +153,20 @@ class Recorder::Rows {
   Rows(const MachineSettings& machine, const plant::VolumetricModel& truth,
        const plant::VolumetricModel* imposed, const ProgramPath& path,
        const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
-       bool rotary_displaced)
+       bool rotary_displaced, std::vector<const strategies::Strategy*> correcting)
       : machine_(machine),
         truth_(truth),
         imposed_(imposed),
         path_(path),
         tips_(tips),
-        rotary_displaced_(rotary_displaced) {
+        rotary_displaced_(rotary_displaced),
+        correcting_(std::move(correcting)) {
     for (int joint = 0; joint < kJoints; ++joint) {
       if (!machine.chain.layout.has(joint)) continue;
       (joint < kLinearJoints ? linear_ : rotary_).push_back(joint);
     }
-    std::vector<Signal> all =
-        signals(letters(machine, linear_), letters(machine, rotary_), imposed != nullptr);
+    std::vector<Signal> all = signals(letters(machine, linear_), letters(machine, rotary_),
+                                      imposed != nullptr, !correcting_.empty());
     apply(format, all);
     series_ = Series(std::move(all));
     rounding_ = Rounding(series_);
@@ -191,6 +200,7 @@ class Recorder::Rows {
   const ProgramPath& path_;
   const std::map<int, Eigen::Vector3d>& tips_;
   const bool rotary_displaced_;
+  const std::vector<const strategies::Strategy*> correcting_;
   const plant::VolumetricModel ideal_{machine_.chain, {}};
   std::vector<int> linear_, rotary_;  // joints that the machine has
   std::size_t piece_ = 0;
@@ -287,13 +297,23 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
   row.put(nominal.k_W, 1.0);
   row.put(actual.k_W, 1.0);
   row.put(contour_error / um);
+  if (correcting_.empty()) return;
+  strategies::Leftover sum;
+  for (const strategies::Strategy* strategy : correcting_) {
+    const auto left = strategy->uncorrectable(Q_prog_[place]).value_or(strategies::Leftover{});
+    sum.tip += left.tip;
+    sum.axis += left.axis;
+  }
+  row.put(sum.tip / um);
+  row.put(sum.axis / urad);
 }
 
 Recorder::Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
                    const plant::VolumetricModel* imposed, const ProgramPath& path,
                    const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
-                   bool rotary_displaced)
-    : rows_(std::make_unique<Rows>(machine, truth, imposed, path, tips, format, rotary_displaced)) {
+                   bool rotary_displaced, std::vector<const strategies::Strategy*> correcting)
+    : rows_(std::make_unique<Rows>(machine, truth, imposed, path, tips, format, rotary_displaced,
+                                   std::move(correcting))) {
   filling_.snapshots.reserve(kBlockRows);
   filling_.directions.reserve(kBlockRows * truth.plays().size());
 }

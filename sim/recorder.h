@@ -12,6 +12,7 @@
 #include "sim/machine.h"
 #include "sim/program_path.h"
 #include "sim/series.h"
+#include "strategies/strategy.h"
 
 namespace servomill::sim {
 
@@ -37,10 +38,11 @@ class Recorder {
   /// @param imposed  model whose displacement at the programmed position is recorded; may be null
   /// @param rotary_displaced  the program that runs turns rotary axes elsewhere than `path` does:
   ///                          they are compared at equal s, too, where that moves
+  /// @param correcting  strategies of which is recorded what they cannot correct, in all
   Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
            const plant::VolumetricModel* imposed, const ProgramPath& path,
            const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format = {},
-           bool rotary_displaced = false);
+           bool rotary_displaced = false, std::vector<const strategies::Strategy*> correcting = {});
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

@@ -244,6 +244,7 @@ class ScenarioReader {
                                              {at_least(0.0), at_most(kCoarsestResolution)});
     record.compression = static_cast<int>(table.integer_or(
         "compression", record.compression, {at_least(kNoCompression), at_most(kMostCompression)}));
+    record.uncorrectable = table.boolean_or("uncorrectable", false);
     out_.settle_time =
         table.real_or("settle_ms", 100 * ms, kTime, {at_least(0.0), at_most(kLongestSettling)});
   }

@@ -66,7 +66,8 @@ struct QuantitySpec {
 /// What becomes of recorded signals.
 struct RecordSpec {
   RecordFormat format = {.resolution = 0.001e-9};
-  int compression = 1;  // of the result file, kNoCompression to kMostCompression
+  int compression = 1;         // of the result file, kNoCompression to kMostCompression
+  bool uncorrectable = false;  // what strategies cannot correct
 };
 
 struct Scenario {

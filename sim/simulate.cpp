@@ -149,7 +149,7 @@ class CaseRun {
         reference_(references.of(in.reference, 0.0)),
         recorded_(references.of(in.reference, set_point_.delay())),
         recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format,
-                  in.program_displaces_rotary),
+                  in.program_displaces_rotary, in.recorded_corrections),
         travel_(in.truth, Joints::Zero()),
         last_ticks_(in.machine.joints()) {
     end_ =
@@ -365,7 +365,7 @@ class IdealRun {
         set_point_(in.machine.nc, in.reference, std::move(in.set_points)),
         feedback_(in.feedback ? in.feedback->feedback(model_period_of(in)) : nullptr),
         recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format,
-                  in.program_displaces_rotary),
+                  in.program_displaces_rotary, in.recorded_corrections),
         travel_(in.truth, Joints::Zero()) {}
 
   CaseResult run(const StopFlag& stop, std::atomic<float>& progress) {

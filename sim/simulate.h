@@ -47,6 +47,8 @@ struct CaseInputs {
   double settle_time = 0.1;  // s, recorded after the program's end
   RecordFormat format = {};
   bool program_displaces_rotary = false;  // the NC runs another program than `path` also there
+  // of which is recorded what they cannot correct
+  std::vector<const strategies::Strategy*> recorded_corrections = {};
 };
 
 /// How a case ended. A machine that stops is an outcome, not an exception.

@@ -250,6 +250,9 @@ class ModifiedFeedback final : public Strategy {
       : belief_(belief), params_(params) {}
   bool displaces_feedback() const override { return true; }
   bool displaces_rotary() const override { return params_.axes == DisplacedAxes::all; }
+  std::optional<Leftover> uncorrectable(const Joints& Q) const override {
+    return strategies::uncorrectable(belief_, params_.sign, params_.axes, params_.sigma_0, Q);
+  }
   std::unique_ptr<FeedbackPart> feedback(double model_period) const override {
     if (displaces_rotary()) {
       return std::make_unique<VirtualEncoder<kJoints>>(belief_, params_, model_period);

@@ -164,6 +164,9 @@ class RewrittenProgram final : public Strategy {
 
   bool rewrites() const override { return true; }
   bool displaces_rotary() const override { return params_.axes == DisplacedAxes::all; }
+  std::optional<Leftover> uncorrectable(const Joints& Q) const override {
+    return strategies::uncorrectable(belief_, params_.sign, params_.axes, params_.sigma_0, Q);
+  }
 
   std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
     std::vector<Move> out;

@@ -105,4 +105,21 @@ Leftover PoseCompensation::leftover(const Joints& Q, const Joints& d) const {
   return {(got.p_WT - wanted.p_WT).norm(), angle_between(got.k_W, wanted.k_W)};
 }
 
+Leftover uncorrectable(const Belief& belief, DisplacedAxes axes, double sigma_0, const Joints& Q) {
+  const PoseCompensation all(belief, Iterations::converged, sigma_0);
+  Joints d = Joints::Zero();
+  if (axes == DisplacedAxes::all) {
+    d = all.of_set_point(Sign::correct, Q);
+  } else {
+    d.head<3>() = set_point_displacement(belief, Sign::correct, Iterations::converged, Q);
+  }
+  return all.leftover(Q, d);
+}
+
+std::optional<Leftover> uncorrectable(const Belief& belief, Sign sign, DisplacedAxes axes,
+                                      double sigma_0, const Joints& Q) {
+  if (sign != Sign::correct) return std::nullopt;
+  return uncorrectable(belief, axes, sigma_0, Q);
+}
+
 }  // namespace servomill::strategies

@@ -26,12 +26,6 @@
 
 namespace servomill::strategies {
 
-/// What correcting leaves: true minus ideal pose, believed.
-struct Leftover {
-  double tip = 0.0;   // m
-  double axis = 0.0;  // rad
-};
-
 /// Constant after construction. Calls do not allocate.
 class PoseCompensation {
  public:
@@ -63,5 +57,14 @@ class PoseCompensation {
   Iterations iterations_;
   double sigma_0_;
 };
+
+/// What stays at the programmed position Q of believed errors that are corrected as well as the
+/// axes can, however many iterations that takes: on linear axes what turns the tool, on rotary ones
+/// what they cannot turn or, near a singular direction, give way to.
+/// @param sigma_0  of PoseCompensation, where axes is all
+Leftover uncorrectable(const Belief& belief, DisplacedAxes axes, double sigma_0, const Joints& Q);
+/// The same for a strategy: nullopt where it generates errors.
+std::optional<Leftover> uncorrectable(const Belief& belief, Sign sign, DisplacedAxes axes,
+                                      double sigma_0, const Joints& Q);
 
 }  // namespace servomill::strategies

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,12 @@ class FeedbackPart {
   }
 };
 
+/// What correcting leaves: true minus ideal pose, believed.
+struct Leftover {
+  double tip = 0.0;   // m
+  double axis = 0.0;  // rad, of the direction of the tool; turns about itself do not count
+};
+
 /// Up to three parts, each optional. A strategy is constant and may be shared by runs; the parts
 /// that it makes have the state of one run.
 class Strategy {
@@ -86,6 +93,13 @@ class Strategy {
   virtual bool displaces_feedback() const { return false; }
   /// Whether any of its parts displaces rotary axes, too.
   virtual bool displaces_rotary() const { return false; }
+  /// What stays of the errors that it corrects because no axis that it displaces can take it there,
+  /// lags and steps of its own left aside; nullopt if it corrects nothing.
+  /// @param Q  programmed position (5; m, rad)
+  virtual std::optional<Leftover> uncorrectable(const Joints& Q) const {
+    (void)Q;
+    return std::nullopt;
+  }
   /// @param model_period  s, time between two calls of FeedbackPart::advance
   virtual std::unique_ptr<FeedbackPart> feedback(double model_period) const {
     (void)model_period;

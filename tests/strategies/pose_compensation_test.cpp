@@ -216,5 +216,57 @@ TEST(PoseCompensation, LeavesWhatAMissingAxisWouldHaveToCorrect) {
   EXPECT_NEAR(left.axis, out_of_reach, kSecondOrder);
 }
 
+TEST(Uncorrectable, IsTheTiltOfTheToolOnLinearAxes) {
+  for (const Case& one : cases(kErrorSize, 20)) {
+    for (const Joints& Q : one.Q) {
+      const Leftover left = uncorrectable(one.belief, DisplacedAxes::linear, kSigma0, Q);
+      Joints at = Q;
+      at.head<3>() += set_point_displacement(one.belief, Sign::correct, Iterations::converged, Q);
+      const Eigen::Vector3d dk = one.belief.model.error(at, one.belief.p_ST).dk_W;
+      EXPECT_LE(left.tip, kPoseTol) << one.name;
+      EXPECT_NEAR(left.axis, dk.norm(), 1e-3 * dk.norm()) << one.name;
+    }
+  }
+}
+
+TEST(Uncorrectable, IsNothingOnAllAxesFarFromASingularDirection) {
+  for (const Case& one : cases(kErrorSize, 20)) {
+    for (const Joints& Q : one.Q) {
+      const Leftover left = uncorrectable(one.belief, DisplacedAxes::all, kSigma0, Q);
+      EXPECT_LE(left.tip, kPoseTol) << one.name;
+      EXPECT_LE(left.axis, kPoseTol) << one.name;
+    }
+  }
+}
+
+// At B = 0 the tool axis lies on C: B turns it about Y, nothing about X. Beside it C would have to
+// turn far, and leaves the share that the header states. Turns about the tool itself do not count.
+TEST(Uncorrectable, IsWhatTheAxesGiveWayToNearASingularDirection) {
+  constexpr double kTilt = 10e-6;    // rad
+  constexpr double kSecond = 0.003;  // of it: C turns by some 1e-3 rad to correct it
+  const plant::MachineChain chain =
+      plant::make_chain(plant::parse_structure("[w C' B' X b Y Z t]"));
+  const auto left_at = [&](const char* name, double sigma) {
+    plant::ErrorModel errors;
+    errors.component(*plant::error_name_of(name)) = plant::constant(kTilt);
+    const Belief belief = belief_of(chain, errors);
+    Joints Q(0.02, -0.03, 0.01, std::asin(sigma), 0.0);
+    return uncorrectable(belief, DisplacedAxes::all, kSigma0, Q);
+  };
+  for (const double x : {0.0, 0.3, 0.7, 1.0, 3.0}) {
+    const double share = x < 1.0 ? std::pow((1.0 - x * x) / (1.0 + x * x), 2) : 0.0;
+    EXPECT_NEAR(left_at("EAZ", x * kSigma0).axis, share * kTilt, kSecond * kTilt) << x;
+    EXPECT_NEAR(left_at("EBZ", x * kSigma0).axis, 0.0, kSecond * kTilt) << x;
+    EXPECT_NEAR(left_at("ECZ", x * kSigma0).axis, 0.0, kSecond * kTilt) << x;
+    EXPECT_LE(left_at("EAZ", x * kSigma0).tip, kPoseTol) << x;
+  }
+}
+
+TEST(Uncorrectable, IsNotAskedOfWhatGeneratesErrors) {
+  const Case one = cases(kErrorSize, 1).front();
+  EXPECT_FALSE(uncorrectable(one.belief, Sign::generate, DisplacedAxes::all, kSigma0, one.Q[0]));
+  EXPECT_TRUE(uncorrectable(one.belief, Sign::correct, DisplacedAxes::all, kSigma0, one.Q[0]));
+}
+
 }  // namespace
 }  // namespace servomill::strategies
