@@ -13,7 +13,11 @@
 namespace servomill::strategies {
 namespace {
 
-constexpr std::array<std::string_view, 4> kAxes = {"X", "Y", "Z", "all"};
+constexpr std::array<std::string_view, 2> kForms = {"lines", "lattice"};
+constexpr std::array<std::string_view, 7> kAxes = {"X", "Y", "Z", "XY", "XZ", "YZ", "all"};
+constexpr std::array<std::string_view, 6> kOutputs = {"all", "own", "others", "X", "Y", "Z"};
+constexpr std::array<std::string_view, 2> kAtReference = {"error", "zero"};
+constexpr std::array<std::string_view, 1> kAuto = {"auto"};
 constexpr std::array<std::string_view, 2> kGrids = {"power_of_two", "free"};
 constexpr std::array<std::string_view, 3> kEntryPoints = {"before_filter", "position_command",
                                                           "feed_forward"};
@@ -21,13 +25,31 @@ constexpr std::array<std::string_view, 1> kTravel = {"travel"};
 constexpr double kGridStep =
     0.1 * um;  // spacing is 2^n times this (TNC 407/415/425 Technical Manual, 1998, p. 153)
 
-const std::array<ParameterSpec, 12>& specs() {
-  static const std::array<ParameterSpec, 12> kSpecs = {{
+const std::array<ParameterSpec, 15>& specs() {
+  static const std::array<ParameterSpec, 15> kSpecs = {{
+      {.name = "form",
+       .help =
+           "lines: a table over each axis, summed; lattice: one over all of them, linear in each "
+           "axis between the corners of a cell",
+       .default_text = "lines",
+       .is_number = false,
+       .words = kForms},
       {.name = "axis",
-       .help = "axis over which the table runs; all: one table for each linear axis, summed",
+       .help = "axes over which tables run; all: each linear axis",
        .default_text = "all",
        .is_number = false,
        .words = kAxes},
+      {.name = "output",
+       .help =
+           "axes that the tables move; own: that over which the table runs, others: all but that",
+       .default_text = "all",
+       .is_number = false,
+       .words = kOutputs},
+      {.name = "at_reference",
+       .help = "where the machine starts: the error there, or zero, where another table holds it",
+       .default_text = "error",
+       .is_number = false,
+       .words = kAtReference},
       {.name = "spacing_mm",
        .help = "distance of the points",
        .unit = "mm",
@@ -49,10 +71,12 @@ const std::array<ParameterSpec, 12>& specs() {
        .default_text = "travel",
        .words = kTravel},
       {.name = "max_points",
-       .help = "points that the NC accepts in one table",
-       .default_text = "256",
+       .help =
+           "points that the NC accepts in one table; auto: 256, in a lattice 15625 (25 x 25 x 25)",
+       .default_text = "auto",
        .min = 2,
-       .max = 1e6},
+       .max = 1e6,
+       .words = kAuto},
       {.name = "max_step_ratio",
        .help = "largest change of value between points that the NC accepts, over their distance",
        .default_text = "0.015625",
@@ -85,40 +109,70 @@ const std::array<ParameterSpec, 12>& specs() {
   return kSpecs;
 }
 
-// Values at equidistant points of one axis; linear between them, constant beyond the ends.
-struct AxisTable {
+// Equidistant points of one axis.
+struct Line {
   int joint = 0;
-  double first = 0.0;    // m
-  double spacing = 1.0;  // m
-  std::vector<Eigen::Vector3d> value;
+  double first = 0.0;      // m
+  double spacing = 1.0;    // m
+  std::size_t points = 2;  // at least
 
-  Eigen::Vector3d at(double q) const {
-    const double last = static_cast<double>(value.size() - 1);
-    const double u = std::clamp((q - first) / spacing, 0.0, last);
-    const auto i = std::min(static_cast<std::size_t>(u), value.size() - 2);
-    return value[i] + (u - static_cast<double>(i)) * (value[i + 1] - value[i]);
+  double at(std::size_t i) const { return first + static_cast<double>(i) * spacing; }
+};
+
+// Values at the points of one to three lines that cross; linear in each coordinate between the
+// corners of a cell, constant beyond the ends.
+struct Table {
+  std::vector<Line> lines;
+  std::vector<Eigen::Vector3d> value;  // m, of X, Y, Z; the first line's points are neighbours
+
+  Eigen::Vector3d at(const Joints& Q) const {
+    Eigen::Vector3d corner[1 << kLinearJoints];
+    const std::size_t axes = lines.size();
+    double share[kLinearJoints];  // of the cell, that has been passed
+    std::size_t base = 0, step[kLinearJoints], size = 1;
+    for (std::size_t a = 0; a < axes; ++a) {
+      const Line& line = lines[a];
+      const auto last = static_cast<double>(line.points - 1);
+      const double u = std::clamp((Q[line.joint] - line.first) / line.spacing, 0.0, last);
+      const auto i = std::min(static_cast<std::size_t>(u), line.points - 2);
+      share[a] = u - static_cast<double>(i);
+      base += i * size;
+      step[a] = size;
+      size *= line.points;
+    }
+    for (std::size_t c = 0; c < std::size_t{1} << axes; ++c) {
+      std::size_t place = base;
+      for (std::size_t a = 0; a < axes; ++a) place += (c >> a & 1U) * step[a];
+      corner[c] = value[place];
+    }
+    for (std::size_t a = axes; a-- > 0;) {  // from corners to the point, axis by axis
+      for (std::size_t c = 0; c < std::size_t{1} << a; ++c) {
+        corner[c] += share[a] * (corner[c + (std::size_t{1} << a)] - corner[c]);
+      }
+    }
+    return corner[0];
   }
 };
 
 class Tables final : public SetPointPart {
  public:
-  Tables(const SetPointEntry& entry, const std::vector<AxisTable>& tables)
+  Tables(const SetPointEntry& entry, const std::vector<Table>& tables)
       : entry_(entry), tables_(tables) {}
   SetPointEntry entry() const override { return entry_; }
   Joints offset(const Joints& Q_ref) const override {
     Joints sum = Joints::Zero();
-    for (const AxisTable& table : tables_) sum.head<3>() += table.at(Q_ref[table.joint]);
+    for (const Table& table : tables_) sum.head<3>() += table.at(Q_ref);
     return sum;
   }
 
  private:
   SetPointEntry entry_;
-  const std::vector<AxisTable>& tables_;
+  const std::vector<Table>& tables_;
 };
 
 class CompensationTable final : public Strategy {
  public:
-  CompensationTable(const SetPointEntry& entry, std::vector<AxisTable> tables)
+  CompensationTable(const SetPointEntry& entry, std::vector<Table> tables)
       : entry_(entry), tables_(std::move(tables)) {}
   std::unique_ptr<SetPointPart> set_point() const override {
     return std::make_unique<Tables>(entry_, tables_);
@@ -126,7 +180,7 @@ class CompensationTable final : public Strategy {
 
  private:
   SetPointEntry entry_;
-  std::vector<AxisTable> tables_;
+  std::vector<Table> tables_;
 };
 
 bool is_power_of_two_spacing(double spacing) {
@@ -134,55 +188,118 @@ bool is_power_of_two_spacing(double spacing) {
   return std::abs(exponent - std::round(exponent)) < 1e-9;
 }
 
-// What the NC would refuse, named as its operator would read it.
-void check_as_the_nc_would(const AxisTable& table, char axis, double max_points, double max_ratio) {
-  if (static_cast<double>(table.value.size()) > max_points) {
-    throw InputError({}, fmt::format("table over {}: {} points; the NC accepts at most {} "
-                                     "(max_points); use a larger spacing_mm or from_mm and to_mm",
-                                     axis, table.value.size(), max_points));
+// "table over X", "lattice over X, Y, Z"
+std::string name_of(const std::vector<Line>& lines, const JointLayout& layout) {
+  std::string name;
+  for (const Line& line : lines) {
+    name += fmt::format("{}{}", name.empty() ? "" : ", ", layout.letter_of(line.joint));
   }
-  for (std::size_t i = 1; i < table.value.size(); ++i) {
-    const Eigen::Vector3d step = table.value[i] - table.value[i - 1];
-    const double ratio = step.cwiseAbs().maxCoeff() / table.spacing;
-    if (ratio <= max_ratio) continue;
-    throw InputError(
-        {}, fmt::format("table over {}: slope {:.2f} um/mm at {} = {:.3f} mm; the NC accepts at "
-                        "most {:.2f} um/mm (max_step_ratio)",
-                        axis, ratio / (um / mm), axis,
-                        (table.first + static_cast<double>(i - 1) * table.spacing) / mm,
-                        max_ratio / (um / mm)));
+  return fmt::format("{} over {}", lines.size() == 1 ? "table" : "lattice", name);
+}
+
+// What the NC would refuse, named as its operator would read it.
+void check_points(const std::vector<Line>& lines, const JointLayout& layout, const Parameters& p) {
+  constexpr double kLine = 256, kLattice = 25.0 * 25.0 * 25.0;
+  const double usual = lines.size() == 1 ? kLine : kLattice;
+  const double most = p.is_word("max_points") ? usual : p.number("max_points");
+  double all = 1.0;
+  std::string product;
+  for (const Line& line : lines) {
+    all *= static_cast<double>(line.points);
+    product += fmt::format("{}{}", product.empty() ? "" : " x ", line.points);
+  }
+  if (all <= most) return;
+  if (lines.size() > 1) product += fmt::format(" = {:.0f}", all);
+  throw InputError({}, fmt::format("{}: {} points; the NC accepts at most {} (max_points); use a "
+                                   "larger spacing_mm or from_mm and to_mm",
+                                   name_of(lines, layout), product, most));
+}
+
+// Calls f(point) for all points of the lines, (i, j, k) of each, the first line's first.
+template <class F>
+void for_all_points(const std::vector<Line>& lines, F f) {
+  std::array<std::size_t, kLinearJoints> point{};
+  for (std::size_t a = 0; a < lines.size();) {
+    f(point);
+    for (a = 0; a < lines.size() && ++point[a] == lines[a].points; ++a) point[a] = 0;
   }
 }
 
-// The tables of several axes are summed, so each holds its change from the reference position and
-// the first one the value there.
-AxisTable tabulate(const Belief& belief, const Parameters& p, Sign sign, int joint,
-                   bool with_base) {
-  AxisTable table;
-  table.joint = joint;
-  table.spacing = p.number("spacing_mm");
-  table.first = p.is_word("from_mm") ? belief.lower[joint] : p.number("from_mm");
+void check_slopes(const Table& table, const JointLayout& layout, double max_ratio) {
+  std::size_t n = 0;
+  for_all_points(table.lines, [&](const auto& point) {
+    std::size_t size = 1;
+    for (std::size_t a = 0; a < table.lines.size(); ++a) {
+      const Line& line = table.lines[a];
+      const std::size_t before = size;
+      size *= line.points;
+      if (point[a] == 0) continue;
+      const double ratio =
+          (table.value[n] - table.value[n - before]).cwiseAbs().maxCoeff() / line.spacing;
+      if (ratio <= max_ratio) continue;
+      const char axis = layout.letter_of(line.joint);
+      throw InputError({}, fmt::format("{}: slope {:.2f} um/mm at {} = {:.3f} mm; the NC accepts "
+                                       "at most {:.2f} um/mm (max_step_ratio)",
+                                       name_of(table.lines, layout), ratio / (um / mm), axis,
+                                       line.at(point[a] - 1) / mm, max_ratio / (um / mm)));
+    }
+    ++n;
+  });
+}
+
+Line line_of(const Belief& belief, const Parameters& p, int joint) {
+  Line line;
+  line.joint = joint;
+  line.spacing = p.number("spacing_mm");
+  line.first = p.is_word("from_mm") ? belief.lower[joint] : p.number("from_mm");
   const double to = p.is_word("to_mm") ? belief.upper[joint] : p.number("to_mm");
   const char axis = belief.layout.letter_of(joint);
-  if (!(to > table.first)) {
+  if (!(to > line.first)) {
     throw InputError({}, fmt::format("table over {}: from_mm = {:g} must be < to_mm = {:g}", axis,
-                                     table.first / mm, to / mm));
+                                     line.first / mm, to / mm));
   }
-  const double intervals = std::max(1.0, std::ceil((to - table.first) / table.spacing - 1e-9));
+  const double intervals = std::max(1.0, std::ceil((to - line.first) / line.spacing - 1e-9));
   constexpr double kMostIntervals = 1e7;
   if (intervals > kMostIntervals) {
     throw InputError({}, fmt::format("table over {}: {:.3g} points are more than any NC holds",
                                      axis, intervals));
   }
-  const Iterations iterations = iterations_of(p);
-  Joints Q = belief.reference;
-  const Eigen::Vector3d base = set_point_displacement(belief, sign, iterations, Q);
-  for (int i = 0; i <= static_cast<int>(intervals); ++i) {
-    Q[joint] = table.first + i * table.spacing;
-    const Eigen::Vector3d value = set_point_displacement(belief, sign, iterations, Q);
-    table.value.push_back(with_base ? value : value - base);
+  line.points = static_cast<std::size_t>(intervals) + 1;
+  return line;
+}
+
+// Axes that a table over `joint` moves.
+Eigen::Vector3d moved_by(const std::string& output, int joint, const JointLayout& layout) {
+  const Eigen::Vector3d own = Eigen::Vector3d::Unit(joint), all = Eigen::Vector3d::Ones();
+  if (output == "all") return all;
+  if (output == "own") return own;
+  if (output == "others") return all - own;
+  for (int j = 0; j < kLinearJoints; ++j) {
+    if (layout.has(j) && layout.letter_of(j) == output[0]) return Eigen::Vector3d::Unit(j);
   }
-  check_as_the_nc_would(table, axis, p.number("max_points"), p.number("max_step_ratio"));
+  throw InputError({}, fmt::format("output = \"{}\"; the machine has no such axis", output));
+}
+
+// @param moved  axes that the table moves
+// @param from_reference  of which it holds the change from the reference position only
+Table tabulate(const Belief& belief, const Parameters& p, Sign sign, std::vector<Line> lines,
+               const Eigen::Vector3d& moved, const Eigen::Vector3d& from_reference) {
+  check_points(lines, belief.layout, p);
+  Table table;
+  table.lines = std::move(lines);
+  const Iterations iterations = iterations_of(p);
+  const auto wanted = [&](const Joints& Q) {
+    return set_point_displacement(belief, sign, iterations, Q);
+  };
+  Joints Q = belief.reference;
+  const Eigen::Vector3d base = from_reference.cwiseProduct(wanted(Q));
+  for_all_points(table.lines, [&](const auto& point) {
+    for (std::size_t a = 0; a < table.lines.size(); ++a) {
+      Q[table.lines[a].joint] = table.lines[a].at(point[a]);
+    }
+    table.value.push_back(moved.cwiseProduct(wanted(Q) - base));
+  });
+  check_slopes(table, belief.layout, p.number("max_step_ratio"));
   return table;
 }
 
@@ -202,15 +319,38 @@ std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& bel
                                      "3.2768, 6.5536), or set grid = \"free\"",
                                      p.number("spacing_mm") / mm));
   }
-  std::vector<AxisTable> tables;
+  std::vector<Line> lines;
+  const std::string& axes = p.word("axis");
   for (int joint = 0; joint < kLinearJoints; ++joint) {
     if (!belief.layout.has(joint)) continue;
-    if (p.word("axis") != "all" && p.word("axis")[0] != belief.layout.letter_of(joint)) continue;
-    tables.push_back(tabulate(belief, p, sign, joint, tables.empty()));
+    const char axis = belief.layout.letter_of(joint);
+    if (axes != "all" && axes.find(axis) == std::string::npos) continue;
+    lines.push_back(line_of(belief, p, joint));
   }
-  if (tables.empty()) {
-    throw InputError({},
-                     fmt::format("axis = \"{}\"; the machine has no such axis", p.word("axis")));
+  if (lines.empty() || (axes != "all" && lines.size() < axes.size())) {
+    throw InputError({}, fmt::format("axis = \"{}\"; the machine has no such axis", axes));
+  }
+  const std::string& output = p.word("output");
+  Eigen::Vector3d from_reference = Eigen::Vector3d::Zero();
+  if (p.word("at_reference") == "zero") from_reference.setOnes();
+  std::vector<Table> tables;
+  if (p.word("form") == "lattice") {
+    if (output == "own" || output == "others") {
+      throw InputError({},
+                       fmt::format("output = \"{}\" belongs to form = \"lines\"; a lattice runs "
+                                   "over several axes",
+                                   output));
+    }
+    const Eigen::Vector3d moved = moved_by(output, lines.front().joint, belief.layout);
+    tables.push_back(tabulate(belief, p, sign, std::move(lines), moved, from_reference));
+  } else {
+    // The tables of several axes are summed: each holds its change from the reference position, and
+    // the first one that moves an axis the value there.
+    for (const Line& line : lines) {
+      const Eigen::Vector3d moved = moved_by(output, line.joint, belief.layout);
+      tables.push_back(tabulate(belief, p, sign, {line}, moved, from_reference));
+      from_reference = from_reference.cwiseMax(moved);
+    }
   }
   return std::make_unique<CompensationTable>(entry_of(p), std::move(tables));
 }
