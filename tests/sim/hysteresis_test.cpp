@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "plant/vocabulary/input_error.h"
@@ -121,6 +122,30 @@ TEST(Hysteresis, IsTheSameHoweverOftenItIsRecorded) {
   const std::size_t x = a.column("tool_deviation", 'X').value();
   ASSERT_GT(b.rows(), 20U);
   for (std::size_t n = 0; n < b.rows(); ++n) EXPECT_EQ(a.at(5 * n, x), b.at(n, x)) << n;
+}
+
+TEST(Hysteresis, GivesTheSameBitsInLockstepAsAlone) {
+  const Scenario scenario = machine_with_hysteresis(
+      kToAndFro, one_case("one", "cascade") + one_case("lag", "cascade") +
+                     "[case.machine_override.nc]\nvelocity_feed_forward = 0.0\n" +
+                     one_case("three", "cascade"));
+  const std::vector<PreparedCase> prepared = prepare_cases(scenario);
+  std::vector<CaseInputs> inputs;
+  inputs.reserve(prepared.size());
+  std::vector<CaseInputs*> together;
+  for (const PreparedCase& one : prepared) {
+    inputs.push_back(one.inputs());
+    together.push_back(&inputs.back());
+    ASSERT_TRUE(share_lanes(inputs.front(), inputs.back()));
+  }
+  const StopFlag never = false;
+  std::atomic<float> progress = 0.0F;
+  const std::vector<CaseResult> results = simulate(together, never, progress);
+  for (std::size_t n = 0; n < prepared.size(); ++n) {
+    const CaseOutput alone = run_case(scenario, prepared[n].spec().name);
+    EXPECT_EQ(results[n].servo.data(), alone.result.servo.data()) << prepared[n].spec().name;
+  }
+  EXPECT_NE(results[0].servo.data(), results[1].servo.data());
 }
 
 // A series of a machine without jumps: from row to row the error changes by less than its
