@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "controllers/gcode/printer.h"
@@ -10,6 +11,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/preparation_cache.h"
 #include "sim/stability_check.h"
+#include "sim/uncorrected.h"
 
 namespace servomill::sim {
 namespace {
@@ -38,6 +40,9 @@ std::string header_of(const Scenario& scenario, const CaseSpec& spec) {
   return fmt::format("{}, case {}", scenario.title, spec.name);
 }
 
+// What printing may change of a position.
+constexpr double kPrinted = 1e-8;  // m, rad
+
 // The rewritten program is written as text and read like any other; what the text cannot say, the
 // place on the original path, is carried over block by block.
 std::vector<Move> through_text(const std::vector<Move>& rewritten, const Scenario& scenario,
@@ -60,6 +65,12 @@ std::vector<Move> through_text(const std::vector<Move>& rewritten, const Scenari
     if (!is_motion(move.kind)) continue;
     original = next_motion();
     if (original == rewritten.end()) throw std::logic_error("a rewritten program gained a block");
+    if ((move.end_machine - original->end_machine).cwiseAbs().maxCoeff() > kPrinted) {
+      throw InputError({scenario.program.file, original->line},
+                       fmt::format("case {}: cannot be rewritten in work coordinates that are "
+                                   "tilted or turned",
+                                   spec.name));
+    }
     move.line = original->line;
     move.s_begin = original->s_begin;
     move.s_end = original->s_end;
@@ -82,15 +93,27 @@ Place place_in(const StrategySpec& spec, const std::string& complaint) {
   return place;
 }
 
-// Strategies displace axes; these moves are not of the axes.
-void refuse_tip_moves(const StrategySpec& spec, const InterpretedProgram& program,
-                      const std::string& file, const std::string& case_name) {
+// Most strategies displace axes; these moves are not of the axes. None knows more than one tool.
+void refuse_tip_moves(const StrategySpec& spec, const strategies::Strategy& strategy,
+                      const InterpretedProgram& program, const std::string& file,
+                      const std::string& case_name) {
   const Move* move = program.first_tip_move();
   if (move == nullptr) return;
-  throw InputError(spec.place,
-                   fmt::format("case {}: strategy {}: cannot rewrite moves under tool-centre-point "
-                               "control or in a tilted work plane ({}:{})",
-                               case_name, spec.entry->name, file, move->line));
+  if (!strategy.rewrites_tip_moves()) {
+    throw InputError(spec.place,
+                     fmt::format("case {}: strategy {}: cannot rewrite moves under "
+                                 "tool-centre-point control or in a tilted work plane ({}:{})",
+                                 case_name, spec.entry->name, file, move->line));
+  }
+  for (const Move& other : program.moves) {
+    const bool is_tip = is_motion(other.kind) && other.tool_control != ToolControl::none;
+    if (!is_tip || program.tips.at(other.tool_offset) == program.first_tip) continue;
+    throw InputError(
+        spec.place,
+        fmt::format("case {}: strategy {}: rewrites moves under tool-centre-point control for one "
+                    "tool, the first that the program works with; here is another ({}:{})",
+                    case_name, spec.entry->name, file, other.line));
+  }
 }
 
 // A displaced scale moves nothing where the motor closes the position loop.
@@ -337,6 +360,22 @@ class Preparation {
     });
   }
 
+  // Tells where a strategy that corrects tip and tool axis leaves much of them.
+  void note_uncorrected(const StrategySpec& spec, const strategies::Strategy& strategy,
+                        const InterpretedProgram& program, std::vector<std::string>& notes) const {
+    if (!strategy.displaces_rotary() || spec.sign != strategies::Sign::correct) return;
+    const strategies::Belief belief = {machine_.chain.layout, *model(spec.model),
+                                       program.first_tip};
+    const auto left = uncorrected(program.path, belief, strategies::iterations_of(spec.parameters),
+                                  std::sin(spec.parameters.number("singular_deg")));
+    if (!left) return;
+    notes.push_back(fmt::format(
+        "{}:{}: warning: strategy {} cannot correct all: it leaves {:.3g} um of the tip and {:.3g} "
+        "urad of the tool axis here, {:.2f} deg from a singular direction",
+        scenario_.program.file, left->line, spec.entry->name, left->tip / um, left->axis / urad,
+        left->singular_angle / deg));
+  }
+
   std::shared_ptr<const RewrittenProgram> rewritten(const SharedMoves& moves,
                                                     const SharedStrategy& strategy) const {
     MemoKey key;
@@ -425,12 +464,13 @@ struct PreparedCase::Parts {
   std::shared_ptr<const RewrittenProgram> rewritten;  // nullptr: the original program runs
   SharedMotion motion;
   SharedModel truth, imposed;
+  std::vector<std::string> remarks;  // what strategies cannot do
   const MachineSettings& machine() const { return scenario.machine_of(spec); }
   Joints machine_start;
 };
 
 PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, PreparationCache* cache)
-    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, Joints::Zero()}) {
+    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, {}, Joints::Zero()}) {
   PreparationCache own;
   const Preparation prepare(scenario, spec, cache != nullptr ? *cache : own);
   Parts& parts = *parts_;
@@ -445,8 +485,10 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   for (const StrategySpec& strategy : spec.strategies) {
     parts.strategies.push_back(prepare.strategy(strategy, parts.program->first_tip));
     refuse_unread_scale(strategy, *parts.strategies.back(), parts.machine(), spec.name);
+    prepare.note_uncorrected(strategy, *parts.strategies.back(), *parts.program, parts.remarks);
     if (!parts.strategies.back()->rewrites()) continue;
-    refuse_tip_moves(strategy, *parts.program, scenario.program.file, spec.name);
+    refuse_tip_moves(strategy, *parts.strategies.back(), *parts.program, scenario.program.file,
+                     spec.name);
     parts.rewritten = prepare.rewritten(moves, parts.strategies.back());
     moves = {parts.rewritten, &parts.rewritten->moves};
   }
@@ -454,7 +496,7 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   // what the machine can do
   parts.motion = prepare.motion(moves, *parts.program);
   refuse_endless(scenario, parts.motion->trajectory.duration());
-  parts.truth = prepare.model(scenario.truth);
+  parts.truth = prepare.model(spec.truth.value_or(scenario.truth));
   if (!scenario.imposed.empty()) parts.imposed = prepare.model(scenario.imposed);
 }
 
@@ -478,6 +520,7 @@ CaseInputs PreparedCase::inputs() const {
                     p.scenario.record_period,
                     p.scenario.settle_time,
                     p.scenario.record.format};
+  inputs.pieces = p.program->path.pieces_of(*p.motion->moves);
   for (const auto& strategy : p.strategies) {
     if (auto part = strategy->set_point()) inputs.set_points.push_back(std::move(part));
     if (strategy->displaces_feedback()) inputs.feedback = strategy.get();
@@ -501,6 +544,7 @@ CaseOutput PreparedCase::output(CaseResult result) const {
   for (const Fault& warning : p.program->warnings) {
     out.notes.push_back(fmt::format("{}: warning: {}", to_string(warning.place), warning.message));
   }
+  out.notes.insert(out.notes.end(), p.remarks.begin(), p.remarks.end());
   for (const auto& slowed : p.motion->slowed) {
     out.notes.push_back(fmt::format("{}:{}: warning: {}", p.scenario.program.file, slowed.line,
                                     to_string(slowed, p.machine().chain.layout)));
@@ -562,10 +606,10 @@ std::map<std::string, std::vector<Eigen::Vector3d>> PreparedCase::nominal_positi
     of_section.push_back(sections.contains(name) ? &positions[name] : nullptr);
   }
   controllers::Trajectory::Cursor cursor{};
-  std::size_t piece = 0;
+  const std::vector<std::size_t> pieces = path.pieces_of(*p.motion->moves);
   for (std::size_t n = 0; static_cast<double>(n) * period <= trajectory.duration(); ++n) {
     const auto now = trajectory.at(static_cast<double>(n) * period, cursor);
-    piece = path.piece_at(now.s, piece);
+    const std::size_t piece = pieces[now.move];
     const ProgramPath::Piece& at = path.piece(piece);
     std::vector<Eigen::Vector3d>* out = of_section[static_cast<std::size_t>(at.section)];
     if (at.rapid || out == nullptr) continue;

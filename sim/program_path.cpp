@@ -1,9 +1,14 @@
 #include "sim/program_path.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
+
+#include "plant/vocabulary/tool_axis.h"
 
 namespace servomill::sim {
 namespace {
@@ -40,7 +45,9 @@ ProgramPath::ProgramPath(std::span<const Move> moves, const AxisWords& start,
                 section};
     piece.is_tip = move.tool_control != ToolControl::none;
     if (piece.is_tip) piece.p_ST = tips.at(move.tool_offset);
-    piece.curve = MoveCurve(begin_of(piece, before, at), move);
+    piece.begin = begin_of(piece, before, at);
+    piece.curve = MoveCurve(piece.begin, move);
+    set_tool_axes(piece, move);
     pieces_.push_back(piece);
     before = &pieces_.back();
     at = move.end_machine;
@@ -57,11 +64,27 @@ AxisWords ProgramPath::begin_of(const Piece& piece, const Piece* before, AxisWor
   return at;
 }
 
-std::size_t ProgramPath::piece_at(double s, std::size_t near) const {
-  assert(near < pieces_.size());
-  while (near + 1 < pieces_.size() && s > pieces_[near].s_end) ++near;
-  while (near > 0 && s < pieces_[near].s_begin) --near;
-  return near;
+void ProgramPath::set_tool_axes(Piece& piece, const Move& move) const {
+  piece.is_great_circle = move.tool_control == ToolControl::tool_axis;
+  if (!piece.is_great_circle) return;
+  piece.k_begin = machine_->tool_axis(machine_->chain().layout.joints(piece.begin));
+  piece.k_end = move.tool_axis;
+}
+
+std::vector<std::size_t> ProgramPath::pieces_of(std::span<const Move> moves) const {
+  const auto holds = [](const Piece& p, const Move& move) {
+    return p.line == move.line && p.s_begin <= move.s_begin && move.s_end <= p.s_end;
+  };
+  std::vector<std::size_t> out;
+  out.reserve(moves.size());
+  std::size_t piece = 0;
+  for (const Move& move : moves) {
+    while (is_motion(move.kind) && !holds(pieces_[piece], move)) {
+      if (++piece == pieces_.size()) throw std::logic_error("a move is on no line of the program");
+    }
+    out.push_back(piece);
+  }
+  return out;
 }
 
 AxisWords ProgramPath::at(std::size_t index, double s) const {
@@ -70,14 +93,40 @@ AxisWords ProgramPath::at(std::size_t index, double s) const {
   return length > 0.0 ? p.curve.at(std::clamp((s - p.s_begin) / length, 0.0, 1.0)) : p.end;
 }
 
+// Share of the piece that is behind; by the turn of the rotary axes where s stands.
+double ProgramPath::fraction(const Piece& p, double s, const JointLayout& layout,
+                             const Joints& Q_near) const {
+  const double length = p.s_end - p.s_begin;
+  double share = 1.0;
+  if (length > 0.0) {
+    share = (s - p.s_begin) / length;
+  } else if (p.is_great_circle) {
+    const double angle = angle_between(p.k_begin, p.k_end);
+    const Eigen::Vector3d k = machine_->tool_axis(Q_near);
+    const Eigen::Vector3d across = p.k_end - p.k_begin * p.k_begin.dot(p.k_end);
+    if (angle > 0.0) share = std::atan2(k.dot(across.normalized()), k.dot(p.k_begin)) / angle;
+  } else {
+    const Eigen::Vector3d turn = (p.end - p.begin).tail<3>();
+    const Eigen::Vector3d turned = (layout.words(Q_near) - p.begin).tail<3>();
+    if (!turn.isZero(0.0)) share = turn.dot(turned) / turn.squaredNorm();
+  }
+  return std::clamp(share, 0.0, 1.0);
+}
+
 Joints ProgramPath::joints(std::size_t index, double s, const JointLayout& layout,
-                           const Joints& Q_ref) const {
+                           const Joints& Q_near) const {
   const Piece& p = pieces_[index];
-  Joints Q = layout.joints(at(index, s));
-  Q.tail<kJoints - kLinearJoints>() = Q_ref.tail<kJoints - kLinearJoints>();
+  const double share = fraction(p, s, layout, Q_near);
+  const AxisWords words = p.curve.at(share);
+  Joints Q = layout.joints(words);
   if (!p.is_tip) return Q;
+  if (p.is_great_circle) {
+    const auto k = controllers::ToolCentrePoint::axis_between(p.k_begin, p.k_end, share);
+    Q.tail<kJoints - kLinearJoints>() =
+        machine_->point(k, Q_near).Q.tail<kJoints - kLinearJoints>();
+  }
   // the planner has been there: the linear axes can
-  return machine_->joints(at(index, s).head<3>(), Q, p.p_ST).value_or(Q_ref);
+  return machine_->joints(words.head<3>(), Q, p.p_ST).value_or(Q_near);
 }
 
 double ProgramPath::distance(const Eigen::Vector3d& point, std::size_t index) const {

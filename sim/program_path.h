@@ -38,10 +38,16 @@ class ProgramPath {
     int section = 0;                                 // index into sections()
     bool is_tip = false;                             // X Y Z are those of the tip in the workpiece
     Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();  // m, then
+    AxisWords begin = AxisWords::Zero();
+    // the tool axis turns on a great circle from k_begin to k_end
+    bool is_great_circle = false;
+    Eigen::Vector3d k_begin = Eigen::Vector3d::UnitZ(), k_end = Eigen::Vector3d::UnitZ();
   };
 
-  /// Index of the piece that holds s; `near` is where to look first (the piece found last).
-  std::size_t piece_at(double s, std::size_t near) const;
+  /// Index of the piece that each of these moves belongs to.
+  /// @param moves  those of the program, or what a strategy made of them: lines and arc lengths
+  ///               carried over, in order. What moves nothing belongs to the piece before
+  std::vector<std::size_t> pieces_of(std::span<const Move> moves) const;
 
   const Piece& piece(std::size_t index) const { return pieces_[index]; }
   std::size_t size() const { return pieces_.size(); }
@@ -49,9 +55,11 @@ class ProgramPath {
   /// Programmed position at arc length s within that piece (6; m, rad).
   AxisWords at(std::size_t index, double s) const;
 
-  /// Joints of the ideal machine at the programmed place (5; m, rad). Rotary axes turn at standing
-  /// s, too: theirs are those of Q_ref.
-  Joints joints(std::size_t index, double s, const JointLayout& layout, const Joints& Q_ref) const;
+  /// Joints of the ideal machine at the programmed place (5; m, rad): rotary axes as programmed,
+  /// or such that the tool axis is as programmed.
+  /// @param Q_near  joints at that time (5; m, rad). Where s stands while rotary axes turn, the
+  ///                place is the one of the programmed turn that is nearest to them
+  Joints joints(std::size_t index, double s, const JointLayout& layout, const Joints& Q_near) const;
 
   double length() const { return pieces_.empty() ? 0.0 : pieces_.back().s_end; }
 
@@ -64,6 +72,9 @@ class ProgramPath {
 
  private:
   AxisWords begin_of(const Piece& piece, const Piece* before, AxisWords at) const;
+  void set_tool_axes(Piece& piece, const Move& move) const;
+  double fraction(const Piece& piece, double s, const JointLayout& layout,
+                  const Joints& Q_near) const;
 
   std::shared_ptr<const controllers::ToolCentrePoint> machine_;
   std::vector<Piece> pieces_;

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "plant/kinematics/inverse.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::sim {
@@ -191,6 +192,7 @@ class Recorder::Rows {
 
  private:
   std::size_t find_places(const std::vector<Snapshot>& block, std::size_t first);
+  Joints ideal_joints(const Joints& Q_true, int tool_offset) const;
   void find_poses(std::span<const double> directions);
   void make_row(const Snapshot& now, std::size_t place, double* to);
 
@@ -202,8 +204,8 @@ class Recorder::Rows {
   const bool rotary_displaced_;
   const std::vector<const strategies::Strategy*> correcting_;
   const plant::VolumetricModel ideal_{machine_.chain, {}};
+  const plant::InverseKinematics inverse_{machine_.chain};
   std::vector<int> linear_, rotary_;  // joints that the machine has
-  std::size_t piece_ = 0;
   // of rows that follow each other with the same tool
   Eigen::Vector3d p_ST_ = Eigen::Vector3d::Zero();
   std::vector<std::size_t> pieces_;
@@ -222,20 +224,23 @@ std::size_t Recorder::Rows::find_places(const std::vector<Snapshot>& block, std:
   int tool = 0;
   for (std::size_t n = first; n < block.size(); ++n) {
     const Snapshot& now = block[n];
-    piece_ = path_.piece_at(now.s, piece_);
-    const ProgramPath::Piece& piece = path_.piece(piece_);
+    const ProgramPath::Piece& piece = path_.piece(now.piece);
     if (n == first) tool = piece.tool_offset;
     if (piece.tool_offset != tool) return n;
-    // A rewritten program may turn rotary axes elsewhere, too.
-    Joints Q_rotary = now.Q_ref;
-    if (rotary_displaced_ && piece.s_end != piece.s_begin) {
-      Q_rotary = machine_.chain.layout.joints(path_.at(piece_, now.s));
-    }
-    pieces_.push_back(piece_);
-    Q_prog_.push_back(path_.joints(piece_, now.s, machine_.chain.layout, Q_rotary));
+    const bool by_turn = rotary_displaced_ && piece.s_end == piece.s_begin;
+    const Joints Q_near = by_turn ? ideal_joints(now.Q_true, piece.tool_offset) : now.Q_ref;
+    pieces_.push_back(now.piece);
+    Q_prog_.push_back(path_.joints(now.piece, now.s, machine_.chain.layout, Q_near));
     Q_true_.push_back(now.Q_true);
   }
   return block.size();
+}
+
+// Where the joints of the ideal machine would stand with the tool where it is.
+Joints Recorder::Rows::ideal_joints(const Joints& Q_true, int tool_offset) const {
+  const auto tip = tips_.find(tool_offset);
+  const Eigen::Vector3d p_ST = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;
+  return inverse_.nearest(truth_.forward(Q_true, p_ST), p_ST, Q_true).Q;
 }
 
 // Where the tool is and where it should be.

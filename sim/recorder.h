@@ -20,6 +20,7 @@ namespace servomill::sim {
 struct Snapshot {
   double time = 0.0;
   double s = 0.0;
+  std::size_t piece = 0;           // of the programmed path
   Joints Q_ref = Joints::Zero();   // interpolated
   Joints Q_cmd = Joints::Zero();   // after set-point corrections
   Joints Q_read = Joints::Zero();  // what the NC reads (virtual encoder)
@@ -37,7 +38,7 @@ class Recorder {
   /// All arguments must outlive it.
   /// @param imposed  model whose displacement at the programmed position is recorded; may be null
   /// @param rotary_displaced  the program that runs turns rotary axes elsewhere than `path` does:
-  ///                          they are compared at equal s, too, where that moves
+  ///                          where s stands, they are compared with the nearest programmed place
   /// @param correcting  strategies of which is recorded what they cannot correct, in all
   Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
            const plant::VolumetricModel* imposed, const ProgramPath& path,

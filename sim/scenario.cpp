@@ -309,6 +309,12 @@ class ScenarioReader {
                       "be a whole multiple of {:g} ms",
                       out_.machine.nc.periods.seconds(out_.machine.nc.periods.position) / ms));
     }
+    if (table.has("truth")) {
+      spec.truth = table.text("truth");
+      if (!spec.truth->empty()) {
+        must_be_known(table, "truth", *spec.truth, "error model", error_models_);
+      }
+    }
     for (Reader& strategy : table.tables_or_none("strategy")) {
       read_strategy(strategy, spec);
     }

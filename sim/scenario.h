@@ -45,6 +45,7 @@ struct CaseSpec {
   std::vector<StrategySpec> strategies;
   bool feedback_hardware = false;
   ServoModel servo = ServoModel::cascade;
+  std::optional<std::string> truth;        // in place of that of the scenario; empty: no errors
   std::optional<MachineSettings> machine;  // where the case overrides keys of the machine
 
   bool has_feedback() const;  ///< among its strategies

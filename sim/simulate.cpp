@@ -188,6 +188,7 @@ class CaseRun {
     Snapshot now;
     now.time = nc_.periods.seconds(n);
     now.s = reference.s;
+    now.piece = in_.pieces[reference.move];
     now.Q_ref = reference.Q_ref;
     now.Q_cmd = set_.Q_cmd;
     now.Q_read = axes_.Q_read(run_);
@@ -393,7 +394,9 @@ class IdealRun {
   void record(Tick n, const AxisSetPoint& set) {
     Snapshot now;
     now.time = periods_.seconds(n);
-    now.s = in_.reference.at(now.time - set_point_.delay(), record_cursor_).s;
+    const auto reference = in_.reference.at(now.time - set_point_.delay(), record_cursor_);
+    now.s = reference.s;
+    now.piece = in_.pieces[reference.move];
     now.Q_ref = set.Q_ref;
     now.Q_cmd = now.Q_read = set.Q_cmd;
     now.Q_meas = now.Q_true = Q_true_of(set);

@@ -5,8 +5,12 @@
 #include <cmath>
 #include <cstdint>
 
+#include "plant/kinematics/straight_tool_path.h"
+#include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/move_curve.h"
+#include "plant/vocabulary/tool_axis.h"
 #include "strategies/pose_compensation.h"
+#include "strategies/straightening.h"
 
 namespace servomill::strategies {
 namespace {
@@ -51,110 +55,207 @@ struct RewriteParams {
   double max_block_turn = 0.0;  // rad
 };
 
+auto rotary(const Joints& Q) { return Q.tail<kJoints - kLinearJoints>(); }
+
+// The joints of the ideal machine on the way of one programmed move.
+class ProgrammedWay {
+ public:
+  ProgrammedWay(const plant::InverseKinematics& inverse, const Eigen::Vector3d& p_ST,
+                const Joints& Q_begin, const Move& move)
+      : inverse_(inverse), p_ST_(p_ST), line_(move.line), control_(move.tool_control) {
+    if (control_ == ToolControl::work_plane) {
+      throw InputError({{}, line_, 0}, "moves in a tilted work plane cannot be rewritten");
+    }
+    AxisWords begin = layout().words(Q_begin);
+    Q_end_ = layout().joints(move.end_machine);
+    const ToolPose pose = plant::forward(inverse.chain(), Q_begin, p_ST);
+    if (controls_tip()) begin.head<3>() = pose.p_WT;
+    curve_ = MoveCurve(begin, move);
+    k_begin_ = pose.k_W;
+    k_end_ = move.tool_axis;
+    if (controls_tip()) Q_end_ = with_tip(move.end_machine.head<3>(), Q_end_);
+    turn_ = rotary(Joints(Q_end_ - Q_begin));
+  }
+
+  bool controls_tip() const { return control_ != ToolControl::none; }
+  bool turns_axis() const { return control_ == ToolControl::tool_axis; }
+  double length() const { return curve_.length(); }  // m, of X Y Z or of the tip
+  const Eigen::Vector2d& turn() const { return turn_; }
+  // rad, what the feed is of where the tip stands
+  double angle() const { return turns_axis() ? angle_between(k_begin_, k_end_) : turn_.norm(); }
+  const Joints& end() const { return Q_end_; }
+
+  // @param Q_near  joints on the way nearby
+  Joints at(double t, const Joints& Q_near) const {
+    if (t >= 1.0) return Q_end_;
+    const AxisWords words = curve_.at(t);
+    if (!controls_tip()) return layout().joints(words);
+    if (!turns_axis()) return with_tip(words.head<3>(), layout().joints(words));
+    const plant::StraightToolPath circle({Eigen::Vector3d::Zero(), k_begin_},
+                                         {Eigen::Vector3d::Zero(), k_end_});
+    return inverse_.nearest({words.head<3>(), circle.at(t).k_W}, p_ST_, Q_near).Q;
+  }
+
+ private:
+  const JointLayout& layout() const { return inverse_.chain().layout; }
+  Joints with_tip(const Eigen::Vector3d& p_WT, const Joints& Q_rotary) const {
+    const auto Q = plant::inverse_fixed_rotary(inverse_.chain(), p_WT, Q_rotary, p_ST_);
+    if (!Q) throw InputError({{}, line_, 0}, "the linear axes cannot bring the tip there");
+    return *Q;
+  }
+
+  const plant::InverseKinematics& inverse_;
+  const Eigen::Vector3d& p_ST_;
+  int line_;
+  ToolControl control_;
+  MoveCurve curve_;
+  Eigen::Vector3d k_begin_, k_end_;
+  Joints Q_end_;
+  Eigen::Vector2d turn_;
+};
+
 // Displaces one programmed move after the other and appends the blocks that result.
 class Rewriter {
  public:
-  Rewriter(const Belief& belief, const RewriteParams& params, const AxisWords& start,
-           std::vector<Move>& out)
+  Rewriter(const Belief& belief, const RewriteParams& params, std::vector<Move>& out)
       : belief_(belief),
         params_(params),
+        inverse_(nominal_inverse(belief)),
         all_(belief, params.iterations, params.sigma_0),
         out_(out),
-        out_at_(start) {}
+        Q_(belief.reference),
+        out_at_(belief.layout.words(belief.reference)) {}
 
-  void rewrite(const AxisWords& from, const Move& move) {
+  void rewrite(const Move& move) {
+    const ProgrammedWay way(inverse_, belief_.p_ST, Q_, move);
     move_ = &move;
-    turn_ = displaces_all() ? (move.end_machine - from).tail<3>().cwiseAbs().maxCoeff() : 0.0;
-    curve_ = MoveCurve(from, move);
+    way_ = &way;
     s_ = move.s_begin;
-    if (move.kind == MoveKind::rapid) {
+    t_ = 0.0;
+    if (way.controls_tip()) {
+      cut();
+    } else if (move.kind == MoveKind::rapid) {
       // displaced at its end only: nothing is cut on the way
-      emit(1.0, displaced(1.0));
-    } else if (curve_.length() == 0.0 && (move.end_machine - from).tail<3>().any()) {
+      emit(place(1.0, Q_));
+    } else if (way.length() == 0.0 && way.turn().any()) {
       // Rotary axes alone keep their angular feed: X, Y and Z wait where they are, and the next
       // move takes them to where they belong.
-      AxisWords target = displaces_all() ? displaced(1.0) : move.end_machine;
-      target.head<3>() = out_at_.head<3>();
-      emit(1.0, target);
+      Place target = place(1.0, Q_);
+      if (!displaces_all()) target.words = move.end_machine;
+      target.words.head<3>() = out_at_.head<3>();
+      emit(target);
     } else {
       cut();
     }
+    Q_ = way.end();
   }
 
  private:
   static constexpr int kMostSplits = 24;
 
+  struct Place {
+    double t = 0.0;   // of the move
+    Joints Q;         // as programmed
+    AxisWords words;  // displaced
+  };
+
   bool displaces_all() const { return params_.axes == DisplacedAxes::all; }
 
   void cut() {
+    const bool minds_turn = displaces_all() || way_->controls_tip();
+    const double turn = minds_turn ? way_->turn().cwiseAbs().maxCoeff() : 0.0;
     const double blocks =
-        std::max(curve_.length() / params_.max_block, turn_ / params_.max_block_turn);
+        std::max(way_->length() / params_.max_block, turn / params_.max_block_turn);
     const auto pieces = std::max<std::int64_t>(1, std::llround(std::ceil(blocks - 1e-9)));
     const double dt = 1.0 / static_cast<double>(pieces);
-    AxisWords a = displaced(0.0);
+    Place a = place(0.0, Q_);
     for (std::int64_t i = 0; i < pieces; ++i) {
-      const double t0 = static_cast<double>(i) * dt;
-      const double t1 = i + 1 == pieces ? 1.0 : static_cast<double>(i + 1) * dt;
-      const AxisWords b = displaced(t1);
-      split(t0, a, t1, b, kMostSplits);
+      const Place b = place(i + 1 == pieces ? 1.0 : static_cast<double>(i + 1) * dt, a.Q);
+      split(a, b, kMostSplits);
       a = b;
     }
   }
 
-  AxisWords displaced(double t) const {
-    AxisWords p = curve_.at(t);
-    const Joints Q = belief_.layout.joints(p);
+  Place place(double t, const Joints& Q_near) const {
+    Place out{t, way_->at(t, Q_near), {}};
+    out.words = belief_.layout.words(out.Q);
     if (displaces_all()) {
-      p += belief_.layout.words(all_.of_set_point(params_.sign, Q));
+      out.words += belief_.layout.words(all_.of_set_point(params_.sign, out.Q));
     } else {
-      p.head<3>() += set_point_displacement(belief_, params_.sign, params_.iterations, Q);
+      out.words.head<3>() +=
+          set_point_displacement(belief_, params_.sign, params_.iterations, out.Q);
     }
-    return p;
+    return out;
   }
 
-  // Halves [t0, t1] until the chord is within tolerance at a quarter, the half and three quarters.
-  void split(double t0, const AxisWords& a, double t1, const AxisWords& b, int splits_left) {
-    if (splits_left == 0 || is_within_tolerance(t0, a, t1, b)) {
-      emit(t1, b);
+  // Halves the way from a to b until the chord is within tolerance at a quarter, the half and three
+  // quarters.
+  void split(const Place& a, const Place& b, int splits_left) {
+    const bool is_within = is_within_tolerance(a, b);
+    if (splits_left == 0 || is_within) {
+      // a rapid may turn where it stands: it cuts nothing
+      if (!is_within && way_->controls_tip() && move_->kind != MoveKind::rapid) {
+        throw InputError({{}, move_->line, 0},
+                         "cannot be rewritten: the rotary axes jump on the way, in a singular "
+                         "direction of the tool axis");
+      }
+      emit(b);
       return;
     }
-    const double t = 0.5 * (t0 + t1);
-    const AxisWords m = displaced(t);
-    split(t0, a, t, m, splits_left - 1);
-    split(t, m, t1, b, splits_left - 1);
+    const Place middle = place(0.5 * (a.t + b.t), a.Q);
+    split(a, middle, splits_left - 1);
+    split(middle, b, splits_left - 1);
   }
 
-  bool is_within_tolerance(double t0, const AxisWords& a, double t1, const AxisWords& b) const {
+  bool is_within_tolerance(const Place& a, const Place& b) const {
+    const bool minds_turn = displaces_all() || way_->controls_tip();
     for (const double f : {0.25, 0.5, 0.75}) {
-      const AxisWords off = displaced(t0 + f * (t1 - t0)) - (a + f * (b - a));
+      const Joints Q_near = a.Q + f * (b.Q - a.Q);
+      const AxisWords off =
+          place(a.t + f * (b.t - a.t), Q_near).words - (a.words + f * (b.words - a.words));
       if (off.head<3>().norm() > params_.tolerance) return false;
-      if (displaces_all() && off.tail<3>().norm() > params_.tolerance_turn) return false;
+      if (minds_turn && off.tail<3>().norm() > params_.tolerance_turn) return false;
     }
     return true;
   }
 
-  void emit(double t, const AxisWords& target) {
+  void emit(const Place& target) {
     Move block = *move_;
     if (block.kind == MoveKind::arc) block.kind = MoveKind::feed;
     // work offsets do not rotate here: what displaces the machine displaces the work coordinates
-    block.end += target - block.end_machine;
-    block.end_machine = target;
-    out_at_ = target;
+    block.end += target.words - block.end_machine;
+    block.end_machine = target.words;
     block.s_begin = s_;
-    block.s_end = move_->s_begin + t * (move_->s_end - move_->s_begin);
+    block.s_end = move_->s_begin + target.t * (move_->s_end - move_->s_begin);
+    if (way_->controls_tip()) leave_tip_control(block, target.t - t_);
+    out_at_ = target.words;
     s_ = block.s_end;
+    t_ = target.t;
     out_.push_back(block);
+  }
+
+  // A block of the axes that takes the time of its share of the move.
+  void leave_tip_control(Move& block, double share) const {
+    block.tool_control = ToolControl::none;
+    block.tool_offset = 0;
+    block.plane.reset();
+    if (block.kind == MoveKind::rapid) return;
+    block.feed_mode = FeedMode::inverse_time;
+    if (block.s_end > block.s_begin) return;  // its feed is that of the tip along s
+    const double turned = (block.end_machine - out_at_).tail<3>().norm();
+    block.feed = turned * move_->feed / (share * way_->angle());
   }
 
   const Belief& belief_;
   const RewriteParams& params_;
+  plant::InverseKinematics inverse_;
   PoseCompensation all_;
   std::vector<Move>& out_;
+  Joints Q_;  // as programmed, where the move begins
   const Move* move_ = nullptr;
+  const ProgrammedWay* way_ = nullptr;
   AxisWords out_at_;  // displaced end of the block before
-  MoveCurve curve_;
-  double turn_ = 0.0;  // rad, of the rotary axis that turns most; 0 where none is displaced
-  double s_ = 0.0;
+  double s_ = 0.0, t_ = 0.0;
 };
 
 class RewrittenProgram final : public Strategy {
@@ -163,6 +264,7 @@ class RewrittenProgram final : public Strategy {
       : belief_(belief), params_(params) {}
 
   bool rewrites() const override { return true; }
+  bool rewrites_tip_moves() const override { return true; }
   bool displaces_rotary() const override { return params_.axes == DisplacedAxes::all; }
   std::optional<Leftover> uncorrectable(const Joints& Q) const override {
     return strategies::uncorrectable(belief_, params_.sign, params_.axes, params_.sigma_0, Q);
@@ -170,15 +272,13 @@ class RewrittenProgram final : public Strategy {
 
   std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
     std::vector<Move> out;
-    AxisWords at = belief_.layout.words(belief_.reference);
-    Rewriter rewriter(belief_, params_, at, out);
+    Rewriter rewriter(belief_, params_, out);
     for (const Move& move : moves) {
-      if (!is_motion(move.kind)) {
+      if (is_motion(move.kind)) {
+        rewriter.rewrite(move);
+      } else {
         out.push_back(move);
-        continue;
       }
-      rewriter.rewrite(at, move);
-      at = move.end_machine;
     }
     return out;
   }

@@ -86,6 +86,8 @@ class Strategy {
   /// Rewrites the moves of a program; the line and arc length of the original are carried over.
   virtual bool rewrites() const { return false; }
   virtual std::vector<Move> rewrite(const std::vector<Move>& moves) const { return moves; }
+  /// Whether it can rewrite moves under tool-centre-point control, with the tool of Belief::p_ST.
+  virtual bool rewrites_tip_moves() const { return false; }
 
   virtual std::unique_ptr<SetPointPart> set_point() const { return nullptr; }
 

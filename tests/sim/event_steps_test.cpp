@@ -50,8 +50,11 @@ struct FiveAxisCase {
   }
 
   CaseInputs inputs() {
-    return {machine,  belief.model, nullptr,        trajectory, path, tips, ServoModel::cascade,
-            hardware, {},           strategy.get(), 100,        0.02};
+    CaseInputs out = {
+        machine,  belief.model, nullptr,        trajectory, path, tips, ServoModel::cascade,
+        hardware, {},           strategy.get(), 100,        0.02};
+    out.pieces = path.pieces_of(moves);
+    return out;
   }
 };
 

@@ -38,7 +38,7 @@ Move message(const std::string& text) {
 constexpr double kQuarter = 5.0 * std::numbers::pi;  // mm, a quarter of a circle of R 10
 
 // A rapid along X, a line along Y, a turn of C, a quarter circle back along -X and +Y.
-ProgramPath some_path() {
+std::vector<Move> some_moves() {
   std::vector<Move> moves = {move_to(at(10, 0), 1, 0, 10),
                              message("one"),
                              move_to(at(10, 20), 3, 10, 30),
@@ -50,8 +50,9 @@ ProgramPath some_path() {
   moves[6].kind = MoveKind::arc;
   moves[6].centre_machine = moves[6].arc.centre = Eigen::Vector3d(0.0, 20.0 * mm, 0.0);
   moves[6].tool_offset = 4;
-  return ProgramPath(moves, at(0, 0));
+  return moves;
 }
+ProgramPath some_path() { return ProgramPath(some_moves(), at(0, 0)); }
 
 void expect_at(const AxisWords& is, const AxisWords& wanted) {
   EXPECT_LT((is - wanted).cwiseAbs().maxCoeff(), kRounding) << is.transpose();
@@ -77,15 +78,21 @@ TEST(ProgramPath, NamesTheSectionsOfTheProgram) {
   EXPECT_EQ(path.piece(3).section, 1);
 }
 
-TEST(ProgramPath, FindsThePieceForwardsAndBackwards) {
+using Pieces = std::vector<std::size_t>;
+
+// Messages belong to the piece before; a line on which only C turns is found though s stands.
+TEST(ProgramPath, FindsThePieceOfEveryMove) {
+  EXPECT_EQ(some_path().pieces_of(some_moves()), (Pieces{0, 0, 1, 1, 2, 2, 3}));
+}
+
+TEST(ProgramPath, FindsThePiecesOfRewrittenMoves) {
   const ProgramPath path = some_path();
-  for (const std::size_t near : {0U, 1U, 2U, 3U}) {
-    EXPECT_EQ(path.piece_at(5 * mm, near), 0U);
-    EXPECT_EQ(path.piece_at(12 * mm, near), 1U);
-    EXPECT_EQ(path.piece_at(31 * mm, near), 3U);
-    EXPECT_EQ(path.piece_at(1.0, near), 3U) << "behind the end";
-    EXPECT_EQ(path.piece_at(-1.0, near), 0U) << "before the begin";
-  }
+  const Move rapid = move_to(at(9, 1), 1, 0, 10), half = move_to(at(10, 9), 3, 10, 20),
+             rest = move_to(at(10, 21), 3, 20, 30), turn = move_to(at(10, 20, 40), 5, 30, 30),
+             arc = move_to(at(9, 25, 90), 7, 30, 35);
+  EXPECT_EQ(path.pieces_of(std::vector{rapid, half, rest, turn, turn, arc, arc}),
+            (Pieces{0, 1, 1, 2, 2, 3, 3}));
+  EXPECT_THROW(path.pieces_of(std::vector{arc, half}), std::logic_error);
 }
 
 TEST(ProgramPath, GivesThePositionByArcLength) {

@@ -23,10 +23,13 @@ class Recording : public testing::Test {
         truth_(scenario_.machine.chain, {}) {
     boost::random::mt19937 random(1);
     const boost::random::uniform_real_distribution<double> any(-0.1, 0.1);
+    std::size_t piece = 0;
     for (std::size_t n = 0; n < kRows; ++n) {
       Snapshot now;
       now.time = 1e-3 * static_cast<double>(n);
       now.s = path_.length() * static_cast<double>(n) / kRows;
+      while (now.s > path_.piece(piece).s_end) ++piece;
+      now.piece = piece;
       for (Joints* Q : {&now.Q_ref, &now.Q_cmd, &now.Q_read, &now.Q_meas, &now.Q_true, &now.dQ_true,
                         &now.current, &now.torque}) {
         for (int j = 0; j < kJoints; ++j) (*Q)[j] = any(random);

@@ -92,13 +92,9 @@ std::string fault_of(const std::string& program, const std::string& toml) {
   }
 }
 
-TEST(ToolCentrePoint, IsNotRewritten) {
-  EXPECT_EQ(fault_of(kTip,
-                     "errors.model.EXX = { polynomial_um = [0.0, 10.0] }\n"
-                     "[[case]]\nname = \"g\"\n[[case.strategy]]\ntype = \"gcode\"\nmodel = "
-                     "\"model\"\n" +
-                         kTool),
-            "case g: strategy gcode: cannot rewrite moves under tool-centre-point control or in a "
+TEST(ToolCentrePoint, IsNotStraightened) {
+  EXPECT_EQ(fault_of(kTip, "[[case]]\nname = \"g\"\n[[case.strategy]]\ntype = \"exact\"\n" + kTool),
+            "case g: strategy exact: cannot rewrite moves under tool-centre-point control or in a "
             "tilted work plane (small.ngc:2)");
 }
 
