@@ -400,7 +400,7 @@ class Drawing(WithFiles):
         self.assertEqual([line.split()[0] for line in done.stdout.splitlines()],
                          ["figure6", "figure9", "figure10", "figure11", "figure12", "figure14",
                           "figure15", "lag", "curves", "maps", "samples", "circular", "reversals", "li_3_2", "li_3_3", "li_4_1",
-                          "deviations", "position", "velocity",
+                          "five_axis", "deviations", "position", "velocity",
                           "compliance", "step"])
 
 

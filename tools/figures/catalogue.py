@@ -2,7 +2,7 @@
 import dataclasses
 from typing import Callable
 
-from figures import (bode, circular, deviations, error_functions, lag, nonlinear, notches, step, straightness,
+from figures import (bode, circular, deviations, error_functions, five_axis, lag, nonlinear, notches, step, straightness,
                      sweeps, volumetric)
 
 
@@ -40,6 +40,8 @@ FIGURES = (
     Figure("li_3_3", "run", "one segment: way in the machine, error before and after", nonlinear.draw_segment),
     Figure("li_4_1", "run", "several segments: way in the machine, enlarged, errors along it",
            nonlinear.draw_way),
+    Figure("five_axis", "run", "five axes: plan view with deviations, tip and tool axis along the path",
+           five_axis.draw),
     Figure("deviations", "run", "following error, tool deviation and contour error over time",
            deviations.draw),
     Figure("position", "bode", "position loop over frequency: open, closed, with feed-forward",
