@@ -123,6 +123,14 @@ TEST(FiveAxes, ReportWhatASingularDirectionLeaves) {
   EXPECT_LT(left.tip, 1e-4);
   EXPECT_GT(left.axis, 1.0);
   EXPECT_LT(left.axis, without.axis);
+  // said before the run, at the believed worst place
+  const CaseOutput out = run_case(scenario, "feedback");
+  ASSERT_EQ(out.notes.size(), 1U);
+  EXPECT_NE(out.notes.front().find("small.ngc:5: warning: strategy feedback cannot correct all"),
+            std::string::npos)
+      << out.notes.front();
+  testing::Test::RecordProperty("note", out.notes.front());
+  EXPECT_TRUE(run_case(five_axes(), "feedback").notes.empty());
 }
 
 // A rotary axis that corrects the tool axis lags like the others do, by 1/Kv and what the hardware
