@@ -42,8 +42,8 @@ std::vector<Rate> loop_rates(const LoopPeriods& p, Tick reading_delay) {
 
 namespace {
 
-// Matrices are prepared for each stop: beyond these numbers steps are taken as they come.
-constexpr std::size_t kMostStops = 8, kMostStretches = 32;
+// Matrices are prepared for each stop of each: beyond that, steps are taken as they come.
+constexpr std::size_t kMostStretches = 32;
 
 // Number of a stretch with stops among those of the way, which it joins if it is new; -1 if there
 // are too many.
@@ -59,7 +59,7 @@ int number_of(const plant::Stretch& stretch, DriveWay& way) {
 
 }  // namespace
 
-DriveWay drive_way(const std::vector<Instant>& schedule) {
+DriveWay drive_way(const std::vector<Instant>& schedule, std::size_t most_stops) {
   DriveWay way;
   const auto add_step = [&](Tick step) {
     way.legs.push_back({step});
@@ -70,7 +70,7 @@ DriveWay drive_way(const std::vector<Instant>& schedule) {
     places.push_back(instant.step);
     Tick begin = 0;
     for (std::size_t first = 0; first < places.size();) {
-      const std::size_t last = std::min(first + kMostStops, places.size() - 1);
+      const std::size_t last = std::min(first + most_stops, places.size() - 1);
       plant::Stretch stretch{.step = places[last] - begin};
       for (std::size_t n = first; n < last; ++n) stretch.stops.push_back(places[n] - begin);
       const int number = stretch.stops.empty() ? -1 : number_of(stretch, way);
@@ -117,14 +117,13 @@ ServoAxes::ServoAxes(std::vector<const MachineSettings*> machines, std::vector<i
       in_a_row_(machines_.size() == 1 && joints_.size() == kJoints),
       blocks_of_joint_(fills_blocks() && joints_.size() == kJoints ? runs() / kLaneWidth : 0),
       params_(params_of(machines_, joints_)),
-      way_(drive_way(schedule)),
+      way_(machines_[0]->integrator == Integrator::exact ? drive_way(schedule)
+                                                         : drive_way(schedule, 0)),
       last_leg_(way_.legs.empty() ? 0 : way_.legs.size() - 1),
       positions_(way_.most_stops * blocks_of(params_.size())),
       drives_(params_, machines_[0]->nc.periods.base,
               machines_[0]->integrator == Integrator::exact ? way_.steps : std::vector<Tick>(),
-              kept, simd_level(),
-              machines_[0]->integrator == Integrator::exact ? way_.stretches
-                                                            : std::vector<plant::Stretch>()),
+              kept, simd_level(), way_.stretches),
       blocks_(blocks_of(params_.size())),
       state_(params_.size()),
       input_(params_.size()),

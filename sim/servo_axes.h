@@ -36,7 +36,8 @@ struct DriveWay {
   std::vector<Tick> steps;     // of the legs without stops
   std::size_t most_stops = 0;  // of a stretch
 };
-DriveWay drive_way(const std::vector<Instant>& schedule);
+/// @param most_stops  on a stretch; 0: each stop ends a leg
+DriveWay drive_way(const std::vector<Instant>& schedule, std::size_t most_stops = 8);
 
 /// What the position loops follow, for all joints.
 struct AxisSetPoint {
@@ -103,7 +104,8 @@ class ServoAxes {
   void run_velocity_loops();
   /// Moves the drives to the next instant. @pre step is that of the schedule
   /// @param at_stop  at_stop(), called at each stop on the way, when the scales have been read
-  /// there
+  /// there.
+  ///                 Nothing else is known of a stop: it may ask for Q_meas and displace, no more
   template <class AtStop>
   void advance(Tick step, AtStop at_stop) {
     for (const Tick end = now_ + step;;) {
@@ -121,8 +123,9 @@ class ServoAxes {
       at_stop();
     }
   }
+  /// The same for a schedule without stops.
   void advance(Tick step) {
-    advance(step, [] {});
+    advance(step, [] { assert(false); });
   }
 
   /// What read_scales read.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 
@@ -146,6 +147,7 @@ class VirtualEncoder final : public FeedbackPart {
   }
 
   Joints advance(const JointLanes& Q_meas, std::size_t periods, std::size_t run) override {
+    assert(0 < periods && periods <= kLaneWidth);
     ShiftLanes next;
     find_in_turn(Q_meas, periods, run, next);
     Joints d = Joints::Zero();

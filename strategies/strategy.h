@@ -51,8 +51,8 @@ class FeedbackPart {
   /// Settles one run at standstill in Q_meas, as if the hardware had been on for long.
   virtual Joints settle(const Joints& Q_meas, std::size_t lane = 0) = 0;
   /// One model period after the other of one run, the only one that goes on: what was evaluated a
-  /// period ago acts now, and the model is evaluated for the next period. Eight periods take little
-  /// longer than one.
+  /// period ago acts now, and the model is evaluated for the next period. Where only linear
+  /// axes are displaced, eight periods take little longer than one.
   /// @param Q_meas   scale readings (m, rad) at the instants of the periods, side by side: from the
   ///                 first lane on; in other lanes any numbers
   /// @param periods  their number, at most eight

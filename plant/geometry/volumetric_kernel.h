@@ -30,8 +30,8 @@ inline constexpr std::size_t kErrorComponents = 6;  // along X, Y, Z, about A, B
 /// the straight way (straight_kernel.h).
 inline constexpr double kSmallTurn = 2e-4;  // rad
 
-/// Turns below this use series of three terms, whose next one is below 1e-16: all that the errors of
-/// a machine amount to.
+/// Turns below this use series of three terms, whose next one is below 1e-16: all that the errors
+/// of a machine amount to. The straight way has no use for them.
 inline constexpr double kSeriesTurn = 5e-3;  // rad
 
 enum class VolumetricMove : std::uint8_t {

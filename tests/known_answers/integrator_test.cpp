@@ -63,5 +63,28 @@ TEST(ExactAndCvode, AgreeWithRegularisedFrictionBacklashAndAWinding) {
            "voltage_max = \"300 V\" }\n"});
 }
 
+// Both tell where the drives are at each evaluation of the error model.
+TEST(ExactAndCvode, AgreeOnAVirtualEncoder) {
+  const auto with = [](const std::string& integrator) {
+    const Scenario scenario = small_scenario(
+        "G1 X3 Y-2 F3000\nX0\nM30\n",
+        "[errors.model]\nEYX = { harmonic = { amplitude_um = 50.0, period_mm = 2.0 } }\n"
+        "[[case]]\nname = \"one\"\nmachine_override.integrator = \"" +
+            integrator + "\"\n[[case.strategy]]\ntype = \"feedback\"\nmodel = \"model\"\n");
+    return run_case(scenario, "one").result.servo;
+  };
+  const Series exact = with("exact"), cvode = with("cvode");
+  ASSERT_EQ(exact.rows(), cvode.rows());
+  const std::size_t y = exact.column("true_linear", 'Y').value();
+  double largest = 0.0, way = 0.0;
+  for (std::size_t n = 0; n < exact.rows(); ++n) {
+    largest = std::max(largest, std::abs(exact.at(n, y) - cvode.at(n, y)) * mm / nm);
+    const double straight = -exact.at(n, exact.column("prog_linear", 'X').value()) * 2.0 / 3.0;
+    if (n < exact.rows() / 2) way = std::max(way, std::abs(exact.at(n, y) - straight));
+  }
+  EXPECT_LE(largest, kAgreement);
+  EXPECT_GT(way, 0.02);  // mm: the encoder moved it
+}
+
 }  // namespace
 }  // namespace servomill::sim

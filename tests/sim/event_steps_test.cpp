@@ -27,8 +27,15 @@ struct FiveAxisCase {
   std::unique_ptr<strategies::Strategy> strategy;
   FeedbackHardware hardware{.connected = true, .signal_delay = 1, .model_period = 6};
 
-  FiveAxisCase() {
-    machine.scale.fill({});
+  FiveAxisCase(Tick delay, Tick model_period) {
+    hardware.signal_delay = delay;
+    hardware.model_period = model_period;
+    for (std::size_t j = 0; j < kJoints; ++j) {  // another reading at any other tick
+      plant::EncoderParams noisy;
+      noisy.position_noise = 20.0 * nm;
+      machine.scale[j] =
+          plant::Encoder(noisy, {.seed = 5, .stream = static_cast<std::uint32_t>(j)});
+    }
     machine.motor.fill({});
     belief.Kv.setConstant(machine.nc.cascade[0].Kv);
     const strategies::Entry* entry = strategies::find("feedback");
@@ -65,16 +72,24 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
   const plant::DriveBank drives(c.machine.drives, p.base, one);
   SetPoint set_point(c.machine.nc, c.trajectory, {});
   controllers::Trajectory::Cursor cursor;
-  const auto part = c.strategy->feedback(6 * p.base);
+  const Tick model = c.hardware.model_period;
+  const auto part = c.strategy->feedback(static_cast<double>(model) * p.base);
   const Joints Q_start = set_point.settle().Q_cmd;
   plant::DriveState state = drives.at_rest({Q_start.data(), kJoints});
   plant::DriveInput input(kJoints);
   plant::DriveBlock& x = state.blocks.front();
   plant::DriveInputBlock& u = input.blocks.front();
   std::array<controllers::CascadeState, kJoints> loops;
-  const auto scales = [&] { return Joints(Eigen::Map<const Joints>(x.x.data())); };
-  Joints d_now = part->settle(scales());
-  Joints Q_read = scales() + d_now;
+  const auto positions = [&] { return Joints(Eigen::Map<const Joints>(x.x.data())); };
+  const auto scales = [&](Tick n) {
+    Joints Q;
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      Q[static_cast<int>(j)] = c.machine.scale[j].read(x.x[j], n);
+    }
+    return Q;
+  };
+  Joints d_now = part->settle(positions());
+  Joints Q_read = scales(0) + d_now;
   for (std::size_t j = 0; j < kJoints; ++j) {
     loops[j].phi = drives.motor_angle(state, j);
     loops[j].i_next = loops[j].i_cmd = u.command[j] = x.i[j];
@@ -83,9 +98,9 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
   std::vector<Joints> recorded;
   const auto end = static_cast<Tick>(std::ceil((c.trajectory.duration() + 0.02) / p.base));
   for (Tick n = 0; n <= end; ++n) {
-    if (n % 6 == 0) d_now = part->advance(scales());
+    if (n % model == 0) d_now = part->advance(scales(n));
     if ((n + c.hardware.signal_delay) % p.position == 0) {
-      Q_read = scales() + d_now;
+      Q_read = scales(n) + d_now;
     }
     if (n % p.position == 0) {
       const AxisSetPoint& set = set_point.advance(c.trajectory.at(p.seconds(n), cursor));
@@ -104,15 +119,19 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
         controllers::velocity_loop(c.machine.nc.cascade[j], loops[j], drives.motor_angle(state, j));
       }
     }
-    if (n % 100 == 0) recorded.push_back(scales());
+    if (n % 100 == 0) recorded.push_back(positions());
     drives.advance(state, input, 1);
   }
   return recorded;
 }
 
-TEST(Simulate, FromEventToEventIsWhatEveryTickGives) {
+// The readings are taken with the error model or not, the drives pass none, few, or more instants
+// of it than they have stops.
+class Simulate : public testing::TestWithParam<std::pair<Tick, Tick>> {};
+
+TEST_P(Simulate, FromEventToEventIsWhatEveryTickGives) {
   constexpr double kSameTol = 1e-12;  // m, rad
-  FiveAxisCase one;
+  FiveAxisCase one(GetParam().first, GetParam().second);
   const std::vector<Joints> wanted = stepped_every_tick(one);
   CaseInputs inputs = one.inputs();
   const StopFlag never = false;
@@ -137,6 +156,10 @@ TEST(Simulate, FromEventToEventIsWhatEveryTickGives) {
   EXPECT_GT(way, 0.05);  // rad of C
   EXPECT_LT(largest, kSameTol);
 }
+
+INSTANTIATE_TEST_SUITE_P(DelayAndModelPeriod, Simulate,
+                         testing::Values(std::pair<Tick, Tick>{1, 6}, std::pair<Tick, Tick>{2, 6},
+                                         std::pair<Tick, Tick>{1, 1}, std::pair<Tick, Tick>{0, 7}));
 
 }  // namespace
 }  // namespace servomill::sim

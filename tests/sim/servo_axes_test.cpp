@@ -72,6 +72,12 @@ TEST(DriveWay, HasEightStopsOnAStretchAtMost) {
   EXPECT_EQ(longer.steps, std::vector<Tick>{1});  // the tenth
 }
 
+TEST(DriveWay, EndsALegAtEachStopIfAsked) {  // as CVODE needs it
+  const DriveWay way = drive_way(schedule_of(10, 6), 0);
+  EXPECT_TRUE(way.stretches.empty());
+  EXPECT_EQ(way.steps, (std::vector<Tick>{6, 4, 2, 6, 2, 4, 6}));
+}
+
 TEST(DriveWay, HasThirtyTwoStretchesAtMost) {
   for (const Tick current : {32, 33, 34, 37}) {
     // 1 tick later in each period of the current loop: stops at 1, 2, ... current - 1 after it

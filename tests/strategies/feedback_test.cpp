@@ -185,6 +185,31 @@ TEST(VirtualEncoder, GivesTheSameBitsTogetherAndAlone) {
   }
 }
 
+// Limits of eight runs at once: the bits of each, on every instruction set of this machine.
+TEST(Approach, GivesInLanesTheBitsOfEachRun) {
+  plant::Uniform random(31);
+  constexpr double kMost[] = {2.0, 0.5, 1e-9}, kChange[] = {0.3, 10.0, 0.1};
+  for (const SimdLevel level : {SimdLevel::baseline, SimdLevel::avx2, SimdLevel::avx512}) {
+    if (level > simd_level()) continue;
+    const Approach approach =
+        at_simd_level(level, []<SimdLevel l>() { return make_approach<l>(); });
+    LaneArray wanted[3], values[3] = {};
+    for (int n = 0; n < 200; ++n) {
+      LaneArray before[3];
+      for (int j = 0; j < 3; ++j) {
+        before[j] = values[j];
+        for (double& w : wanted[j]) w = 3.0 * random();
+      }
+      approach(kMost, kChange, 3, wanted, values);
+      for (int j = 0; j < 3; ++j) {
+        for (std::size_t k = 0; k < kLaneWidth; ++k) {
+          ASSERT_EQ(values[j][k], approached(wanted[j][k], kMost[j], kChange[j], before[j][k]));
+        }
+      }
+    }
+  }
+}
+
 // Periods that wait and then advance together give the bits of one after the other, limits reached
 // or not, however many they are.
 TEST(VirtualEncoder, GivesTheSameBitsForPeriodsTogether) {

@@ -156,6 +156,7 @@ std::vector<ErrorCase> error_cases(Uniform& random) {
   // those of linear axes only: cubics, some turns too large for small ones, and all terms
   all.push_back({"linear axes, cubic", of_linear_axes(cubics(random, 1e-5))});
   all.push_back({"linear axes, large turns", of_linear_axes(cubics(random, 1.5e-4))});
+  all.push_back({"linear axes, larger turns", of_linear_axes(cubics(random, 4e-3))});
   all.push_back({"linear axes, mixed", of_linear_axes(mixed)});
   all.push_back({"linear axes, mixed and large turns", of_linear_axes(scaled(mixed, 60.0))});
   ErrorModel harmonics;  // more waves than a register holds
