@@ -250,44 +250,6 @@ class CaseFaults {
   std::vector<Found> found_;
 };
 
-// Less than this is not told of.
-constexpr double kTellTip = 0.1 * um;
-constexpr double kTellAxis = 1.0 * urad;
-
-// Largest values of a run and the lines of the program where they occur.
-struct LargestLeftover {
-  double tip = 0.0, axis = 0.0;  // m, rad
-  double line_of_tip = 0.0, line_of_axis = 0.0;
-};
-
-LargestLeftover largest_leftover(const strategies::Strategy& strategy, const Series& servo,
-                                 const MachineSettings& machine) {
-  constexpr std::size_t kPlaces = 2000;
-  const std::size_t line = servo.column("line").value(), rapid = servo.column("rapid").value();
-  const std::size_t stride = servo.rows() / kPlaces + 1;
-  LargestLeftover out;
-  for (std::size_t n = 0; n < servo.rows(); n += stride) {
-    if (servo.at(n, rapid) != 0.0) continue;
-    Joints Q = Joints::Zero();
-    for (const int j : machine.joints()) {
-      const bool linear = j < kLinearJoints;
-      const auto column =
-          servo.column(linear ? "ref_linear" : "ref_rotary", machine.chain.layout.letter_of(j));
-      Q[j] = servo.at(n, column.value()) * (linear ? mm : deg);
-    }
-    const auto left = strategy.uncorrectable(Q).value_or(strategies::Leftover{});
-    if (left.tip > out.tip) {
-      out.tip = left.tip;
-      out.line_of_tip = servo.at(n, line);
-    }
-    if (left.axis > out.axis) {
-      out.axis = left.axis;
-      out.line_of_axis = servo.at(n, line);
-    }
-  }
-  return out;
-}
-
 controllers::PathOptions path_options(const Scenario& scenario, const MachineSettings& machine) {
   controllers::PathOptions options;
   options.tolerance = machine.nc.path_tolerance;
@@ -361,21 +323,6 @@ class Preparation {
   }
 
   // Tells where a strategy that corrects tip and tool axis leaves much of them.
-  void note_uncorrected(const StrategySpec& spec, const strategies::Strategy& strategy,
-                        const InterpretedProgram& program, std::vector<std::string>& notes) const {
-    if (!strategy.displaces_rotary() || spec.sign != strategies::Sign::correct) return;
-    const strategies::Belief belief = {machine_.chain.layout, *model(spec.model),
-                                       program.first_tip};
-    const auto left = uncorrected(program.path, belief, strategies::iterations_of(spec.parameters),
-                                  std::sin(spec.parameters.number("singular_deg")));
-    if (!left) return;
-    notes.push_back(fmt::format(
-        "{}:{}: warning: strategy {} cannot correct all: it leaves {:.3g} um of the tip and {:.3g} "
-        "urad of the tool axis here, {:.2f} deg from a singular direction",
-        scenario_.program.file, left->line, spec.entry->name, left->tip / um, left->axis / urad,
-        left->singular_angle / deg));
-  }
-
   std::shared_ptr<const RewrittenProgram> rewritten(const SharedMoves& moves,
                                                     const SharedStrategy& strategy) const {
     MemoKey key;
@@ -464,13 +411,12 @@ struct PreparedCase::Parts {
   std::shared_ptr<const RewrittenProgram> rewritten;  // nullptr: the original program runs
   SharedMotion motion;
   SharedModel truth, imposed;
-  std::vector<std::string> remarks;  // what strategies cannot do
   const MachineSettings& machine() const { return scenario.machine_of(spec); }
   Joints machine_start;
 };
 
 PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, PreparationCache* cache)
-    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, {}, Joints::Zero()}) {
+    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, Joints::Zero()}) {
   PreparationCache own;
   const Preparation prepare(scenario, spec, cache != nullptr ? *cache : own);
   Parts& parts = *parts_;
@@ -485,7 +431,6 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   for (const StrategySpec& strategy : spec.strategies) {
     parts.strategies.push_back(prepare.strategy(strategy, parts.program->first_tip));
     refuse_unread_scale(strategy, *parts.strategies.back(), parts.machine(), spec.name);
-    prepare.note_uncorrected(strategy, *parts.strategies.back(), *parts.program, parts.remarks);
     if (!parts.strategies.back()->rewrites()) continue;
     refuse_tip_moves(strategy, *parts.strategies.back(), *parts.program, scenario.program.file,
                      spec.name);
@@ -544,7 +489,6 @@ CaseOutput PreparedCase::output(CaseResult result) const {
   for (const Fault& warning : p.program->warnings) {
     out.notes.push_back(fmt::format("{}: warning: {}", to_string(warning.place), warning.message));
   }
-  out.notes.insert(out.notes.end(), p.remarks.begin(), p.remarks.end());
   for (const auto& slowed : p.motion->slowed) {
     out.notes.push_back(fmt::format("{}:{}: warning: {}", p.scenario.program.file, slowed.line,
                                     to_string(slowed, p.machine().chain.layout)));
@@ -552,29 +496,29 @@ CaseOutput PreparedCase::output(CaseResult result) const {
   return out;
 }
 
-std::vector<std::string> PreparedCase::uncorrectable(const Series& servo) const {
+std::vector<std::string> PreparedCase::uncorrectable() const {
   const Parts& p = *parts_;
+  const plant::InverseKinematics inverse(p.machine().chain);
   std::vector<std::string> out;
   for (std::size_t k = 0; k < p.strategies.size(); ++k) {
-    if (!p.strategies[k]->uncorrectable(p.machine_start)) continue;
-    const LargestLeftover found = largest_leftover(*p.strategies[k], servo, p.machine());
-    const auto at_line = [&](double line) {
-      return fmt::format("{}:{:.0f}", p.scenario.program.file, line);
-    };
-    if (found.axis > kTellAxis) {
-      out.push_back(
-          fmt::format("{}: warning: case {}: strategy {} cannot correct {:.1f} urad of "
-                      "the tool axis here, the most of the run",
-                      at_line(found.line_of_axis), p.spec.name, p.spec.strategies[k].entry->name,
-                      found.axis / urad));
+    const strategies::Strategy& strategy = *p.strategies[k];
+    const auto found = uncorrected(p.program->path, strategy, inverse, p.program->first_tip);
+    if (!found) continue;
+    std::vector<std::string> left;
+    if (found->left.tip > kUncorrected.tip) {
+      left.push_back(fmt::format("{:.2f} um of the tip", found->left.tip / um));
     }
-    if (found.tip > kTellTip) {
-      out.push_back(
-          fmt::format("{}: warning: case {}: strategy {} cannot correct {:.2f} um of the "
-                      "tip here, the most of the run",
-                      at_line(found.line_of_tip), p.spec.name, p.spec.strategies[k].entry->name,
-                      found.tip / um));
+    if (found->left.axis > kUncorrected.axis) {
+      left.push_back(fmt::format("{:.1f} urad of the tool axis", found->left.axis / urad));
     }
+    const bool is_near =
+        strategy.displaces_rotary() && found->singular_angle < controllers::kNearSingular;
+    out.push_back(fmt::format(
+        "{}:{}: warning: case {}: strategy {} cannot correct {} here{}, the most of the program",
+        p.scenario.program.file, found->line, p.spec.name, p.spec.strategies[k].entry->name,
+        fmt::join(left, " and "),
+        is_near ? fmt::format(", {:.2f} deg from a singular direction", found->singular_angle / deg)
+                : ""));
   }
   return out;
 }
@@ -582,7 +526,7 @@ std::vector<std::string> PreparedCase::uncorrectable(const Series& servo) const 
 CaseOutput PreparedCase::run(const StopFlag& stop, std::atomic<float>& progress) const {
   CaseInputs given = inputs();
   CaseOutput out = output(simulate(given, stop, progress));
-  for (std::string& note : uncorrectable(out.result.servo)) out.notes.push_back(std::move(note));
+  for (std::string& note : uncorrectable()) out.notes.push_back(std::move(note));
   progress = 1.0F;
   return out;
 }

@@ -56,9 +56,8 @@ class PreparedCase {
   /// What there is to say about a run of `inputs()`.
   CaseOutput output(CaseResult result) const;
 
-  /// What strategies of this case cannot correct, one line for each, from places spread over the
-  /// feed motion of a run.
-  std::vector<std::string> uncorrectable(const Series& servo) const;
+  /// What strategies of this case cannot correct, one line for each (sim/uncorrected.h).
+  std::vector<std::string> uncorrectable() const;
 
   /// output(simulate(inputs())), and what is uncorrectable among its notes
   CaseOutput run(const StopFlag& stop, std::atomic<float>& progress) const;

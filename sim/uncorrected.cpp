@@ -3,52 +3,61 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plant/kinematics/inverse.h"
 #include "plant/vocabulary/units.h"
-#include "strategies/pose_compensation.h"
 
 namespace servomill::sim {
 namespace {
 
-constexpr double kStep = 1.0 * deg;   // of the rotary axis that turns most
-constexpr double kMostLooks = 360.0;  // of a line
+constexpr double kWay = 5.0 * mm, kTurn = 1.0 * deg;  // between two looks, about
+constexpr double kMostOnALine = 360.0;
+constexpr std::size_t kMost = 4000;  // in all: they shall take no time beside the run
 
-int looks_of(const ProgramPath::Piece& piece) {
+std::size_t looks_of(const ProgramPath::Piece& piece) {
+  if (piece.rapid) return 0;
   const double turn = (piece.end - piece.begin).tail<3>().cwiseAbs().maxCoeff();
-  return static_cast<int>(std::clamp(std::ceil(turn / kStep), 1.0, kMostLooks));
+  const double looks = std::max((piece.s_end - piece.s_begin) / kWay, turn / kTurn);
+  return static_cast<std::size_t>(std::clamp(std::ceil(looks), 1.0, kMostOnALine));
 }
 
-bool is_worse(const Uncorrected& a, const Uncorrected& b) {
-  const bool by_axis = std::max(a.axis, b.axis) > kUncorrectedAxis;
+bool is_worse(const strategies::Leftover& a, const strategies::Leftover& b) {
+  const bool by_axis = std::max(a.axis, b.axis) > kUncorrected.axis;
   return by_axis ? a.axis > b.axis : a.tip > b.tip;
 }
 
 }  // namespace
 
-std::optional<Uncorrected> uncorrected(const ProgramPath& path, const strategies::Belief& belief,
-                                       strategies::Iterations iterations, double sigma_0) {
-  const strategies::PoseCompensation compensation(belief, iterations, sigma_0);
-  const plant::InverseKinematics inverse(belief.model.chain());
+std::optional<Uncorrected> uncorrected(const ProgramPath& path,
+                                       const strategies::Strategy& strategy,
+                                       const plant::InverseKinematics& inverse,
+                                       const Eigen::Vector3d& p_ST) {
+  const JointLayout& layout = inverse.chain().layout;
+  std::size_t total = 0;
+  for (std::size_t n = 0; n < path.size(); ++n) total += looks_of(path.piece(n));
+  const std::size_t stride = total / kMost + 1;
   Uncorrected worst;
+  Joints worst_at = Joints::Zero();
+  std::size_t look = 0;
   for (std::size_t n = 0; n < path.size(); ++n) {
     const ProgramPath::Piece& piece = path.piece(n);
-    if (piece.rapid) continue;
-
-    const int looks = looks_of(piece);
-    for (int i = 1; i <= looks; ++i) {
-      const double share = static_cast<double>(i) / looks;
+    const std::size_t looks = looks_of(piece);
+    for (std::size_t i = 1; i <= looks; ++i) {
+      if (look++ % stride != 0) continue;
+      const double share = static_cast<double>(i) / static_cast<double>(looks);
       const AxisWords near = piece.begin + share * (piece.end - piece.begin);
-      const Joints Q = path.joints(n, piece.s_begin + share * (piece.s_end - piece.s_begin),
-                                   belief.layout, belief.layout.joints(near));
-      const auto left =
-          compensation.leftover(Q, compensation.of_set_point(strategies::Sign::correct, Q));
-      const Uncorrected here = {
-          piece.line, left.tip, left.axis,
-          inverse.distance_from_singular(plant::forward(inverse.chain(), Q, belief.p_ST).k_W)};
-      if (is_worse(here, worst)) worst = here;
+      const Joints Q = path.joints(n, piece.s_begin + share * (piece.s_end - piece.s_begin), layout,
+                                   layout.joints(near));
+      const auto left = strategy.uncorrectable(Q);
+      if (!left) return std::nullopt;
+      if (!is_worse(*left, worst.left)) continue;
+      worst = {piece.line, *left, 0.0};
+      worst_at = Q;
     }
   }
-  if (worst.tip <= kUncorrectedTip && worst.axis <= kUncorrectedAxis) return std::nullopt;
+  if (worst.left.tip <= kUncorrected.tip && worst.left.axis <= kUncorrected.axis) {
+    return std::nullopt;
+  }
+  worst.singular_angle =
+      inverse.distance_from_singular(plant::forward(inverse.chain(), worst_at, p_ST).k_W);
   return worst;
 }
 

@@ -1,29 +1,32 @@
-/// What a strategy that corrects tip and tool axis cannot correct, looked for before anything runs.
+/// What a strategy cannot correct, looked for along the program.
 #pragma once
 
 #include <optional>
 
+#include "plant/kinematics/inverse.h"
 #include "sim/program_path.h"
-#include "strategies/compensation.h"
+#include "strategies/strategy.h"
 
 namespace servomill::sim {
 
 struct Uncorrected {
   int line = 0;
-  double tip = 0.0;             // m, largest believed deviation that is left on that line
-  double axis = 0.0;            // rad
+  strategies::Leftover left;
   double singular_angle = 0.0;  // rad, of the tool axis from a singular direction there
 };
 
 /// Of this and less nothing is said.
-inline constexpr double kUncorrectedTip = 0.1e-6;  // m
-inline constexpr double kUncorrectedAxis = 1e-6;   // rad
+inline constexpr strategies::Leftover kUncorrected = {.tip = 0.1e-6, .axis = 1e-6};  // m, rad
 
 /// The place of the feed motion where most is left of the tool axis or, where of none much is left,
-/// of the tip: at the ends of lines, and each degree that a rotary axis turns on them.
-/// @param sigma_0  sine of `singular_deg` (strategies/pose_compensation.h)
-/// @return nothing if all is corrected
-std::optional<Uncorrected> uncorrected(const ProgramPath& path, const strategies::Belief& belief,
-                                       strategies::Iterations iterations, double sigma_0);
+/// of the tip: among the ends of lines, places every 5 mm and every degree that a rotary axis turns
+/// on them, or some thousand of these places.
+/// @param inverse  of the ideal machine
+/// @param p_ST     of the tool with which the model is believed (3; m)
+/// @return nothing if the strategy corrects nothing, or all
+std::optional<Uncorrected> uncorrected(const ProgramPath& path,
+                                       const strategies::Strategy& strategy,
+                                       const plant::InverseKinematics& inverse,
+                                       const Eigen::Vector3d& p_ST);
 
 }  // namespace servomill::sim

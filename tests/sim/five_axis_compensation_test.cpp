@@ -123,10 +123,11 @@ TEST(FiveAxes, ReportWhatASingularDirectionLeaves) {
   EXPECT_LT(left.tip, 1e-4);
   EXPECT_GT(left.axis, 1.0);
   EXPECT_LT(left.axis, without.axis);
-  // said before the run, at the believed worst place
+  // told at the believed worst place
   const CaseOutput out = run_case(scenario, "feedback");
   ASSERT_EQ(out.notes.size(), 1U);
-  EXPECT_NE(out.notes.front().find("small.ngc:5: warning: strategy feedback cannot correct all"),
+  EXPECT_NE(out.notes.front().find("small.ngc:5: warning: case feedback: strategy feedback cannot "
+                                   "correct "),
             std::string::npos)
       << out.notes.front();
   testing::Test::RecordProperty("note", out.notes.front());
