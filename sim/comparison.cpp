@@ -13,6 +13,7 @@
 
 #include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
+#include "sim/ball_quantities.h"
 #include "sim/case_samples.h"
 #include "sim/circular_quantities.h"
 #include "sim/scenario.h"
@@ -24,7 +25,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUmPerMm = 1000.0;
 constexpr double kMsPerS = 1000.0;
 
-constexpr std::array<QuantityInfo, 21> kQuantities = {{
+constexpr std::array<QuantityInfo, 26> kQuantities = {{
     {"imposed_curve_residual", "um",
      "trajectory (scale) minus that of the base case minus the imposed displacement, at equal s",
      true, "XYZ", true, true, true},
@@ -79,6 +80,18 @@ constexpr std::array<QuantityInfo, 21> kQuantities = {{
     {"circle_squareness", "urad",
      "(D45 - D135) / (2 R) of a circle, mean of both directions; positive: less than 90 deg", false,
      "", false, false, false, 2},
+    {"radial_ball_deviation", "um",
+     "R-test: a ball in the spindle relative to the table, away from the rotary axis that turns",
+     false, "", true, false, false, 0, true},
+    {"axial_ball_deviation", "um", "R-test: the same along that axis", false, "", true, false,
+     false, 0, true},
+    {"tangential_ball_deviation", "um", "R-test: the same in the sense in which the axis counts",
+     false, "", true, false, false, 0, true},
+    {"ball_bar_deviation", "um",
+     "ISO 10791-6 BK4: length of a ball bar between bar_centre_mm and the tip, minus its nominal",
+     false, "", true, false, false, 0, true},
+    {"location_error", "um", "identified by a nest of sensors (or bar_centre_mm); angles in urad",
+     false, "", false, false, false, 0, true},
 }};
 
 // Reads a column of another case at a given arc length; s is asked for in rising order.
@@ -205,18 +218,25 @@ double response_time(const CaseData& one, char axis, const std::vector<std::size
 
 // A case with what several quantities look at.
 struct Compared {
-  explicit Compared(const CaseData& data_in) : data(data_in), samples(data_in), circles(samples) {}
+  explicit Compared(const CaseData& data_in)
+      : data(data_in), samples(data_in), circles(samples), ball(samples) {}
   const CaseData& data;
   CaseSamples samples;
   CircularQuantities circles;
+  BallQuantities ball;
 };
 
-double evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* base) {
+double evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* base,
+                std::string& note) {
   const CaseData& one = compared.data;
   if (spec.name == "cycle_time") return one.duration;
   if (spec.name == "blocks") return one.blocks;
   if (!one.finished || (base != nullptr && !base->finished)) return kNone;
   if (quantity_info(spec.name).circles > 0) return compared.circles.value(spec);
+  if (spec.name == "location_error") return compared.ball.location(spec, note);
+  if (quantity_info(spec.name).is_of_ball) {
+    return statistic_of(spec.statistic, compared.ball.deviations(spec, note));
+  }
   const std::vector<std::size_t>& rows = compared.samples.rows(spec.sections);
   if (spec.name == "following_error") {
     return statistic_of(spec.statistic, column_of(one, "following_error_linear", spec.axis, rows));
@@ -300,10 +320,15 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
       row.statistic = spec.statistic;
       row.sections = fmt::format("{}", fmt::join(spec.sections, ", "));
       row.unit = quantity_info(spec.name).unit;
+      if (spec.ball && spec.ball->error) {
+        row.axis = plant::to_string(*spec.ball->error);
+        row.unit = unit_of_location(*spec.ball->error);
+      }
       row.reference = spec.reference;
       row.kind = spec.kind;
       const bool missing = one == nullptr || (!spec.base.empty() && base == nullptr);
-      row.value = missing ? kNone : evaluate(spec, *one, base != nullptr ? &base->data : nullptr);
+      row.value =
+          missing ? kNone : evaluate(spec, *one, base != nullptr ? &base->data : nullptr, row.note);
       rows.push_back(std::move(row));
     }
   }
@@ -311,15 +336,17 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
 }
 
 std::string format_table(std::span<const ComparisonRow> rows) {
-  using Line = std::array<std::string, 8>;
-  std::vector<Line> lines = {
-      {"quantity", "axis", "statistic", "section", "case", "value", "paper", "kind"}};
+  using Line = std::array<std::string, 9>;
+  const bool has_notes =
+      std::any_of(rows.begin(), rows.end(), [](const auto& row) { return !row.note.empty(); });
+  std::vector<Line> lines = {{"quantity", "axis", "statistic", "section", "case", "value", "paper",
+                              "kind", has_notes ? "note" : ""}};
   for (const ComparisonRow& row : rows) {
     lines.push_back({row.quantity, row.axis, row.statistic, row.sections, row.case_name,
                      number(row.value) + " " + (row.unit == "1" ? "" : row.unit), row.reference,
-                     row.kind});
+                     row.kind, row.note});
   }
-  std::array<std::size_t, 8> width{};
+  std::array<std::size_t, 9> width{};
   for (const Line& line : lines) {
     for (std::size_t i = 0; i < line.size(); ++i) width[i] = std::max(width[i], line[i].size());
   }
@@ -358,13 +385,15 @@ std::string json_escaped(std::string_view text) {
 }
 
 std::string to_json(const ComparisonRow& row) {
+  const std::string note =
+      row.note.empty() ? "" : fmt::format(R"(, "note": "{}")", json_escaped(row.note));
   return fmt::format(
       R"({{"case": {}, "quantity": {}, "axis": {}, "statistic": {}, "sections": {}, "value": {}, )"
-      R"("unit": {}, "reference": {}, "kind": {}}})",
+      R"("unit": {}, "reference": {}, "kind": {}{}}})",
       json_text(row.case_name), json_text(row.quantity), json_text(row.axis),
       json_text(row.statistic), json_text(row.sections),
       std::isfinite(row.value) ? fmt::format("{:.9g}", row.value) : "null", json_text(row.unit),
-      json_text(row.reference), json_text(row.kind));
+      json_text(row.reference), json_text(row.kind), note);
 }
 
 }  // namespace servomill::sim

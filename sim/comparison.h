@@ -23,6 +23,7 @@ struct QuantityInfo {
   bool needs_base = false;     // another case to compare with
   bool needs_imposed = false;  // the scenario's imposed error model
   int circles = 0;             // sections evaluated together, each one turn of a circle; 0: any
+  bool is_of_ball = false;     // in the spindle, seen by sensors on the table: ball_quantities.h
 };
 
 std::span<const QuantityInfo> quantities();
@@ -43,7 +44,8 @@ struct CaseData {
 struct ComparisonRow {
   std::string case_name, quantity, axis, statistic, unit, reference, kind;
   std::string sections;
-  double value = 0.0;  // NaN where the case stopped or the samples are missing
+  double value = 0.0;     // NaN where the case stopped or the samples are missing
+  std::string note = {};  // why there is no value, where that is known
 };
 
 /// Evaluates all quantities, in the order of the scenario. Cases are compared at equal arc length
@@ -58,7 +60,7 @@ std::string format_table(std::span<const ComparisonRow> rows);
 std::string json_escaped(std::string_view text);
 
 /// One JSON object with the keys case, quantity, axis, statistic, sections, value, unit, reference,
-/// kind; null where there is none.
+/// kind, null where there is none; and note where there is one.
 std::string to_json(const ComparisonRow& row);
 
 }  // namespace servomill::sim

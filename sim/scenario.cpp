@@ -7,6 +7,7 @@
 #include <set>
 
 #include "plant/vocabulary/units.h"
+#include "sim/ball_quantities.h"
 #include "sim/comparison.h"
 #include "sim/config/reader.h"
 #include "sim/read_errors.h"
@@ -518,11 +519,55 @@ class ScenarioReader {
     spec.sections = info.circles > 0 ? table.texts("sections") : table.texts_or("sections", {});
     spec.sections_place = table.place("sections");
     spec.reference = table.text_or("reference", "");
+    if (info.is_of_ball) spec.ball = read_ball(table, spec.name);
     if (table.has("kind")) spec.kind = kKinds[table.choice("kind", kKinds)];
     if (info.circles > 0) {
       add_circles(table, spec, static_cast<std::size_t>(info.circles));
+    } else if (spec.name == "location_error" && !table.has("error")) {
+      add_location_errors(spec);
     } else {
       out_.quantities.push_back(std::move(spec));
+    }
+  }
+
+  BallSpec read_ball(Reader& table, const std::string& quantity) {
+    BallSpec ball;
+    ball.chain = out_.machine.chain;
+    const bool is_bar = quantity == "ball_bar_deviation";
+    if (is_bar || (quantity == "location_error" && table.has("bar_centre_mm"))) {
+      const std::vector<double> centre = table.reals("bar_centre_mm", kLength);
+      if (centre.size() == 3) {
+        ball.bar_centre = Eigen::Vector3d(centre.data());
+      } else if (table.has("bar_centre_mm")) {
+        table.fault("bar_centre_mm", "must be [x, y, z]");
+      }
+    }
+    if (quantity != "location_error") return ball;
+    ball.tip_is_known = table.boolean_or("tip_is_known", false);
+    if (table.has("error")) {
+      const std::string name = table.text("error");
+      try {
+        ball.error = plant::parse_error_name(name, out_.machine.chain.layout, {});
+        if (!ball.error->is_location) table.fault("error", "must be a location error, like EX0C");
+      } catch (const InputError& error) {
+        table.fault("error", error.faults().front().message);
+      }
+    }
+    return ball;
+  }
+
+  // Every location error of the machine, and what it truly is where nothing else is given.
+  void add_location_errors(const QuantitySpec& all) {
+    const auto truth = out_.errors.find(out_.truth);
+    for (const plant::ErrorName& name : location_errors(out_.machine.chain)) {
+      QuantitySpec one = all;
+      one.ball->error = name;
+      if (one.reference.empty() && truth != out_.errors.end()) {
+        const double unit = is_linear(name.direction) ? um : urad;
+        one.reference =
+            fmt::format("{:g} {}", truth->second.location(name) / unit, unit_of_location(name));
+      }
+      out_.quantities.push_back(std::move(one));
     }
   }
 

@@ -51,6 +51,15 @@ struct CaseSpec {
   bool has_feedback() const;  ///< among its strategies
 };
 
+/// What a quantity asks of a ball in the spindle and sensors on the table.
+struct BallSpec {
+  plant::MachineChain chain;                   // as the scenario believes it to be
+  std::optional<Eigen::Vector3d> bar_centre;   // m, in the workpiece: a ball bar; else a nest of
+                                               // three sensors around the ball
+  bool tip_is_known = false;                   // the ball lies where the program has the tip
+  std::optional<plant::ErrorName> error = {};  // location_error: which
+};
+
 /// One line of the comparison, for one or several cases.
 struct QuantitySpec {
   std::string name;       // one of quantity_names()
@@ -62,6 +71,7 @@ struct QuantitySpec {
   Place sections_place;
   std::string reference;  // the paper's number with unit, or empty
   std::string kind;       // identified, predicted, chosen, bound or empty
+  std::optional<BallSpec> ball = {};
 };
 
 /// What becomes of recorded signals.

@@ -98,6 +98,7 @@ void write_row(Hdf5Group& group, const ComparisonRow& row) {
   group.attribute("sections", row.sections);
   group.attribute("reference", row.reference);
   group.attribute("kind", row.kind);
+  if (!row.note.empty()) group.attribute("note", row.note);
 }
 
 // Columns of one group read back in the order in which they were written.
