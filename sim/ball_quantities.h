@@ -2,14 +2,13 @@
 /// its recorded path: R-test and ball bar (ISO 10791-6).
 #pragma once
 
-#include <Eigen/Core>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "sim/case_samples.h"
-#include "sim/metrology/location_errors.h"
+#include "sim/metrology/ball_test.h"
 
 namespace servomill::sim {
 
@@ -22,27 +21,24 @@ class BallQuantities {
   /// @param samples  must outlive this
   explicit BallQuantities(CaseSamples& samples) : samples_(samples) {}
 
-  /// What the sensor says at every sample, um; none, and why in `note`, where the sections are no
-  /// such test.
+  /// What the sensor reads, in um.
   /// @pre quantity_info(spec.name).is_of_ball with a statistic; the case has a recording
-  std::vector<double> deviations(const QuantitySpec& spec, std::string& note);
+  BallDeviation deviation(const QuantitySpec& spec);
 
-  /// Of location_error, in unit_of_location; NaN, and why in `note`, where the sections do not
-  /// tell.
-  double location(const QuantitySpec& spec, std::string& note);
+  /// Of location_error, in unit_of_location; or NaN and why the sections do not tell.
+  struct Location {
+    double value;
+    std::string why_not;
+  };
+  Location location(const QuantitySpec& spec);
 
  private:
-  // The samples of some sections.
-  struct Path {
-    std::vector<Joints> Q;                         // of the NC
-    std::vector<Eigen::Vector3d> nominal, actual;  // m, tip in the workpiece
-  };
   struct Identified {
     LocationFit fit;
     std::string why_not;
   };
 
-  Path path_of(const std::vector<std::string>& sections, const BallSpec& ball);
+  TipPath path_of(const std::vector<std::string>& sections);
   Identified identify(const QuantitySpec& spec);
 
   CaseSamples& samples_;

@@ -226,17 +226,12 @@ struct Compared {
   BallQuantities ball;
 };
 
-double evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* base,
-                std::string& note) {
+double evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* base) {
   const CaseData& one = compared.data;
   if (spec.name == "cycle_time") return one.duration;
   if (spec.name == "blocks") return one.blocks;
   if (!one.finished || (base != nullptr && !base->finished)) return kNone;
   if (quantity_info(spec.name).circles > 0) return compared.circles.value(spec);
-  if (spec.name == "location_error") return compared.ball.location(spec, note);
-  if (quantity_info(spec.name).is_of_ball) {
-    return statistic_of(spec.statistic, compared.ball.deviations(spec, note));
-  }
   const std::vector<std::size_t>& rows = compared.samples.rows(spec.sections);
   if (spec.name == "following_error") {
     return statistic_of(spec.statistic, column_of(one, "following_error_linear", spec.axis, rows));
@@ -267,6 +262,22 @@ double evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* ba
   if (spec.name == "response_time") return response_time(one, spec.axis, rows, difference);
   assert(spec.name == "brought_out");
   return 100.0 * (1.0 - statistic_of("max", difference) / statistic_of("max", imposed));
+}
+
+// A value, or why there is none.
+struct Noted {
+  double value = kNone;
+  std::string note = {};
+};
+
+Noted evaluate_ball(const QuantitySpec& spec, Compared& compared) {
+  if (!compared.data.finished) return {};
+  if (spec.name == "location_error") {
+    const auto [value, why_not] = compared.ball.location(spec);
+    return {value, why_not};
+  }
+  const BallDeviation found = compared.ball.deviation(spec);
+  return {statistic_of(spec.statistic, found.d), found.why_not};
 }
 
 Compared* find(std::deque<Compared>& cases, std::string_view name) {
@@ -327,8 +338,13 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
       row.reference = spec.reference;
       row.kind = spec.kind;
       const bool missing = one == nullptr || (!spec.base.empty() && base == nullptr);
-      row.value =
-          missing ? kNone : evaluate(spec, *one, base != nullptr ? &base->data : nullptr, row.note);
+      const Noted found =
+          missing ? Noted{}
+          : quantity_info(spec.name).is_of_ball
+              ? evaluate_ball(spec, *one)
+              : Noted{evaluate(spec, *one, base != nullptr ? &base->data : nullptr)};
+      row.value = found.value;
+      row.note = found.note;
       rows.push_back(std::move(row));
     }
   }

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "plant/kinematics/chain.h"
 #include "sim/series.h"
 
 namespace servomill::sim {
@@ -38,6 +39,7 @@ struct CaseData {
   double duration = 0.0;              // s, of the program that the NC ran
   double blocks = 0.0;                // motion blocks of that program
   bool finished = true;
+  plant::MachineChain chain = {};  // the ideal machine
 };
 
 /// One line of the printed comparison.

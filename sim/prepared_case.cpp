@@ -486,6 +486,7 @@ CaseOutput PreparedCase::output(CaseResult result) const {
   out.duration = p.motion->trajectory.duration();
   out.blocks = p.motion->blocks;
   out.sections = sections();
+  out.chain = p.machine().chain;
   for (const Fault& warning : p.program->warnings) {
     out.notes.push_back(fmt::format("{}: warning: {}", to_string(warning.place), warning.message));
   }
@@ -586,7 +587,7 @@ std::vector<Fault> PreparedCase::circular_faults(PreparationCache* cache) const 
 }
 
 CaseData CaseOutput::data() const {
-  return {name, &result.servo, sections, duration, blocks, result.outcome.finished};
+  return {name, &result.servo, sections, duration, blocks, result.outcome.finished, chain};
 }
 
 std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(

@@ -25,6 +25,7 @@ struct CaseOutput {
   double blocks = 0.0;
   std::vector<std::string> notes;  // what the NC put right or could not do as programmed
   std::vector<std::string> sections;
+  plant::MachineChain chain;  // the ideal machine
   CaseData data() const;
 };
 

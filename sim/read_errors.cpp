@@ -14,6 +14,8 @@ namespace {
 using plant::ErrorFunction;
 using plant::ErrorName;
 
+constexpr std::string_view kDiffersFrom = "differs_from";
+
 // Units of one error: of its value (um or urad) and of its axis' coordinate (mm or deg).
 struct Units {
   bool value_is_length, travel_is_length;
@@ -110,6 +112,25 @@ double read_location(Reader& model, std::string_view key, const ErrorName& name)
   return table.real(units.value("constant"), units.value_quantity());
 }
 
+// Name of the model that this one differs from; empty: from none.
+std::string read_base(Reader& model, const std::string& name, Reader& models) {
+  if (!model.has(kDiffersFrom)) return "";
+  const std::string base = model.text(kDiffersFrom);
+  if (!model.is(kDiffersFrom, Value::Type::text)) return "";
+  const std::vector<std::string> names = models.keys();
+  if (base == name || std::find(names.begin(), names.end(), base) == names.end()) {
+    const std::vector<std::string_view> others(names.begin(), names.end());
+    model.fault(kDiffersFrom, "must be the name of another error model" +
+                                  (base == name ? "" : did_you_mean(base, others)));
+    return "";
+  }
+  if (models.table(base).has(kDiffersFrom)) {
+    model.fault(kDiffersFrom, "must name a model that differs from no other itself");
+    return "";
+  }
+  return base;
+}
+
 }  // namespace
 
 plant::ErrorFunction read_length_function(Reader& table) {
@@ -121,6 +142,7 @@ plant::ErrorModel read_errors(Reader& model, const JointLayout& layout) {
   std::map<std::string, std::string> aliases;
   std::set<std::string> known;
   for (const std::string& key : model.keys()) {
+    if (key == kDiffersFrom) continue;
     std::optional<ErrorName> name;
     try {
       name = plant::parse_error_name(key, layout, {});
@@ -161,16 +183,27 @@ plant::ErrorModel read_errors(Reader& model, const JointLayout& layout) {
   return errors;
 }
 
+std::map<std::string, plant::ErrorModel> read_error_models(Reader& models,
+                                                           const JointLayout& layout) {
+  std::map<std::string, plant::ErrorModel> out;
+  std::map<std::string, std::string> base_of;
+  for (const std::string& name : models.keys()) {
+    Reader model = models.table(name);
+    base_of[name] = read_base(model, name, models);
+    out[name] = read_errors(model, layout);
+  }
+  for (const auto& [name, base] : base_of) {
+    if (!base.empty()) out[name] = out[base] + out[name];
+  }
+  return out;
+}
+
 std::map<std::string, plant::ErrorModel> read_error_file(const std::string& path,
                                                          const JointLayout& layout) {
   const Document document = Document::from_file(path);
   Reader root(document);
   Reader models = root.table("errors");
-  std::map<std::string, plant::ErrorModel> out;
-  for (const std::string& name : models.keys()) {
-    Reader model = models.table(name);
-    out[name] = read_errors(model, layout);
-  }
+  auto out = read_error_models(models, layout);
   root.finish();
   return out;
 }

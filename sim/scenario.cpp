@@ -10,6 +10,7 @@
 #include "sim/ball_quantities.h"
 #include "sim/comparison.h"
 #include "sim/config/reader.h"
+#include "sim/read_ball.h"
 #include "sim/read_errors.h"
 #include "sim/read_machine.h"
 #include "sim/scenario_document.h"
@@ -205,14 +206,11 @@ class ScenarioReader {
     std::vector<std::string>& names = error_models_;
     if (root.has("errors")) {
       Reader models = root.table("errors");
-      for (const std::string& name : models.keys()) {
-        names.push_back(name);
-        if (out_.machine.chain.layout == JointLayout{}) {  // its errors have no axes
-          models.raw(name);
-          continue;
-        }
-        Reader model = models.table(name);
-        out_.errors[name] = read_errors(model, out_.machine.chain.layout);
+      names = models.keys();
+      if (out_.machine.chain.layout != JointLayout{}) {
+        out_.errors = sim::read_error_models(models, out_.machine.chain.layout);
+      } else {  // their errors have no axes
+        for (const std::string& name : names) models.raw(name);
       }
     }
     for (auto [key, to] : {std::pair{"truth", &out_.truth}, std::pair{"imposed", &out_.imposed}}) {
@@ -516,56 +514,48 @@ class ScenarioReader {
     if (info.needs_imposed && out_.imposed.empty()) {
       table.fault("name", "needs the key 'imposed' of the scenario");
     }
-    spec.sections = info.circles > 0 ? table.texts("sections") : table.texts_or("sections", {});
-    spec.sections_place = table.place("sections");
+    if (info.is_of_ball) {
+      read_ball(table, out_.machine.chain.layout, spec);
+    } else {
+      spec.sections = info.circles > 0 ? table.texts("sections") : table.texts_or("sections", {});
+      spec.sections_place = table.place("sections");
+    }
     spec.reference = table.text_or("reference", "");
-    if (info.is_of_ball) spec.ball = read_ball(table, spec.name);
     if (table.has("kind")) spec.kind = kKinds[table.choice("kind", kKinds)];
     if (info.circles > 0) {
       add_circles(table, spec, static_cast<std::size_t>(info.circles));
-    } else if (spec.name == "location_error" && !table.has("error")) {
+    } else if (spec.name == "ball_bar_deviation") {
+      add_bars(spec);
+    } else if (spec.name == "location_error") {
       add_location_errors(spec);
     } else {
       out_.quantities.push_back(std::move(spec));
     }
   }
 
-  BallSpec read_ball(Reader& table, const std::string& quantity) {
-    BallSpec ball;
-    ball.chain = out_.machine.chain;
-    const bool is_bar = quantity == "ball_bar_deviation";
-    if (is_bar || (quantity == "location_error" && table.has("bar_centre_mm"))) {
-      const std::vector<double> centre = table.reals("bar_centre_mm", kLength);
-      if (centre.size() == 3) {
-        ball.bar_centre = Eigen::Vector3d(centre.data());
-      } else if (table.has("bar_centre_mm")) {
-        table.fault("bar_centre_mm", "must be [x, y, z]");
-      }
+  // Ball bars are evaluated one by one.
+  void add_bars(const QuantitySpec& all) {
+    for (std::size_t i = 0; i < all.ball->bar_centres.size(); ++i) {
+      QuantitySpec one = all;
+      one.sections = {all.sections[i]};
+      one.ball->bar_centres = {all.ball->bar_centres[i]};
+      out_.quantities.push_back(std::move(one));
     }
-    if (quantity != "location_error") return ball;
-    ball.tip_is_known = table.boolean_or("tip_is_known", false);
-    if (table.has("error")) {
-      const std::string name = table.text("error");
-      try {
-        ball.error = plant::parse_error_name(name, out_.machine.chain.layout, {});
-        if (!ball.error->is_location) table.fault("error", "must be a location error, like EX0C");
-      } catch (const InputError& error) {
-        table.fault("error", error.faults().front().message);
-      }
-    }
-    return ball;
   }
 
-  // Every location error of the machine, and what it truly is where nothing else is given.
+  // The one asked for or every location error of the machine, and what it truly is where no other
+  // reference is given.
   void add_location_errors(const QuantitySpec& all) {
     const auto truth = out_.errors.find(out_.truth);
-    for (const plant::ErrorName& name : location_errors(out_.machine.chain)) {
+    std::vector<plant::ErrorName> names = location_errors(out_.machine.chain);
+    if (all.ball->error) names = {*all.ball->error};
+    for (const plant::ErrorName& name : names) {
       QuantitySpec one = all;
       one.ball->error = name;
       if (one.reference.empty() && truth != out_.errors.end()) {
         const double unit = is_linear(name.direction) ? um : urad;
-        one.reference =
-            fmt::format("{:g} {}", truth->second.location(name) / unit, unit_of_location(name));
+        one.reference = fmt::format("{:g} {} true", truth->second.location(name) / unit,
+                                    unit_of_location(name));
       }
       out_.quantities.push_back(std::move(one));
     }

@@ -53,9 +53,8 @@ struct CaseSpec {
 
 /// What a quantity asks of a ball in the spindle and sensors on the table.
 struct BallSpec {
-  plant::MachineChain chain;                   // as the scenario believes it to be
-  std::optional<Eigen::Vector3d> bar_centre;   // m, in the workpiece: a ball bar; else a nest of
-                                               // three sensors around the ball
+  std::vector<Eigen::Vector3d> bar_centres;    // m, in the workpiece: of a ball bar, for each of
+                                               // the sections; none: a nest of three sensors
   bool tip_is_known = false;                   // the ball lies where the program has the tip
   std::optional<plant::ErrorName> error = {};  // location_error: which
 };

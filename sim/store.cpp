@@ -146,6 +146,12 @@ void check_signals(const InputFile& file, const std::string& group, const Series
   }
 }
 
+// Of the ideal machine of a case.
+plant::MachineChain chain_of(const Scenario& scenario, const std::string& name) {
+  const CaseSpec* one = scenario.find_case(name);
+  return (one != nullptr ? scenario.machine_of(*one) : scenario.machine).chain;
+}
+
 void check_schema(const InputFile& file, const std::string& path, const std::string& kind) {
   if (!file.has_attribute("/", "schema_version")) {
     throw InputError({path}, "is not a result file of servomill");
@@ -252,8 +258,9 @@ StoredRun read_run(const std::string& path) {
   StoredRun run;
   run.scenario_name = file.text("/", "scenario");
   run.title = file.text("/", "title");
-  run.quantities =
-      read_resolved_scenario(file.text("/inputs", "resolved"), path + ":/inputs").quantities;
+  const Scenario scenario =
+      read_resolved_scenario(file.text("/inputs", "resolved"), path + ":/inputs");
+  run.quantities = scenario.quantities;
   for (const std::string& name : file.groups("/cases")) {
     const std::string group = "/cases/" + name;
     // cut off while it was written: no complete case
@@ -262,7 +269,7 @@ StoredRun read_run(const std::string& path) {
     check_signals(file, group + "/servo", *run.series.back(), *run.series.front());
     run.cases.push_back({name, run.series.back().get(), split_lines(file.text(group, "sections")),
                          file.number(group, "duration_s"), file.number(group, "blocks"),
-                         file.number(group, "finished") != 0.0});
+                         file.number(group, "finished") != 0.0, chain_of(scenario, name)});
   }
   return run;
 }

@@ -34,16 +34,6 @@ int number_of_set_ups(const std::vector<SensorReading>& readings) {
   return most + 1;
 }
 
-// Orientation of the spindle seen from the workpiece.
-Eigen::Matrix3d R_WS(const plant::MachineChain& chain, const Joints& Q) {
-  const Vector3d origin = plant::forward(chain, Q, Vector3d::Zero()).p_WT;
-  Eigen::Matrix3d R;
-  for (int i = 0; i < 3; ++i) {
-    R.col(i) = plant::forward(chain, Q, Vector3d::Unit(i)).p_WT - origin;
-  }
-  return R;
-}
-
 Effects effects_of(const plant::MachineChain& chain, const std::vector<SensorReading>& readings,
                    const BallSetUp& set_up, const std::vector<ErrorName>& names) {
   std::vector<plant::VolumetricModel> single;
@@ -237,6 +227,15 @@ int LocationFit::number_identified() const {
   return static_cast<int>(
       std::count_if(errors.begin(), errors.end(),
                     [](const LocationEstimate& one) { return one.value.has_value(); }));
+}
+
+Eigen::Matrix3d R_WS(const plant::MachineChain& chain, const Joints& Q) {
+  const Vector3d origin = plant::forward(chain, Q, Vector3d::Zero()).p_WT;
+  Eigen::Matrix3d R;
+  for (int i = 0; i < 3; ++i) {
+    R.col(i) = plant::forward(chain, Q, Vector3d::Unit(i)).p_WT - origin;
+  }
+  return R;
 }
 
 std::vector<ErrorName> location_errors(const plant::MachineChain& chain) {

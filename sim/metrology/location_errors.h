@@ -30,6 +30,9 @@
 
 namespace servomill::sim {
 
+/// Orientation of the spindle seen from the workpiece (3x3), of the ideal machine.
+Eigen::Matrix3d R_WS(const plant::MachineChain& chain, const Joints& Q);
+
 /// One number of one sensor.
 struct SensorReading {
   Joints Q = Joints::Zero();                       // m, rad; of the ideal machine

@@ -21,7 +21,7 @@ import numpy as np
 from PIL import Image
 
 import plot as program
-from figures import circular, lag, nonlinear, notches, results, straightness, style, sweeps, volumetric
+from figures import balls, circular, lag, nonlinear, notches, results, straightness, style, sweeps, volumetric
 
 SERVOMILL = ""
 AGREE = 1e-7        # um; `compare` prints nine digits of up to 100 um
@@ -252,6 +252,8 @@ class Drawing(WithFiles):
             "figure12: not drawn, no error functions of Z",
             "figure14: not drawn, no case named generated",
             "figure15: not drawn, no case named generated",
+            "nest: not drawn, the scenario asks for no radial_ball_deviation",
+            "ball_bar: not drawn, the scenario asks for no ball_bar_deviation",
             *(f"li_{n}: not drawn, needs a case without strategy and one with the strategy exact"
               for n in ("3_2", "3_3", "4_1"))])
         self.assertEqual(sorted(done.stdout.split()), sorted(str(p) for p in self.out.iterdir()))
@@ -399,9 +401,29 @@ class Drawing(WithFiles):
         done = subprocess.run([PLOT, "--list"], capture_output=True, text=True)
         self.assertEqual([line.split()[0] for line in done.stdout.splitlines()],
                          ["figure6", "figure9", "figure10", "figure11", "figure12", "figure14",
-                          "figure15", "lag", "curves", "maps", "samples", "circular", "reversals", "li_3_2", "li_3_3", "li_4_1",
+                          "figure15", "lag", "curves", "maps", "samples", "circular", "reversals", "nest", "ball_bar",
+                          "li_3_2", "li_3_3", "li_4_1",
                           "five_axis", "deviations", "position", "velocity",
                           "compliance", "step"])
+
+
+class Balls(WithFiles):
+    """R-test and BK4."""
+
+    def test_draw_the_shipped_scenarios(self):
+        for name, figure in (("rtest", "nest"), ("bk4", "ball_bar")):
+            path = self.root / f"{name}.h5"
+            servomill("run", HERE.parents[1] / f"scenarios/iso/{name}.toml", "-o", path, "-q")
+            done = plot(path, "-o", self.out, "--figures", figure)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertGreater((self.out / f"{name}-{figure}.png").stat().st_size, SMALLEST_PNG)
+
+    def test_angle_goes_once_around_the_circle_from_zero(self):
+        turn = np.radians(np.arange(0.0, 361.0))
+        tilted = np.column_stack([0.8 * np.cos(turn), np.sin(turn), -0.6 * np.cos(turn)])
+        for sense in (1, -1):
+            angle = balls._around(tilted[::sense] + [5.0, 6.0, 7.0], [5.0, 6.0, 7.0])
+            np.testing.assert_allclose(angle, turn, atol=0.01)   # the mean of 361 points is off by one in 361
 
 
 class Mistakes(WithFiles):

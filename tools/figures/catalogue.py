@@ -2,7 +2,7 @@
 import dataclasses
 from typing import Callable
 
-from figures import (bode, circular, deviations, error_functions, five_axis, lag, nonlinear, notches, step, straightness,
+from figures import (balls, bode, circular, deviations, error_functions, five_axis, lag, nonlinear, notches, step, straightness,
                      sweeps, volumetric)
 
 
@@ -35,6 +35,8 @@ FIGURES = (
     Figure("samples", "sweep", "quantities over sampled parameters and how they are distributed", sweeps.draw_samples),
     Figure("circular", "run", "circular test: radial deviation as a ball bar shows it", circular.draw),
     Figure("reversals", "run", "circular test: where the axes reverse", circular.draw_reversals),
+    Figure("nest", "run", "R-test: way of the ball in its nest of sensors", balls.draw_nest),
+    Figure("ball_bar", "run", "BK4: length of a ball bar around a five-axis circle", balls.draw_bar),
     Figure("li_3_2", "run", "one segment: how the nonlinear error of rotary axes is distributed",
            nonlinear.draw_distribution),
     Figure("li_3_3", "run", "one segment: way in the machine, error before and after", nonlinear.draw_segment),

@@ -161,7 +161,8 @@ def bottom(colours):
     return -REACH - 1.0 - LINE * (len(colours) + 0.7)
 
 
-def _polar(ax, turns, colours, unit):
+def rings(ax, unit):
+    """Rings of a polar diagram, `unit` um apart, the middle one of which is the nominal circle; the scale."""
     around = np.radians(np.linspace(0.0, 360.0, 721))
     for ring in range(-2, 3):
         radius = CENTRE + ring
@@ -173,6 +174,19 @@ def _polar(ax, turns, colours, unit):
             ax.plot([side * (CENTRE - 2) * c, side * REACH * c],
                     [side * (CENTRE - 2) * s, side * REACH * s], color="#d5d5d5",
                     linewidth=0.7, zorder=1)
+    # the scale, in the middle where no curve is
+    ax.plot([-0.5, 0.5], [0.3, 0.3], color=style.BLACK, linewidth=2.2, solid_capstyle="butt")
+    for end in (-0.5, 0.5):
+        ax.plot([end, end], [0.12, 0.48], color=style.BLACK, linewidth=1.2)
+    ax.text(0.0, -0.05, f"{unit:g} µm", ha="center", va="top", fontsize=10.5,
+            fontweight="bold")
+    ax.set_xlim(-SIDE, SIDE)
+    ax.set_aspect("equal")
+    ax.axis("off")
+
+
+def _polar(ax, turns, colours, unit):
+    rings(ax, unit)
     for turn in turns:
         theta, radius = np.radians(turn.theta), CENTRE + turn.dr / unit
         keep = slice(None, None, max(1, len(theta) // 4000))
@@ -182,16 +196,7 @@ def _polar(ax, turns, colours, unit):
     plane = turns[0].plane
     ax.text(REACH + 0.15, 0.0, plane[0], ha="left", va="center", color=style.GREY)
     ax.text(0.0, REACH + 0.1, plane[1], ha="center", va="bottom", color=style.GREY)
-    # the scale, in the middle where no curve is
-    ax.plot([-0.5, 0.5], [0.3, 0.3], color=style.BLACK, linewidth=2.2, solid_capstyle="butt")
-    for end in (-0.5, 0.5):
-        ax.plot([end, end], [0.12, 0.48], color=style.BLACK, linewidth=1.2)
-    ax.text(0.0, -0.05, f"{unit:g} µm", ha="center", va="top", fontsize=10.5,
-            fontweight="bold")
-    ax.set_xlim(-SIDE, SIDE)
     ax.set_ylim(bottom(colours), top())
-    ax.set_aspect("equal")
-    ax.axis("off")
 
 
 def _table(ax, run, case, colours):

@@ -1,0 +1,58 @@
+/// Tests with a ball in the spindle (ISO 10791-6): what sensors on the table read while the machine
+/// holds the tip at one place of the table, or takes it around the centre of a ball bar.
+///
+///     radial      away from the rotary axis that turns      BK1, BK2, CK1, CK2 and the like,
+///     R-test tangential  in the sense in which that axis counts axial       along that axis bar
+///     along the line from the centre to the tip                     BK4 and the like
+///
+/// All tell of the true tip relative to the nominal one, in the workpiece; the nest of sensors
+/// turns with the table.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "plant/kinematics/chain.h"
+#include "sim/metrology/location_errors.h"
+
+namespace servomill::sim {
+
+/// The tip along some part of a program, sample by sample.
+struct TipPath {
+  std::vector<Joints> Q;                         // m, rad; of the ideal machine
+  std::vector<Eigen::Vector3d> nominal, actual;  // m, tip in the workpiece
+};
+
+enum class NestDirection : std::uint8_t { radial, axial, tangential };
+
+/// What a sensor reads at every sample (m), or why this is no such test.
+struct BallDeviation {
+  std::vector<double> d;
+  std::string why_not;
+};
+
+/// Of a nest of sensors around the ball, in the directions of the only rotary axis that turns.
+BallDeviation nest_deviation(const plant::MachineChain& chain, const TipPath& path,
+                             NestDirection direction);
+
+/// Of a ball bar from `centre` (3; m, in the workpiece) to the tip: true minus nominal length.
+BallDeviation bar_deviation(const TipPath& path, const Eigen::Vector3d& centre);
+
+/// Readings from which location errors can be identified, or why this is no such test.
+struct BallReadings {
+  std::vector<SensorReading> readings;
+  std::string why_not;
+};
+
+/// Of a nest of three sensors along X, Y and Z of the workpiece; a set-up for each place.
+/// @param most_places  at which the tip may stand
+BallReadings nest_readings(const plant::MachineChain& chain, const TipPath& path,
+                           std::size_t most_places);
+
+/// Of a ball bar as above.
+/// @param set_up  number of that bar
+BallReadings bar_readings(const plant::MachineChain& chain, const TipPath& path,
+                          const Eigen::Vector3d& centre, int set_up);
+
+}  // namespace servomill::sim

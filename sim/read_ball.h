@@ -1,0 +1,15 @@
+/// Reads what a quantity asks of a ball in the spindle.
+#pragma once
+
+#include "plant/kinematics/chain.h"
+#include "sim/config/reader.h"
+
+namespace servomill::sim {
+
+struct QuantitySpec;
+
+/// Keys sections or bar, tip_is_known and error of a [[quantity]] into the spec of that name.
+/// @param layout  of the machine; empty where that could not be read: no error is then looked up
+void read_ball(Reader& table, const JointLayout& layout, QuantitySpec& spec);
+
+}  // namespace servomill::sim

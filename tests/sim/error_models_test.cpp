@@ -1,0 +1,92 @@
+/// Error models that differ from others: beliefs with stated identification errors.
+#include <gtest/gtest.h>
+
+#include "plant/vocabulary/units.h"
+#include "tests/sim/small_scenario.h"
+
+namespace servomill::sim {
+namespace {
+
+using plant::operator""_err;
+
+constexpr double kRounding = 1e-18;  // m, rad, of sums of some 1e-5
+
+Scenario with_errors(const std::string& errors) {
+  return small_scenario("M2\n", errors + "[[case]]\nname = \"one\"\n");
+}
+
+std::string faults_of(const std::string& errors) {
+  try {
+    with_errors(errors);
+  } catch (const InputError& error) {
+    std::string out;
+    for (const Fault& fault : error.faults()) out += fault.message + "\n";
+    return out;
+  }
+  return "";
+}
+
+const std::string kMachine =
+    "[errors.machine]\nEX0C = \"8 um\"\nEA0C = \"25 urad\"\nEC0Y = { um_per_m = 15.0 }\n"
+    "EYX = { polynomial_um = [1.0, 0.5] }\n";
+
+TEST(ErrorModels, DifferByWhatTheySay) {
+  const Scenario scenario = with_errors(
+      "[errors.belief]\ndiffers_from = \"machine\"\nEX0C = \"-0.5 um\"\nEA0C = { constant_urad = "
+      "2.0 }\nEB0C = \"3 urad\"\nEYX = { constant_um = 0.25 }\nEZX = { constant_um = 4.0 }\n" +
+      kMachine);
+  const plant::ErrorModel &belief = scenario.errors.at("belief"),
+                          &machine = scenario.errors.at("machine");
+  EXPECT_NEAR(belief.location("EX0C"_err), 7.5 * um, kRounding);
+  EXPECT_NEAR(belief.location("EA0C"_err), 27.0 * urad, kRounding);
+  EXPECT_NEAR(belief.location("EB0C"_err), 3.0 * urad, kRounding);
+  EXPECT_NEAR(belief.location("EC0Y"_err), 15.0 * urad, kRounding);
+  const double x = 10.0 * mm;
+  EXPECT_NEAR(belief.component("EYX"_err).value(x), (1.0 + 5.0 + 0.25) * um, kRounding);
+  EXPECT_NEAR(belief.component("EZX"_err).value(x), 4.0 * um, kRounding);
+  EXPECT_NEAR(machine.location("EX0C"_err), 8.0 * um, kRounding);
+  EXPECT_NEAR(machine.component("EYX"_err).value(x), 6.0 * um, kRounding);
+}
+
+TEST(ErrorModels, ThatDifferByNothingAreTheSame) {
+  const Scenario scenario = with_errors("[errors.belief]\ndiffers_from = \"machine\"\n" + kMachine);
+  EXPECT_TRUE(scenario.errors.at("belief") == scenario.errors.at("machine"));
+}
+
+TEST(ErrorModels, DifferFromAnotherThatIsComplete) {
+  const auto differing = [](const std::string& from) {
+    return kMachine + "[errors.belief]\ndiffers_from = " + from + "\n";
+  };
+  EXPECT_EQ(faults_of(differing("\"machine\"")), "");
+  EXPECT_EQ(faults_of(differing("\"machin\"")),
+            "errors.belief.differs_from = \"machin\"; must be the name of another error model; did "
+            "you mean 'machine'?\n");
+  EXPECT_EQ(faults_of(differing("\"belief\"")),
+            "errors.belief.differs_from = \"belief\"; must be the name of another error model\n");
+  EXPECT_EQ(faults_of(differing("1")), "errors.belief.differs_from = 1; must be a text\n");
+  EXPECT_EQ(faults_of(differing("\"other\"") + "[errors.other]\ndiffers_from = \"machine\"\n"),
+            "errors.belief.differs_from = \"other\"; must name a model that differs from no other "
+            "itself\n");
+}
+
+// With a belief that is off by 2 um along X the tip ends up 2 um off, and nowhere else: the C axis
+// has turned half about, so that its place counts twice.
+TEST(ErrorModels, LeaveTheirDifferenceWhenTheyAreBelieved) {
+  const auto left = [](const std::string& difference) {
+    const Scenario scenario = small_scenario(
+        "G21 G90 G94\nG0 X20 C180\nG1 X30 F1000\nM2\n",
+        "truth = \"machine\"\n" + kMachine + "[errors.belief]\ndiffers_from = \"machine\"\n" +
+            difference +
+            "[[case]]\nname = \"one\"\nservo = \"ideal\"\n[[case.strategy]]\ntype = \"feedback\"\n"
+            "model = \"belief\"\niterations = \"converged\"\n");
+    const CaseOutput out = run_case(scenario, "one");
+    return largest_of(out.result.servo, "tool_deviation", 'X',
+                      rows_within(out.result.servo, 20.0, 30.0));
+  };
+  constexpr double kTolerance = 1e-3;  // um: the difference times angles of 25 urad, recording
+  EXPECT_NEAR(left(""), 0.0, kTolerance);
+  EXPECT_NEAR(left("EX0C = \"1 um\"\n"), 2.0, kTolerance);
+}
+
+}  // namespace
+}  // namespace servomill::sim
