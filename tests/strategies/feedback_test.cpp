@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "plant/sensing/encoder.h"
+#include "strategies/approach_kernel.h"
 #include "tests/strategies/beliefs.h"
 
 namespace servomill::strategies {
