@@ -263,7 +263,7 @@ TEST(Uncorrectable, IsWhatTheAxesGiveWayToNearASingularDirection) {
 }
 
 TEST(Uncorrectable, IsNotAskedOfWhatGeneratesErrors) {
-  const Case one = cases(kErrorSize, 1).front();
+  const Case one = cases(kErrorSize, 4).front();
   EXPECT_FALSE(uncorrectable(one.belief, Sign::generate, DisplacedAxes::all, kSigma0, one.Q[0]));
   EXPECT_TRUE(uncorrectable(one.belief, Sign::correct, DisplacedAxes::all, kSigma0, one.Q[0]));
 }
