@@ -88,10 +88,12 @@ constexpr std::array<QuantityInfo, 26> kQuantities = {{
     {"tangential_ball_deviation", "um", "R-test: the same in the sense in which the axis counts",
      false, "", true, false, false, 0, true},
     {"ball_bar_deviation", "um",
-     "ISO 10791-6 BK4: length of a ball bar between bar_centre_mm and the tip, minus its nominal",
+     "ISO 10791-6 BK4: length of a ball bar between centre_mm of [[quantity.bar]] and the tip, "
+     "minus its nominal",
      false, "", true, false, false, 0, true},
-    {"location_error", "um", "identified by a nest of sensors (or bar_centre_mm); angles in urad",
-     false, "", false, false, false, 0, true},
+    {"location_error", "um",
+     "identified by a nest of sensors, or by each [[quantity.bar]]; angles in urad", false, "",
+     false, false, false, 0, true},
 }};
 
 // Reads a column of another case at a given arc length; s is asked for in rising order.

@@ -10,10 +10,10 @@
 
 namespace servomill::sim {
 
-/// The feedback hardware of eight runs that lie side by side in ServoAxes: Runs with
-/// one strategy advance together, in the lanes in which they lie; what other lanes hold is left
-/// aside. Of a run that is the only one with its strategy up to eight model periods wait, and then
-/// advance together: the axes get to know what acts when they read it.
+/// The feedback hardware of eight runs that lie side by side in ServoAxes. Runs with one strategy
+/// advance together, in the lanes in which they lie; what other lanes hold is left aside. Of a run
+/// that is the only one with its strategy up to eight model periods wait, and then advance
+/// together: the axes get to know what acts when they read it.
 class FeedbackLanes {
  public:
   /// @param axes   must outlive this

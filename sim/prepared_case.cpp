@@ -515,7 +515,7 @@ std::vector<std::string> PreparedCase::uncorrectable() const {
     const bool is_near =
         strategy.displaces_rotary() && found->singular_angle < controllers::kNearSingular;
     out.push_back(fmt::format(
-        "{}:{}: warning: case {}: strategy {} cannot correct {} here{}, the most of the program",
+        "{}:{}: warning: case {}: strategy {} cannot correct {} here{}, the most found",
         p.scenario.program.file, found->line, p.spec.name, p.spec.strategies[k].entry->name,
         fmt::join(left, " and "),
         is_near ? fmt::format(", {:.2f} deg from a singular direction", found->singular_angle / deg)

@@ -412,11 +412,15 @@ class ScenarioReader {
     const auto same = [&](const StrategySpec& other) {
       return other.entry == strategy.entry && other.model == strategy.model;
     };
-    if (strategy.entry->name == "table" &&
-        std::any_of(spec.strategies.begin(), spec.strategies.end(), same)) {
+    const auto adds_start = [](const StrategySpec& one) {
+      return one.parameters.word("at_reference") == "error";
+    };
+    if (strategy.entry->name == "table" && adds_start(strategy) &&
+        std::any_of(spec.strategies.begin(), spec.strategies.end(),
+                    [&](const StrategySpec& other) { return same(other) && adds_start(other); })) {
       table.fault("type",
-                  "a case has one table strategy for a model (each adds the value at the start); "
-                  "use axis = \"all\"");
+                  "a second table strategy for this model adds the value at the start once more; "
+                  "use axis = \"all\", or at_reference = \"zero\" for all but one");
     }
     spec.strategies.push_back(std::move(strategy));
   }
@@ -549,10 +553,13 @@ class ScenarioReader {
     const auto truth = out_.errors.find(out_.truth);
     std::vector<plant::ErrorName> names = location_errors(out_.machine.chain);
     if (all.ball->error) names = {*all.ball->error};
+    const bool is_true_of_each =
+        std::none_of(out_.cases.begin(), out_.cases.end(),
+                     [](const CaseSpec& one) { return one.truth.has_value(); });
     for (const plant::ErrorName& name : names) {
       QuantitySpec one = all;
       one.ball->error = name;
-      if (one.reference.empty() && truth != out_.errors.end()) {
+      if (one.reference.empty() && truth != out_.errors.end() && is_true_of_each) {
         const double unit = is_linear(name.direction) ? um : urad;
         one.reference = fmt::format("{:g} {} true", truth->second.location(name) / unit,
                                     unit_of_location(name));

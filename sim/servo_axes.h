@@ -103,9 +103,8 @@ class ServoAxes {
   /// kVelocityLoop
   void run_velocity_loops();
   /// Moves the drives to the next instant. @pre step is that of the schedule
-  /// @param at_stop  at_stop(), called at each stop on the way, when the scales have been read
-  /// there.
-  ///                 Nothing else is known of a stop: it may ask for Q_meas and displace, no more
+  /// @param at_stop  called at each stop on the way, when the scales have been read there. Nothing
+  ///                 else is known of a stop: it may ask for Q_meas and displace, no more
   template <class AtStop>
   void advance(Tick step, AtStop at_stop) {
     for (const Tick end = now_ + step;;) {

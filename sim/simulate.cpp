@@ -382,8 +382,11 @@ class IdealRun {
         break;
       }
       set = set_point_.advance(in_.reference.at(periods_.seconds(n), cursor_));
-      if (travel_.matters()) travel_.go_to(Q_true_of(set));
-      if (n % in_.record_period == 0) record(n, set);
+      const bool is_recorded = n % in_.record_period == 0;
+      if (!is_recorded && !travel_.matters()) continue;
+      const Joints Q_true = Q_true_of(set);
+      travel_.go_to(Q_true);
+      if (is_recorded) record(n, set, Q_true);
     }
     result.simulated_time = periods_.seconds(n);
     result.servo = recorder_.take();
@@ -391,7 +394,7 @@ class IdealRun {
   }
 
  private:
-  void record(Tick n, const AxisSetPoint& set) {
+  void record(Tick n, const AxisSetPoint& set, const Joints& Q_true) {
     Snapshot now;
     now.time = periods_.seconds(n);
     const auto reference = in_.reference.at(now.time - set_point_.delay(), record_cursor_);
@@ -399,7 +402,7 @@ class IdealRun {
     now.piece = in_.pieces[reference.move];
     now.Q_ref = set.Q_ref;
     now.Q_cmd = now.Q_read = set.Q_cmd;
-    now.Q_meas = now.Q_true = Q_true_of(set);
+    now.Q_meas = now.Q_true = Q_true;
     now.dQ_true = set.dQ_ff;
     recorder_.record(now, travel_.at(now.Q_true));
   }

@@ -49,7 +49,7 @@ struct CaseInputs {
   bool program_displaces_rotary = false;  // the NC runs another program than `path` also there
   // of which is recorded what they cannot correct
   std::vector<const strategies::Strategy*> recorded_corrections = {};
-  std::vector<std::size_t> pieces = {};   // of `path`, for each move that the NC runs
+  std::vector<std::size_t> pieces = {};  // of `path`, for each move that the NC runs
 };
 
 /// How a case ended. A machine that stops is an outcome, not an exception.

@@ -32,7 +32,7 @@ std::optional<Uncorrected> uncorrected(const ProgramPath& path,
                                        const Eigen::Vector3d& p_ST) {
   const JointLayout& layout = inverse.chain().layout;
   std::size_t total = 0;
-  for (std::size_t n = 0; n < path.size(); ++n) total += looks_of(path.piece(n)) + 1;
+  for (std::size_t n = 0; n < path.size(); ++n) total += looks_of(path.piece(n));
   const std::size_t stride = total / kMost + 1;
   Uncorrected worst;
   Joints worst_at = Joints::Zero();
@@ -41,7 +41,8 @@ std::optional<Uncorrected> uncorrected(const ProgramPath& path,
     const ProgramPath::Piece& piece = path.piece(n);
     const std::size_t looks = looks_of(piece);
     if (looks == 0) continue;
-    for (std::size_t i = 0; i <= looks; ++i) {
+    const bool has_begin = n == 0 || path.piece(n - 1).rapid;  // otherwise the end of the last one
+    for (std::size_t i = has_begin ? 0 : 1; i <= looks; ++i) {
       if (look++ % stride != 0) continue;
       const double share = static_cast<double>(i) / static_cast<double>(looks);
       const AxisWords near = piece.begin + share * (piece.end - piece.begin);

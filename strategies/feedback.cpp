@@ -135,7 +135,7 @@ class VirtualEncoder final : public FeedbackPart {
         velocity_(params.window, period, kDisplaced) {}
 
   Joints settle(const Joints& Q_meas, std::size_t run) override {
-    velocity_.settle(Q_meas, run);
+    if (leads_) velocity_.settle(Q_meas, run);
     Shifts wanted;
     find_displacement(Q_meas, LaneFlags{}, wanted);
     Joints d = Joints::Zero();

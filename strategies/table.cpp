@@ -9,6 +9,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "strategies/compensation.h"
+#include "strategies/pose_compensation.h"
 
 namespace servomill::strategies {
 namespace {
@@ -170,17 +171,26 @@ class Tables final : public SetPointPart {
   const std::vector<Table>& tables_;
 };
 
+constexpr double kAnySigma = 1.0;  // of rotary axes, which stand as programmed
+
 class CompensationTable final : public Strategy {
  public:
-  CompensationTable(const SetPointEntry& entry, std::vector<Table> tables)
-      : entry_(entry), tables_(std::move(tables)) {}
+  CompensationTable(const SetPointEntry& entry, std::vector<Table> tables, Sign sign,
+                    const Belief& belief)
+      : entry_(entry), tables_(std::move(tables)), sign_(sign), belief_(belief) {}
   std::unique_ptr<SetPointPart> set_point() const override {
     return std::make_unique<Tables>(entry_, tables_);
+  }
+  // What X, Y and Z cannot; lines, lattice and spacing left aside.
+  std::optional<Leftover> uncorrectable(const Joints& Q) const override {
+    return strategies::uncorrectable(belief_, sign_, DisplacedAxes::linear, kAnySigma, Q);
   }
 
  private:
   SetPointEntry entry_;
   std::vector<Table> tables_;
+  Sign sign_;
+  Belief belief_;
 };
 
 bool is_power_of_two_spacing(double spacing) {
@@ -352,7 +362,7 @@ std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& bel
       from_reference = from_reference.cwiseMax(moved);
     }
   }
-  return std::make_unique<CompensationTable>(entry_of(p), std::move(tables));
+  return std::make_unique<CompensationTable>(entry_of(p), std::move(tables), sign, belief);
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ std::vector<TextFile> linuxcnc_files(const TableExport& e) {
                  : "each line of a file: nominal position, trim moving up, trim moving down, added "
                    "to the motor command",
        "units: mm and deg, as LINEAR_UNITS = mm and ANGULAR_UNITS = degree; up and down are equal: "
-       "the model knows no reversal",
+       "the mean of both",
        "joints: X, Y, Z and the rotary axes in alphabetical order; COMP_FILE excludes BACKLASH"},
       "# ");
   int number = 0;
@@ -122,7 +122,7 @@ std::vector<TextFile> heidenhain_files(const TableExport& e) {
       {"values: error in mm or deg, positive where the axis travels too far, entered with its sign",
        "columns: [axis of the column of *.COM] = F([axis of the column of *.CMA]); AXISPOS from "
        "the "
-       "machine datum; BACKLASH stays empty: the model knows no reversal",
+       "machine datum; BACKLASH stays empty: the values are the mean of both directions",
        "these are listings for the table editor of the control: the documents give the columns, "
        "not "
        "the text of the files",

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kStands = 1.0 * um;         // how far a nominal tip may move, or a bar lengthen
-constexpr double kTurns = 1.0 * urad;        // by which an axis turns that turns
+constexpr double kTurns = 1e3 * urad;        // corrections turn an axis by less
 constexpr double kLeastArm = 1.0 * mm;       // of a ball about an axis
 constexpr std::size_t kMostSamples = 20000;  // for one identification
 

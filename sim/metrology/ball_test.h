@@ -1,9 +1,10 @@
 /// Tests with a ball in the spindle (ISO 10791-6): what sensors on the table read while the machine
 /// holds the tip at one place of the table, or takes it around the centre of a ball bar.
 ///
-///     radial      away from the rotary axis that turns      BK1, BK2, CK1, CK2 and the like,
-///     R-test tangential  in the sense in which that axis counts axial       along that axis bar
-///     along the line from the centre to the tip                     BK4 and the like
+/// - radial: away from the rotary axis that turns (BK1, BK2, CK1, CK2 and the like, R-test)
+/// - tangential: in the sense in which that axis counts
+/// - axial: along that axis
+/// - bar: along the line from the centre to the tip (BK4 and the like)
 ///
 /// All tell of the true tip relative to the nominal one, in the workpiece; the nest of sensors
 /// turns with the table.

@@ -29,7 +29,7 @@ TEST(Uncorrectable, IsToldWithItsSizeAndLine) {
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_TRUE(notes[0].ends_with(
       "small.ngc:3: warning: case linear: strategy feedback cannot correct 18.0 urad of the tool "
-      "axis here, the most of the program"))
+      "axis here, the most found"))
       << notes[0];
   EXPECT_TRUE(run_case(scenario, "all").notes.empty());
   EXPECT_TRUE(run_case(scenario, "generates").notes.empty());

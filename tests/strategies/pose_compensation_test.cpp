@@ -46,7 +46,8 @@ std::vector<Case> cases(double error_size, int poses) {
                                                  : plant::random_chain(structure, random);
       const plant::ErrorModel errors = plant::random_errors(random, error_size);
       Case one{name, belief_of(chain, errors), {}};
-      while (static_cast<int>(one.Q.size()) < poses) {
+      for (int tries = 0; static_cast<int>(one.Q.size()) < poses; ++tries) {
+        if (tries == 10000) throw std::logic_error(one.name + " is singular everywhere");
         const Joints Q = plant::random_joints(chain, random);
         const auto J = plant::jacobian(chain, Q, one.belief.p_ST);
         const Eigen::Vector3d a = J.J_kQ.col(3), b = J.J_kQ.col(4);
