@@ -3,7 +3,8 @@
 `step`.
 
 Figures are named after those of Guevel et al. 2025 that they answer to; `--list` prints all.
-Exit status: 0 drawn, 2 the input is wrong, 3 the system failed.
+What a file does not hold is told and the rest drawn. Exit status: 0 drawn, 2 a file cannot be read or
+nothing can be drawn, 3 the system failed.
 """
 import argparse
 import difflib
@@ -47,46 +48,60 @@ def save(drawn, path, ending):
     picture.save(path, compress_level=9, dpi=(drawn.dpi, drawn.dpi))
 
 
-def draw_all(path, named):
-    """Draws what one file holds: {figure name: figure}, {figure name: why it is not drawn}."""
+def draw_all(result, named):
+    """Draws what one file holds: {figure: drawn}, {figure: why it is not drawn}."""
     drawn, missing = {}, {}
-    with open_result(path) as result:
-        for case in result.cases.values() if result.kind == "run" else []:
-            if not case.finished:
-                print(f"case {case.name} stopped ({case.outcome}); it is drawn over time only",
-                      file=sys.stderr)
-        for figure in FIGURES:
-            if named and figure.name not in named:
-                continue
-            if not named and figure.kind != result.kind:
-                continue   # nobody expects motion in a frequency response, or a sweep in a run
-            try:
-                if figure.kind != result.kind:
-                    raise NotInFile(f"the file holds a {result.kind}, not a {figure.kind}")
-                drawn[figure.name] = figure.draw(result)
-            except NotInFile as reason:
-                missing[figure.name] = f"{reason}"
+    for case in result.cases.values() if result.kind == "run" else []:
+        if not case.finished:
+            print(f"case {case.name} stopped ({case.outcome}); it is drawn over time only", file=sys.stderr)
+    for figure in FIGURES:
+        if named and figure.name not in named:
+            continue
+        if not named and figure.kind != result.kind:
+            continue   # nobody expects motion in a frequency response, or a sweep in a run
+        try:
+            if figure.kind != result.kind:
+                raise NotInFile(f"the file holds a {result.kind}, not a {figure.kind}")
+            drawn[figure] = figure.draw(result)
+        except NotInFile as reason:
+            missing[figure] = f"{reason}"
+        except Exception as fault:   # one that fails must not cost the others
+            missing[figure] = failure(fault)
     return drawn, missing
 
 
+def failure(fault):
+    return f"drawing it failed ({type(fault).__name__}: {' '.join(str(fault).split())})"
+
+
 def pages_of(files, named):
-    """All figures of all files as (stem of the file name, figure). A figure that is asked for by
-    name must be held by at least one file; others are explained where they are not drawn."""
-    pages, found = [], set()
+    """All figures of all files as (stem of the file name, figure), and whether a file could not be read. What is not
+    drawn is explained, unless another kind of file was meant. InputError: nothing can be drawn."""
+    pages, found, missing, unread = [], set(), [], []
     for file in files:
-        drawn, missing = draw_all(file, named)
+        try:
+            with open_result(file) as result:
+                drawn, lost = draw_all(result, named)
+                missing += [(file, figure, result.kind, reason) for figure, reason in lost.items()]
+        except InputError as fault:
+            unread.append(str(fault))
+            continue
         found |= drawn.keys()
-        pages += [(f"{pathlib.Path(file).stem}-{name}", figure) for name, figure in drawn.items()]
-        for name, reason in missing.items():
-            if not named:
-                where = f"{file}: " if len(files) > 1 else ""
-                print(f"{where}{name}: not drawn, {reason}", file=sys.stderr)
+        pages += [(f"{pathlib.Path(file).stem}-{figure.name}", picture) for figure, picture in drawn.items()]
         if not named and not drawn:
-            raise InputError(f"{file}: error: holds nothing that can be drawn")
-    for name in named or []:
-        if name not in found:
-            raise InputError(f"{file}: error: {name}: {missing[name]}")
-    return pages
+            unread.append(f"{file}: error: holds nothing that can be drawn")
+    if named and not pages:
+        unread += [f"{file}: error: {figure.name}: {reason}" for file, figure, _, reason in missing]
+    else:
+        for file, figure, kind, reason in missing:
+            if figure.kind == kind or figure not in found:
+                where = f"{file}: " if len(files) > 1 else ""
+                print(f"{where}{figure.name}: not drawn, {reason}", file=sys.stderr)
+    if not pages:
+        raise InputError("\n".join(unread))
+    for line in unread:
+        print(line, file=sys.stderr)
+    return pages, bool(unread)
 
 
 def main(arguments):
@@ -116,17 +131,22 @@ def main(arguments):
     # everything is drawn before anything is written
     style.set_up()
     folder = pathlib.Path(options.o)
-    pages = [(folder / f"{name}.{ending}", figure, ending)
-             for name, figure in pages_of(options.files, named) for ending in formats]
+    drawn, unread = pages_of(options.files, named)
+    pages = [(folder / f"{name}.{ending}", figure, ending) for name, figure in drawn for ending in formats]
     for path, _, _ in pages:
         if path.exists() and not options.force:
             raise InputError(f"{path}: error: exists; use --force to overwrite")
     folder.mkdir(parents=True, exist_ok=True)
     for path, figure, ending in pages:
-        save(figure, path, ending)
-        print(path)
+        try:
+            save(figure, path, ending)
+            print(path)
+        except OSError:
+            raise
+        except Exception as fault:   # matplotlib finds some faults only when it lays out
+            print(f"{path}: not drawn, {failure(fault)}", file=sys.stderr)
     style.plt.close("all")
-    return 0
+    return 2 if unread else 0
 
 
 def run(arguments):

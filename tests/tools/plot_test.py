@@ -2,6 +2,7 @@
 """tools/plot.py draws what a result file holds, agrees with `servomill compare`, and says what is
 wrong with a file in one line. Usage: plot_test.py SERVOMILL"""
 import contextlib
+import dataclasses
 import io
 import json
 import pathlib
@@ -11,6 +12,7 @@ import sys
 import tempfile
 import types
 import unittest
+import unittest.mock
 
 HERE = pathlib.Path(__file__).resolve().parent
 PLOT = HERE.parents[1] / "tools" / "plot.py"
@@ -255,7 +257,8 @@ class Drawing(WithFiles):
             "nest: not drawn, the scenario asks for no radial_ball_deviation",
             "ball_bar: not drawn, the scenario asks for no ball_bar_deviation",
             *(f"li_{n}: not drawn, needs a case without strategy and one with the strategy exact"
-              for n in ("3_2", "3_3", "4_1"))])
+              for n in ("3_2", "3_3", "4_1")),
+            "five_axis: not drawn, the tool axis does not turn"])
         self.assertEqual(sorted(done.stdout.split()), sorted(str(p) for p in self.out.iterdir()))
         for path in self.out.iterdir():
             self.assertGreater(path.stat().st_size, SMALLEST_PNG, path)
@@ -411,12 +414,14 @@ class Balls(WithFiles):
     """R-test and BK4."""
 
     def test_draw_the_shipped_scenarios(self):
-        for name, figure in (("rtest", "nest"), ("bk4", "ball_bar")):
+        for name, figure, other in (("rtest", "nest", "ball_bar"), ("bk4", "ball_bar", "nest")):
             path = self.root / f"{name}.h5"
             servomill("run", HERE.parents[1] / f"scenarios/iso/{name}.toml", "-o", path, "-q")
-            done = plot(path, "-o", self.out, "--figures", figure)
+            done = plot(path, "-o", self.out)     # all, though the tip of an R-test stands
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertGreater((self.out / f"{name}-{figure}.png").stat().st_size, SMALLEST_PNG)
+            self.assertIn(f"{other}: not drawn, the scenario asks for no ", done.stderr)
+            self.assertIn("circular: not drawn, no section is one turn of a circle\n", done.stderr)
 
     def test_angle_goes_once_around_the_circle_from_zero(self):
         turn = np.radians(np.arange(0.0, 361.0))
@@ -428,10 +433,35 @@ class Balls(WithFiles):
 
 class Mistakes(WithFiles):
     def test_a_figure_that_is_asked_for_and_not_held(self):
-        self.fails(f"{self.side}: error: lag: the file holds a run, not a sweep",
-                   self.side, "--figures", "figure6,lag")
+        self.fails(f"{self.side}: error: lag: the file holds a run, not a sweep", self.side, "--figures", "lag")
         self.fails(f"{self.contour}: error: figure9: the imposed errors are functions of X, Y, Z, "
                    "not of X alone", self.contour, "--figures", "figure9")
+        self.fails(f"{self.side}: error: lag: the file holds a run, not a sweep\n"
+                   f"{self.side}: error: nest: the scenario asks for no radial_ball_deviation", self.side, "--figures", "lag,nest")
+
+    def test_of_several_figures_those_are_drawn_that_the_file_holds(self):
+        done = plot(self.side, "-o", self.out, "--figures", "figure6,lag,nest")
+        self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [
+            "lag: not drawn, the file holds a run, not a sweep",
+            "nest: not drawn, the scenario asks for no radial_ball_deviation"]))
+        self.assertEqual(self.drawn(), ["side-figure6.png"])
+
+    def test_a_figure_that_fails_costs_no_other(self):
+        def fail(_):
+            raise np.linalg.LinAlgError("SVD did not converge")
+
+        figures = [dataclasses.replace(one, draw=fail) if one.name == "figure9" else one for one in program.FIGURES]
+        with unittest.mock.patch.object(program, "FIGURES", figures):
+            done = plot(self.side, "-o", self.out, "--figures", "figure6,figure9")
+            self.assertEqual((done.returncode, done.stderr), (
+                0, "figure9: not drawn, drawing it failed (LinAlgError: SVD did not converge)\n"))
+            self.assertEqual(self.drawn(), ["side-figure6.png"])
+
+    def test_a_file_that_cannot_be_read_costs_no_other(self):
+        missing = self.root / "missing.h5"
+        done = plot(missing, self.side, "-o", self.out, "--figures", "figure6")
+        self.assertEqual((done.returncode, done.stderr), (2, f"{missing}: error: no such file\n"))
+        self.assertEqual(self.drawn(), ["side-figure6.png"])
 
     def test_status_of_the_process(self):
         done = subprocess.run([PLOT, self.root / "missing.h5"], capture_output=True, text=True)
@@ -471,7 +501,7 @@ class Mistakes(WithFiles):
         shutil.copy(self.side, hollow)
         with h5py.File(hollow, "a") as file:
             del file["cases/table/servo/s"]
-        self.fails(f"{hollow}: error: case table holds no s", hollow, "--figures", "figure9")
+        self.fails(f"{hollow}: error: figure9: case table holds no s", hollow, "--figures", "figure9")
 
 
 if __name__ == "__main__":

@@ -90,8 +90,7 @@ class Case:
         """A dataset (samples), or the column of one axis of it."""
         if (name, letter) not in self._read:
             if name not in self._servo:
-                raise InputError(f"{self._servo.file.filename}: error: case {self.name} holds no "
-                                 f"{name}")
+                raise NotInFile(f"case {self.name} holds no {name}")
             data = self._servo[name]
             if letter is not None and letter not in self.labels(name):
                 raise NotInFile(f"{name} has no axis {letter}")
