@@ -102,7 +102,7 @@ def locations(part, tolerance, axis_tolerance):
 def check(options, part):
     for name in ("length", "width", "height", "top_width", "tool_diameter", "feed", "tolerance", "axis_tolerance",
                  "path_tolerance"):
-        if not getattr(options, name) > 0.0:
+        if not (math.isfinite(getattr(options, name)) and getattr(options, name) > 0.0):
             raise InputError(f"s_part.py: error: --{name.replace('_', '-')} is {getattr(options, name):g}; must be > 0")
     tips, axes = part.tool(np.linspace(0.0, 1.0, FINE))
     base = bspline(part.base, np.linspace(0.0, 1.0, FINE))[0]
@@ -193,6 +193,8 @@ def main(arguments):
         raise InputError(f"{path}: error: the name must end in {', '.join(WRITERS)}")
     if path.exists() and not options.force:
         raise InputError(f"{path}: error: exists; use --force to overwrite")
+    if not path.parent.is_dir():
+        raise InputError(f"{path}: error: there is no folder {path.parent}")
     part = SPart(options)
     tilt = check(options, part)
     p, k = locations(part, options.tolerance, options.axis_tolerance * 1e-6)
