@@ -36,12 +36,6 @@ def _shown(run):
     return cases or run.finished_cases()
 
 
-def _look(run, case):
-    """As everywhere, but a case without strategy is the machine as it was built."""
-    acting = [one for one in run.strategies(case) if one.get("type") != "none"]
-    return style.look_of(run, case) if acting else style.Look("as built", style.BLACK, "-", "o", 2.2)
-
-
 def _turning(case, rows):
     """Letter and angle (deg) of the rotary axis that turns alone, or None."""
     turning = [letter for letter in case.labels("ref_rotary")
@@ -61,9 +55,11 @@ def draw_nest(run):
             columns.append((sections, turning[0]))
     if not columns:
         raise NotInFile("in no section one rotary axis turns alone")
-    looks = {case.name: _look(run, case.name) for case in cases}
-    figure, strip, grid = style.panels([1.0] * 3, (4.4 * len(columns) + 0.8, 6.6), columns=len(columns))
-    style.legend(strip, looks.values())
+    looks = {case.name: style.look_of(run, case.name) for case in cases}
+    width = 4.4 * len(columns) + 0.8
+    across, lines = style.legend_shape(looks.values(), width)
+    figure, strip, grid = style.panels([1.0] * 3, (width, 6.34 + 0.26 * lines), columns=len(columns), legend_lines=lines)
+    style.legend(strip, looks.values(), columns=across)
     for column, (sections, letter) in enumerate(columns):
         for case in cases:
             rows = case.samples(sections)
@@ -95,7 +91,7 @@ def _before_and_after(run, cases):
         return ""
     before, best = cases[0].name, min(largest, key=largest.get)
     return (f"; radial {style.number(largest[before])} µm before, {style.number(largest[best])} µm with "
-            f"{_look(run, best).label}")
+            f"{style.look_of(run, best).label}")
 
 
 def _around(nominal, centre):
@@ -110,12 +106,20 @@ def _around(nominal, centre):
     return angle if angle[-1] > 0.0 else -angle
 
 
+def _angles(ax):
+    """Angles outside of the rings, from where the circle begins."""
+    for angle in range(0, 360, 45):
+        away = circular.REACH + (0.75 if angle % 90 else 0.4)
+        ax.text(away * np.cos(np.radians(angle)), away * np.sin(np.radians(angle)), f"{angle}°", ha="center", va="center",
+                fontsize=8, color=style.GREY)
+
+
 def draw_bar(run):
     """BK4: deviation of the bar's length around the circle, magnified; a picture for each bar."""
     cases = _shown(run)
     bars = [bar for one in _asked(run, BAR) for bar in one["bar"]]
     ranges = _ranges(run, BAR)
-    looks = {case.name: _look(run, case.name) for case in cases}
+    looks = {case.name: style.look_of(run, case.name) for case in cases}
     read = {}
     for n, bar in enumerate(bars):
         centre = np.array(bar["centre_mm"], float)
@@ -130,10 +134,13 @@ def draw_bar(run):
     below = -circular.REACH - 1.0 - circular.LINE * (len(cases) + 0.7)
     width = 3.9
     height = width * (circular.top() - below) / (2.0 * circular.SIDE) + 0.3
-    figure, strip, grid = style.panels([1.0], (width * len(bars) + 0.1, height + 0.75), columns=len(bars))
-    style.legend(strip, looks.values())
+    across, lines = style.legend_shape(looks.values(), width * len(bars) + 0.1)
+    figure, strip, grid = style.panels([1.0], (width * len(bars) + 0.1, height + 0.49 + 0.26 * lines), columns=len(bars),
+                                       legend_lines=lines)
+    style.legend(strip, looks.values(), columns=across)
     for n, (ax, bar) in enumerate(zip(grid[0], bars)):
         circular.rings(ax, unit)
+        _angles(ax)
         y = -circular.REACH - 1.0
         ax.text(3.4, y, "range, µm", ha="right", va="center", fontsize=9.5, color=style.GREY)
         for case in cases:

@@ -4,8 +4,7 @@ import numpy as np
 from figures import style
 from figures.results import NotInFile
 
-
-
+WIDTH = 9.6     # inches
 HELD = {"µm": 0.1, "deg": 1e-4}   # following error that an axis which only holds may show
 
 
@@ -41,11 +40,13 @@ def draw(run):
     if not run.cases:
         raise NotInFile("no cases")
     panels = rows_of(run)
-    figure, strip, grid = style.panels([1.0] * len(panels), (9.6, 1.75 * len(panels) + 0.9))
-    axes = [row[0] for row in grid]
     cases = list(run.cases.values())
     looks = {case.name: style.look_of(run, case.name) for case in cases}
-    style.legend(strip, list(looks.values()))
+    columns, lines = style.legend_shape(looks.values(), WIDTH)
+    figure, strip, grid = style.panels([1.0] * len(panels), (WIDTH, 1.75 * len(panels) + 0.64 + 0.26 * lines),
+                                       legend_lines=lines)
+    axes = [row[0] for row in grid]
+    style.legend(strip, list(looks.values()), columns=columns)
     for ax, (title, unit, values) in zip(axes, panels):
         for case in cases:
             time, shown = style.thin(case.column("time"), values(case))

@@ -2,11 +2,13 @@
 import numpy as np
 
 from figures import style
-from figures.results import NotInFile
+from figures.results import NotInFile, passes
 
 TURNS = 0.5        # deg; below that the tool axis stands
 LEANS = 28         # tool axes drawn along the way
 LEAST = 1e-3       # um, urad: lowest shown
+WIDTH = 9.8        # inches
+PIECES = 150       # of the path, of each of which the largest deviation is drawn
 URAD = 1e-6
 
 
@@ -27,6 +29,17 @@ def axis_deviation(case, rows):
     """urad: angle between true and nominal tool axis."""
     nominal, true = (case.column(f"tool_axis_{which}")[rows] for which in ("nominal", "true"))
     return 2.0 * np.arcsin(np.clip(0.5 * np.linalg.norm(true - nominal, axis=1), 0.0, 1.0)) / URAD
+
+
+def envelope(s, values, length):
+    """The largest value of the last, this and the next piece of that length, at the middle of each (ends: at the ends)."""
+    piece = np.minimum(((s - s[0]) / length).astype(int), max(int((s[-1] - s[0]) / length) - 1, 0))
+    starts = np.flatnonzero(np.diff(piece, prepend=-1))
+    largest = np.maximum.reduceat(values, starts)
+    padded = np.concatenate([largest[:1], largest, largest[-1:]])
+    largest = np.maximum(np.maximum(padded[:-2], padded[1:-1]), padded[2:])
+    middle = (s[starts] + s[np.append(starts[1:], len(s)) - 1]) / 2.0
+    return np.concatenate([s[:1], middle, s[-1:]]), np.concatenate([largest[:1], largest, largest[-1:]])
 
 
 def enlargement(tips, deviation):
@@ -50,16 +63,21 @@ def draw(run):
     if np.degrees(np.linalg.norm(axes - axes[0], axis=1).max()) < TURNS:
         raise NotInFile("the tool axis does not turn")
     looks = {case.name: style.look_of(run, case.name) for case in cases}
-    figure, strip, grid = style.panels([1.5, 0.8, 0.8], (9.8, 9.6), legend_lines=2)
-    style.legend(strip, list(looks.values()), columns=4)
+    columns, lines = style.legend_shape(looks.values(), WIDTH)
+    figure, strip, grid = style.panels([1.5, 0.8, 0.8], (WIDTH, 9.1 + 0.26 * lines), legend_lines=lines)
+    style.legend(strip, list(looks.values()), columns=columns)
     (plan,), (of_tip,), (of_axis,) = grid
     _draw_plan(plan, run, first, cases, rows, looks)
-    for ax, values, unit, title in ((of_tip, tip_deviation, "µm", "Tip: distance from where it should be at equal arc length"),
-                                    (of_axis, axis_deviation, "µrad", "Tool axis: angle from where it should point")):
+    begin, end = first.column("s")[rows[first.name][[0, -1]]]
+    length = (end - begin) / PIECES
+    within = f" (largest within {style.number(3.0 * length)} mm)"
+    for ax, values, unit, title in (
+            (of_tip, tip_deviation, "µm", "Tip: distance from where it should be at equal arc length" + within),
+            (of_axis, axis_deviation, "µrad", "Tool axis: angle from where it should point" + within)):
         for case in cases:
-            at = rows[case.name]
-            s, shown = style.thin(case.column("s")[at], np.maximum(values(case, at), LEAST))
-            style.line(ax, s - first.column("s")[rows[first.name][0]], shown, looks[case.name], linewidth=1.1)
+            for at in passes(rows[case.name]):     # rapids stand between them
+                s, shown = envelope(case.column("s")[at], np.maximum(values(case, at), LEAST), length)
+                style.line(ax, s - begin, shown, looks[case.name], linewidth=1.4)
         ax.set_yscale("log")
         ax.set_ylabel(unit)
         ax.set_title(title)
@@ -83,10 +101,12 @@ def _draw_plan(ax, run, first, cases, rows, looks):
         end = tips[n, :2] + lean * axes[n, :2]
         ax.plot([tips[n, 0], end[0]], [tips[n, 1], end[1]], color=style.PALE, linewidth=2.5, zorder=0)
     for case in cases:
-        at = rows[case.name]
-        shown = case.column("tool_position_nominal")[at] + factor * 1e-3 * case.column("tool_deviation")[at]
-        style.line(ax, shown[:, 0], shown[:, 1], looks[case.name], linewidth=1.2)
-    style.line(ax, tips[:, 0], tips[:, 1], style.Look("", style.GREY, style.DOT, "", 1.6))
+        for at in passes(rows[case.name]):
+            shown = case.column("tool_position_nominal")[at] + factor * 1e-3 * case.column("tool_deviation")[at]
+            style.line(ax, shown[:, 0], shown[:, 1], looks[case.name], linewidth=1.2)
+    for at in passes(rows[first.name]):
+        tips = first.column("tool_position_nominal")[at]
+        style.line(ax, tips[:, 0], tips[:, 1], style.Look("", style.GREY, style.DOT, "", 1.6))
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel("X of the workpiece, mm")
     ax.set_ylabel("Y, mm")

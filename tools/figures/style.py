@@ -1,5 +1,6 @@
 """One look for all figures: colours by strategy, lines that survive a black-and-white print."""
 import dataclasses
+import re
 
 import matplotlib
 
@@ -26,7 +27,7 @@ class Look:
 # else that of the strategy that acts last.
 LOOKS = {
     "nominal": Look("nominal", BLACK, "-", "o", 1.4),
-    "none": Look("nominal", BLACK, "-", "o", 1.4),
+    "none": Look("uncompensated", BLACK, "-", "o", 1.4),
     "table": Look("table", BLUE, "-", "s"),
     "feedback": Look("feedback", PURPLE, "-", "o"),
     "feedback_lead": Look("feedback with lead", LIGHT_PURPLE, DASH, "^"),
@@ -62,11 +63,16 @@ def _strategy_look(result, case):
     kind = acting[-1].get("type", "") if acting else "none"
     if kind == "feedback" and acting[-1].get("lead_ms", 0) not in (0, 0.0):
         kind = "feedback_lead"
-    label = case.replace("_", " ")
+    label = spoken(case)
     if kind in LOOKS:
         return dataclasses.replace(LOOKS[kind], label=label)
     # a strategy without a colour of its own gets the same spare one in every file
     return Look(label, SPARE[sum(kind.encode()) % len(SPARE)], DOT, "v")
+
+
+def spoken(case):
+    """The name of a case as legends have it."""
+    return re.sub(r"\bgcode\b", "G-code", case.replace("_", " "))
 
 
 def set_up():
@@ -117,6 +123,16 @@ def plain_log_ticks(axis):
 def face(look):
     """Inside of a marker: white for the dashed looks, so that what lies below shows."""
     return "white" if look.line == DASH else look.colour
+
+
+LETTER, MARGIN = 0.082, 0.3   # inches: of a legend, about; beside the axes
+
+
+def legend_shape(looks, width):
+    """Columns and lines of a legend of these looks in a figure of that width (inches)."""
+    entry = 0.65 + LETTER * max(len(look.label) for look in looks)
+    columns = min(len(looks), 6, max(1, int((width - MARGIN) / entry)))
+    return columns, -(-len(looks) // columns)
 
 
 def legend(strip, looks, lines=True, points=False, columns=6):
