@@ -4,6 +4,8 @@ axis that turns, and what a ball bar reads around its circle; every case in one 
 Deviations are true minus nominal, in the workpiece; those of a nest begin at 0, as the sensors are
 set there.
 """
+import dataclasses
+
 import numpy as np
 
 from figures import circular, style
@@ -36,6 +38,13 @@ def _shown(run):
     return cases or run.finished_cases()
 
 
+def _look(run, case):
+    """As everywhere, but a case without strategy stands out: its twin on ideal axes is left out."""
+    acting = [one for one in run.strategies(case) if one.get("type") != "none"]
+    look = style.look_of(run, case)
+    return look if acting else dataclasses.replace(look, colour=style.BLACK, line="-", width=2.2)
+
+
 def _turning(case, rows):
     """Letter and angle (deg) of the rotary axis that turns alone, or None."""
     turning = [letter for letter in case.labels("ref_rotary")
@@ -55,7 +64,7 @@ def draw_nest(run):
             columns.append((sections, turning[0]))
     if not columns:
         raise NotInFile("in no section one rotary axis turns alone")
-    looks = {case.name: style.look_of(run, case.name) for case in cases}
+    looks = {case.name: _look(run, case.name) for case in cases}
     width = 4.4 * len(columns) + 0.8
     across, lines = style.legend_shape(looks.values(), width)
     figure, strip, grid = style.panels([1.0] * 3, (width, 6.34 + 0.26 * lines), columns=len(columns), legend_lines=lines)
@@ -91,7 +100,7 @@ def _before_and_after(run, cases):
         return ""
     before, best = cases[0].name, min(largest, key=largest.get)
     return (f"; radial {style.number(largest[before])} µm before, {style.number(largest[best])} µm with "
-            f"{style.look_of(run, best).label}")
+            f"{_look(run, best).label}")
 
 
 def _around(nominal, centre):
@@ -119,7 +128,7 @@ def draw_bar(run):
     cases = _shown(run)
     bars = [bar for one in _asked(run, BAR) for bar in one["bar"]]
     ranges = _ranges(run, BAR)
-    looks = {case.name: style.look_of(run, case.name) for case in cases}
+    looks = {case.name: _look(run, case.name) for case in cases}
     read = {}
     for n, bar in enumerate(bars):
         centre = np.array(bar["centre_mm"], float)
