@@ -23,7 +23,7 @@ import numpy as np
 from PIL import Image
 
 import plot as program
-from figures import balls, circular, lag, nonlinear, notches, results, straightness, style, sweeps, volumetric
+from figures import balls, circular, five_axis, lag, nonlinear, notches, results, straightness, style, sweeps, volumetric
 
 SERVOMILL = ""
 AGREE = 1e-7        # um; `compare` prints nine digits of up to 100 um
@@ -241,6 +241,33 @@ class Looks(WithFiles):
             for other in shown[:i]:
                 self.assertTrue(abs(grey(one) - grey(other)) > 20 or one.line != other.line,
                                 f"{one.label} and {other.label}")
+
+
+    def test_cases_are_called_alike_in_all_figures(self):
+        class File:
+            scenario = {"case": [{"name": "none", "strategy": [{"type": "none"}]},
+                                 {"name": "gcode_ideal", "strategy": [{"type": "gcode"}]}]}
+            strategies = results.ResultFile.strategies
+
+        self.assertEqual([style.look_of(File(), one).label for one in ("none", "nominal", "gcode_ideal")],
+                         ["uncompensated", "nominal", "G-code ideal"])
+
+    def test_a_legend_takes_as_many_lines_as_it_needs(self):
+        def looks(label, count):
+            return [style.Look(label, style.BLACK)] * count
+
+        self.assertEqual(style.legend_shape(looks("table", 4), 9.6), (4, 1))
+        self.assertEqual(style.legend_shape(looks("feedback with lead", 8), 9.6), (4, 2))
+        self.assertEqual(style.legend_shape(looks("a name as long as it gets, and then some", 2), 3.0), (1, 2))
+
+    def test_envelope_is_the_largest_of_three_pieces(self):
+        s = np.linspace(0.0, 10.0, 1001)
+        ripple = np.abs(np.sin(40.0 * s))
+        ripple[550] = 7.0
+        at, largest = five_axis.envelope(s, ripple, 1.0)
+        self.assertEqual((at[0], at[-1], largest.max()), (0.0, 10.0, 7.0))
+        np.testing.assert_allclose(at[largest == 7.0], [4.5, 5.5, 6.5], atol=0.02)
+        self.assertGreater(largest.min(), 0.99)
 
 
 class Drawing(WithFiles):
