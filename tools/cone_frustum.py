@@ -11,13 +11,11 @@ import argparse
 import sys
 from math import cos, isfinite, radians, sin
 
+from command_line import InputError, run
+
 FRUSTA = ((10.0, 15.0), (30.0, 45.0))   # deg: tilt of the plane, half angle of the cone
 RUN_IN = 16.0                           # deg, before and behind a circle
 COARSEST = 8.0                          # deg: the run-in has two blocks
-
-
-class InputError(Exception):
-    """The user's command is wrong; the text is one complete line."""
 
 
 def words(radius, angle, tilt, cone, first):
@@ -76,14 +74,5 @@ def main(arguments):
     return 0
 
 
-def run(arguments):
-    """main with faults turned into one line on standard error and an exit status."""
-    try:
-        return main(arguments)
-    except InputError as fault:
-        print(fault, file=sys.stderr)
-        return 2
-
-
 if __name__ == "__main__":
-    sys.exit(run(sys.argv[1:]))
+    sys.exit(run(main, sys.argv[1:]))

@@ -14,9 +14,10 @@ import sys
 import numpy as np
 from PIL import Image
 
+from command_line import InputError, run
 from figures import style
 from figures.catalogue import FIGURES
-from figures.results import InputError, NotInFile, open_result
+from figures.results import NotInFile, open_result
 
 FORMATS = ("png", "svg", "pdf")
 # no dates: the same results give the same bytes
@@ -149,17 +150,5 @@ def main(arguments):
     return 2 if unread else 0
 
 
-def run(arguments):
-    """main with faults turned into one line on standard error and an exit status."""
-    try:
-        return main(arguments)
-    except InputError as fault:
-        print(fault, file=sys.stderr)
-        return 2
-    except OSError as fault:
-        print(f"plot.py: error: {fault}", file=sys.stderr)
-        return 3
-
-
 if __name__ == "__main__":
-    sys.exit(run(sys.argv[1:]))
+    sys.exit(run(main, sys.argv[1:]))

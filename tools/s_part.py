@@ -22,14 +22,12 @@ import sys
 
 import numpy as np
 
+from command_line import InputError, run
+
 # S-shaped control polygon: x and y as shares of length and width
 POLYGON = np.array([(0.00, -0.30), (0.08, 0.10), (0.20, 0.62), (0.41, 0.60), (0.50, 0.00),
                     (0.59, -0.60), (0.80, -0.62), (0.92, -0.10), (1.00, 0.30)])
 FINE = 20000           # points in which lengths and deviations are measured
-
-
-class InputError(Exception):
-    """The user's command is wrong; the text is one complete line."""
 
 
 def bspline(points, u):
@@ -204,17 +202,5 @@ def main(arguments):
     return 0
 
 
-def run(arguments):
-    """main with faults turned into one line on standard error and an exit status."""
-    try:
-        return main(arguments)
-    except InputError as fault:
-        print(fault, file=sys.stderr)
-        return 2
-    except OSError as fault:
-        print(f"s_part.py: error: {fault}", file=sys.stderr)
-        return 3
-
-
 if __name__ == "__main__":
-    sys.exit(run(sys.argv[1:]))
+    sys.exit(run(main, sys.argv[1:]))

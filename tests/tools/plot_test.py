@@ -41,7 +41,7 @@ def plot(*arguments):
     """Runs the program within this process: its exit status and what it prints."""
     out, err = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        status = program.run([str(one) for one in arguments])
+        status = program.run(program.main, [str(one) for one in arguments])
     return types.SimpleNamespace(returncode=status, stdout=out.getvalue(), stderr=err.getvalue())
 
 

@@ -10,14 +10,12 @@ import tomllib
 import h5py
 import numpy as np
 
+from command_line import InputError
+
 SCHEMA_VERSION = 1
 SWEEP_SCHEMA_VERSION = 3
 DONE = 1   # of the column `status` of a sweep
 UM_PER_MM = 1000.0
-
-
-class InputError(Exception):
-    """The user's file or command is wrong; the text is one complete line."""
 
 
 class NotInFile(Exception):
