@@ -9,6 +9,7 @@
 #include "sim/read_file.h"
 #include "sim/run.h"
 #include "sim/scenario.h"
+#include "sim/subroutine_files.h"
 #include "sim/sweep/sweep.h"
 
 namespace servomill::sim {
@@ -29,7 +30,7 @@ bool holds_cutter_locations(std::string_view path) {
   return path.ends_with(".cls") || path.ends_with(".apt") || path.ends_with(".csv");
 }
 
-controllers::ProgramSetup setup_of(const ProgramInputs& inputs) {
+controllers::ProgramSetup setup_of(const ProgramInputs& inputs, const std::string& program_file) {
   controllers::ProgramSetup setup;
   if (!inputs.tool_table.empty()) {
     setup.tools = controllers::ToolTable::parse(read_file(inputs.tool_table, {}, "tool table"),
@@ -47,16 +48,37 @@ controllers::ProgramSetup setup_of(const ProgramInputs& inputs) {
     }
     setup.parameters[parameter.substr(0, equals)] = value;
   }
+  setup.block_delete = inputs.block_delete;
+  setup.most_jumps = inputs.most_jumps;
+  setup.subroutine_file = subroutine_files(program_file, inputs.subroutine_folders);
   return setup;
 }
+
+constexpr std::size_t kWrittenAtOnce = 1U << 16;  // bytes
 
 }  // namespace
 
 std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& inputs,
-                         const std::function<void(const std::string&)>& line) {
-  controllers::Interpreter interpreter(read_file(program_file, {}, "program"), program_file,
-                                       setup_of(inputs));
-  while (const auto move = interpreter.next()) line(controllers::canon_json(*move));
+                         const std::function<void(std::string_view)>& write) {
+  controllers::Interpreter interpreter(controllers::ProgramText::of_file(program_file),
+                                       setup_of(inputs, program_file));
+  std::string lines;
+  const auto flush = [&] {
+    write(lines);
+    lines.clear();
+  };
+  try {
+    while (const Move* move = interpreter.next()) {
+      controllers::add_canon_json(*move, lines);
+      lines += '\n';
+      if (lines.size() >= kWrittenAtOnce) flush();
+    }
+  } catch (const InputError& error) {
+    write(lines);
+    write(controllers::canon_error_json(error.what()) + '\n');
+    throw;
+  }
+  flush();
   return interpreter.warnings();
 }
 
@@ -71,7 +93,8 @@ std::vector<Fault> check_file(const std::string& path, const std::vector<std::st
       controllers::read_cl_data(read_file(path, {}, "cutter location file"), path);
       return {};
     }
-    return controllers::check_program(read_file(path, {}, "program"), path, setup_of(inputs));
+    return controllers::check_program(controllers::ProgramText::of_file(path),
+                                      setup_of(inputs, path));
   } catch (const InputError& error) {
     return error.faults();
   }

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
@@ -11,16 +12,20 @@ namespace servomill::sim {
 
 /// What a program needs beside its text.
 struct ProgramInputs {
-  std::string tool_table;               // file in LinuxCNC's format, or empty
-  std::vector<std::string> parameters;  // "#101=1394"
-  std::string machine = {};             // file of the machine that runs it, or empty
+  std::string tool_table;                            // file in LinuxCNC's format, or empty
+  std::vector<std::string> parameters;               // "#101=1394"
+  std::string machine = {};                          // file of the machine that runs it, or empty
+  std::vector<std::string> subroutine_folders = {};  // beside that of the program
+  bool block_delete = false;                         // leave out lines that start with '/'
+  long most_jumps = 10'000'000;                      // loops turned and subroutines called
 };
 
-/// Hands every canonical move of a program to `line`, as one JSON object (no newline).
+/// Hands the canonical moves of a program to `write`, as one JSON object a line, many lines at a
+/// time. Neither the program nor its moves are held.
 /// @return what the interpreter put right
-/// @throws InputError
+/// @throws InputError; the moves before the fault, and its record, have been handed over
 std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& inputs,
-                         const std::function<void(const std::string&)>& line);
+                         const std::function<void(std::string_view)>& write);
 
 /// All faults of a file: scenario or machine (.toml), cutter locations (.cls, .apt, .csv) or
 /// program (anything else).

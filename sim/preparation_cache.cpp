@@ -149,7 +149,7 @@ void add(MemoKey& key, const plant::ErrorModel& errors) {
 
 void add(MemoKey& key, const controllers::ProgramSetup& setup) {
   const auto& [parameters, work_offset, work_rotation, work_system, tools, tool, start,
-               block_delete, machine] = setup;
+               block_delete, subroutine_file, most_jumps, machine] = setup;  // files do not change
   key.add(parameters.size());
   for (const auto& [name, value] : parameters) {
     key.add(name);
@@ -162,6 +162,7 @@ void add(MemoKey& key, const controllers::ProgramSetup& setup) {
   key.add(tool);
   key.add(start);
   key.add(block_delete);
+  key.add(most_jumps);
   key.add(machine != nullptr);
   if (machine == nullptr) return;
   add(key, machine->chain());

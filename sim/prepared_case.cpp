@@ -11,6 +11,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/preparation_cache.h"
 #include "sim/stability_check.h"
+#include "sim/subroutine_files.h"
 #include "sim/uncorrected.h"
 
 namespace servomill::sim {
@@ -32,6 +33,7 @@ controllers::ProgramSetup setup_of(const Scenario& scenario, const CaseSpec& spe
   setup.tools = scenario.program.tools;
   setup.start = machine_start(scenario, spec);
   setup.machine = tool_centre_point(scenario.machine_of(spec));
+  setup.subroutine_file = subroutine_files(scenario.program.file, {});
   return setup;
 }
 

@@ -1,5 +1,5 @@
-/// A block (one line of a program) after parsing: words, assignments and messages, not yet
-/// evaluated. Values are kept as written, in program units.
+/// A block (one line of a program) after parsing: words, assignments, messages and flow control,
+/// not yet evaluated. Values are kept as written, in program units.
 #pragma once
 
 #include <cstdint>
@@ -84,22 +84,80 @@ struct Comment {
   int column = 0;
 };
 
+/// What an O-word says, M98 and M99 among them.
+enum class Flow : std::uint8_t {
+  none,
+  sub,
+  endsub,
+  call,
+  return_,
+  do_,
+  while_,
+  endwhile,
+  if_,
+  elseif,
+  else_,
+  endif,
+  repeat,
+  endrepeat,
+  break_,
+  continue_,
+  program,  // O100 alone: where a subprogram of M98 begins
+  m98,
+  m99,
+  unknown,  // only where a program is skipped
+};
+
+/// `o100 call [1] [#2]`, `o<name> while [#1 LT 5]`, `M98 P100 L2`.
+struct OWord {
+  Flow flow = Flow::none;
+  int name = -1;  // index into Block::names, or -1: `number` is the label
+  Value number;   // also P of M98
+  bool has_value = false;
+  Value value;  // condition, count, result; L of M98
+  std::vector<Value> arguments;
+  int column = 0;
+  int value_column = 0;
+};
+
+enum class PieceKind : std::uint8_t {
+  block_delete,
+  line_number,
+  o_word,  // with what belongs to it
+  word,
+  assignment,
+  comment,
+  percent,
+};
+
+/// The bytes [begin, end) of a line. What lies between pieces are blanks.
+struct Piece {
+  PieceKind kind = PieceKind::word;
+  char letter = '\0';  // of a word, upper case
+  int begin = 0;
+  int end = 0;
+};
+
 /// Reused from line to line so that reading a program does not allocate.
 struct Block {
   int line = 0;
-  bool percent = false;  // the line holds only a %
-  bool deleted = false;  // the line starts with / and block delete is on
+  bool percent = false;       // the line holds only a %
+  bool deleted = false;       // the line starts with / and block delete is on
+  OWord o_word;               // flow none: the block has none
+  std::vector<Piece> pieces;  // in order; no piece behind the last that was read
   std::vector<Word> words;
   std::vector<Assignment> assignments;
-  std::vector<Comment> messages;  // in order; plain comments are dropped
+  Comment message;  // the last in brackets: only that one counts; kind plain: none
   std::vector<Op> code;
   std::vector<std::string> names;  // of named parameters: lower case, blanks removed
 
   void clear() {
     percent = deleted = false;
+    o_word.flow = Flow::none;
+    pieces.clear();
     words.clear();
     assignments.clear();
-    messages.clear();
+    message.kind = CommentKind::plain;
     code.clear();
     names.clear();
   }

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
 #include <string_view>
 
 #include "controllers/gcode/modal_state.h"
@@ -11,21 +13,57 @@
 namespace servomill::controllers {
 namespace {
 
-std::string number(double x) {
-  std::string text = fmt::format("{:.9f}", x);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text == "-0" ? "0" : text;
+constexpr int kDecimals = 9;
+constexpr double kPerUnit = 1e9;
+constexpr double kExactBelow = 9e15;  // integers up to here are exact
+
+// Fixed point with up to nine decimals, zeros at the end left out.
+void add_number(double x, std::string& out) {
+  const double scaled = std::round(x * kPerUnit);
+  if (!(std::abs(scaled) < kExactBelow)) {
+    std::string text = fmt::format("{:.9f}", x);
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    out += text;
+    return;
+  }
+  auto left = static_cast<std::uint64_t>(std::abs(scaled));
+  char digits[24];
+  char* const end = digits + sizeof digits;
+  char* at = end;
+  const auto take_digit = [&] {
+    *--at = static_cast<char>('0' + left % 10);
+    left /= 10;
+  };
+  auto fraction = static_cast<std::uint32_t>(left % 1'000'000'000);
+  left /= 1'000'000'000;
+  if (fraction != 0) {
+    int decimals = kDecimals;
+    for (; fraction % 10 == 0; fraction /= 10) --decimals;
+    for (; decimals > 0; --decimals, fraction /= 10) {
+      *--at = static_cast<char>('0' + fraction % 10);
+    }
+    *--at = '.';
+  }
+  do {
+    take_digit();
+  } while (left != 0);
+  if (scaled < 0.0) *--at = '-';
+  out.append(at, end);
 }
 
-std::string array(std::initializer_list<double> values) {
-  std::string text;
-  for (const double x : values) text += fmt::format("{}{}", text.empty() ? "" : ",", number(x));
-  return fmt::format("[{}]", text);
+void add_array(std::initializer_list<double> values, std::string& out) {
+  char before = '[';
+  for (const double x : values) {
+    out += before;
+    add_number(x, out);
+    before = ',';
+  }
+  out += ']';
 }
 
-std::string words(const AxisWords& w) {
-  return array({w[0] / mm, w[1] / mm, w[2] / mm, w[3] / deg, w[4] / deg, w[5] / deg});
+void add_words(const AxisWords& w, std::string& out) {
+  add_array({w[0] / mm, w[1] / mm, w[2] / mm, w[3] / deg, w[4] / deg, w[5] / deg}, out);
 }
 
 std::string quoted(std::string_view text) {
@@ -82,76 +120,100 @@ std::string_view kind_name(const Move& move) {
   return "";
 }
 
-std::string feed_fields(const Move& move) {
+void add_feed(const Move& move, std::string& out) {
   const bool moves_xyz = move.kind == MoveKind::arc || move.s_end > move.s_begin;
-  return fmt::format(R"(,"feed":{},"fmode":"{}")",
-                     number(move.feed / (moves_xyz ? mm_per_min : deg_per_min)),
-                     move.feed_mode == FeedMode::inverse_time ? "inv" : "upm");
+  out += R"(,"feed":)";
+  add_number(move.feed / (moves_xyz ? mm_per_min : deg_per_min), out);
+  out += move.feed_mode == FeedMode::inverse_time ? R"(,"fmode":"inv")" : R"(,"fmode":"upm")";
 }
 
-std::string arc_fields(const Move& move) {
+void add_arc(const Move& move, std::string& out) {
   static constexpr std::string_view kPlanes[] = {"YZ", "XZ", "XY"};
   const int n = move.arc.normal_axis;
   const Eigen::Vector3d& c = move.arc.centre;
   const Eigen::Vector3d& m = move.centre_machine;
-  return fmt::format(R"(,"plane":"{}","center":{},"mcenter":{},"turns":{})",
-                     kPlanes[static_cast<std::size_t>(n)],
-                     array({c[(n + 1) % 3] / mm, c[(n + 2) % 3] / mm}),
-                     array({m[0] / mm, m[1] / mm, m[2] / mm}), move.arc.turns);
+  out += R"(,"plane":")";
+  out += kPlanes[static_cast<std::size_t>(n)];
+  out += R"(","center":)";
+  add_array({c[(n + 1) % 3] / mm, c[(n + 2) % 3] / mm}, out);
+  out += R"(,"mcenter":)";
+  add_array({m[0] / mm, m[1] / mm, m[2] / mm}, out);
+  fmt::format_to(std::back_inserter(out), R"(,"turns":{})", move.arc.turns);
 }
 
 // What X Y Z of "mend" are: nothing is said if they are positions of the axes.
-std::string control_fields(const Move& move) {
+void add_control(const Move& move, std::string& out) {
   const Eigen::Vector3d& k = move.tool_axis;
   switch (move.tool_control) {
     case ToolControl::none:
-      return {};
+      return;
     case ToolControl::rotary_axes:
-      return R"(,"control":"G43.4")";
+      out += R"(,"control":"G43.4")";
+      return;
     case ToolControl::tool_axis:
-      return fmt::format(R"(,"control":"G43.5","axis":{})", array({k.x(), k.y(), k.z()}));
+      out += R"(,"control":"G43.5","axis":)";
+      return add_array({k.x(), k.y(), k.z()}, out);
     case ToolControl::work_plane:
-      return R"(,"control":"G68.2")";
+      out += R"(,"control":"G68.2")";
+      return;
   }
-  return {};
 }
 
-std::string own_fields(const Move& move) {
+void add_own_fields(const Move& move, std::string& out) {
+  const auto end = std::back_inserter(out);
   switch (move.kind) {
     case MoveKind::rapid:
     case MoveKind::end:
-      return {};
+      return;
     case MoveKind::feed:
-      return feed_fields(move);
+      return add_feed(move, out);
     case MoveKind::arc:
-      return feed_fields(move) + arc_fields(move);
+      add_feed(move, out);
+      return add_arc(move, out);
     case MoveKind::dwell:
-      return fmt::format(R"(,"sec":{})", number(move.value));
+      out += R"(,"sec":)";
+      return add_number(move.value, out);
     case MoveKind::tool:
-      return fmt::format(R"(,"n":{})", move.number);
+      fmt::format_to(end, R"(,"n":{})", move.number);
+      return;
     case MoveKind::spindle:
-      return fmt::format(R"(,"dir":{},"rpm":{})", move.direction, number(move.value / rpm));
+      fmt::format_to(end, R"(,"dir":{},"rpm":)", move.direction);
+      return add_number(move.value / rpm, out);
     case MoveKind::coolant:
-      return fmt::format(R"(,"mist":{},"flood":{})", (move.number & kMist) != 0,
-                         (move.number & kFlood) != 0);
+      fmt::format_to(end, R"(,"mist":{},"flood":{})", (move.number & kMist) != 0,
+                     (move.number & kFlood) != 0);
+      return;
     case MoveKind::stop:
-      return fmt::format(R"(,"kind":"{}")",
-                         move.number == 0 ? "PROGRAM_STOP" : "OPTIONAL_PROGRAM_STOP");
+      out += move.number == 0 ? R"(,"kind":"PROGRAM_STOP")" : R"(,"kind":"OPTIONAL_PROGRAM_STOP")";
+      return;
     case MoveKind::message:
-      return fmt::format(R"(,"text":{})", quoted(collapsed_blanks(move.text)));
+      fmt::format_to(end, R"(,"text":{})", quoted(collapsed_blanks(move.text)));
+      return;
   }
-  return {};
 }
 
 }  // namespace
 
-std::string canon_json(const Move& move) {
-  std::string text = fmt::format(R"({{"t":"{}","line":{})", kind_name(move), move.line);
+void add_canon_json(const Move& move, std::string& out) {
+  out += R"({"t":")";
+  out += kind_name(move);
+  out += R"(","line":)";
+  out += fmt::format_int(move.line).c_str();
   if (is_motion(move.kind)) {
-    text += fmt::format(R"(,"end":{},"mend":{})", words(move.end), words(move.end_machine));
-    text += control_fields(move);
+    out += R"(,"end":)";
+    add_words(move.end, out);
+    out += R"(,"mend":)";
+    add_words(move.end_machine, out);
+    add_control(move, out);
   }
-  return text + own_fields(move) + '}';
+  add_own_fields(move, out);
+  out += '}';
+}
+
+std::string canon_json(const Move& move) {
+  std::string text;
+  add_canon_json(move, text);
+  return text;
 }
 
 std::string canon_error_json(const std::string& message) {

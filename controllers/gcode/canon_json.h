@@ -16,6 +16,8 @@ namespace servomill::controllers {
 ///        turns as in `Arc`
 ///   dwell: sec. tool: n. spindle: dir, rpm. coolant: mist, flood. stop: kind. msg, print: text.
 std::string canon_json(const Move& move);
+/// The same, behind what `out` holds.
+void add_canon_json(const Move& move, std::string& out);
 
 /// The record of a fault, as the last line.
 std::string canon_error_json(const std::string& message);

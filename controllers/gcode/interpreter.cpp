@@ -45,7 +45,7 @@ std::array<AxisWords, 9> ProgramSetup::zero_offsets() {
 }
 
 const std::array<Interpreter::Machine::Step, 21> Interpreter::Machine::kSteps = {
-    &Machine::messages,
+    &Machine::message,
     &Machine::feed_mode,
     &Machine::feed,
     &Machine::spindle_speed,
@@ -71,7 +71,7 @@ const std::array<Interpreter::Machine::Step, 21> Interpreter::Machine::kSteps = 
 // ------------------------------------------------------------------------------------------ setup
 
 void Interpreter::Machine::set_initial(const std::string& name, double value) {
-  const Place place{file_, 0, 0};
+  const Place place{file(), 0, 0};
   const auto refuse = [&](std::string_view why) {
     throw InputError(place, fmt::format("parameter '{}': {}", name, why));
   };
@@ -109,51 +109,143 @@ void Interpreter::Machine::store_setup_offset(int system) {
 // ---------------------------------------------------------------------------------------- reading
 
 bool Interpreter::Machine::read_block() {
-  std::string_view line;
-  if (!lines_.next(line)) {
-    ended_ = true;
-    fail(0, std::string(kNoEnd));
-  }
-  if (is_blank(line)) return true;
-  parser_.parse(line, lines_.number(), block_);
-  if (block_.percent) {
-    const Percent meaning = percent_.saw_percent();
-    if (meaning == Percent::misplaced) fail(1, std::string(kMisplacedPercent));
-    ended_ = meaning == Percent::end;
-    return true;
-  }
-  percent_.saw_line();
-  if (block_.deleted) return true;
-  before_ = state_;
+  here_ = {text_, text().mark()};
+  if (!text().next(line_)) fail_at_end();
+  block_.clear();
+  if (is_blank(line_)) return true;
   try {
-    run_block();
+    flow_.skip_to ? read_skipped_line() : read_executed_line();
+  } catch (const InputError& error) {
+    if (flow_.calls.empty()) throw;
+    Fault fault = error.faults().front();
+    fault.message += call_stack();
+    throw InputError({fault});
+  }
+  return true;
+}
+
+void Interpreter::Machine::read_executed_line() {
+  parser_.parse(line_, file(), line(), block_);
+  if (block_.percent) return saw_percent();
+  texts_[text_].percent.saw_line();
+  if (!block_.deleted) execute();
+}
+
+// Only the line with the right label ends the skipping; it is then read in full.
+void Interpreter::Machine::read_skipped_line() {
+  parser_.parse(line_, file(), line(), block_, Parser::Extent::flow_only);
+  if (block_.percent) return saw_percent();
+  texts_[text_].percent.saw_line();
+  if (block_.deleted || !may_end_skipping(block_.o_word)) return block_.clear();
+  parser_.parse(line_, file(), line(), block_);
+  execute();
+}
+
+bool Interpreter::Machine::may_end_skipping(const OWord& o) const {
+  switch (o.flow) {
+    case Flow::none:
+    case Flow::call:
+    case Flow::m98:
+    case Flow::m99:
+      return false;
+    case Flow::unknown:
+      return !flow_.defining;  // to be refused
+    case Flow::sub:
+    case Flow::program:
+      return flow_.defining || label_of(o) == *flow_.skip_to;
+    case Flow::endsub:
+    case Flow::return_:
+      return label_of(o) == *flow_.skip_to;
+    default:
+      return !flow_.defining && label_of(o) == *flow_.skip_to;
+  }
+}
+
+void Interpreter::Machine::saw_percent() {
+  const Percent meaning = texts_[text_].percent.saw_percent();
+  if (meaning == Percent::misplaced) fail(1, std::string(kMisplacedPercent));
+  if (meaning != Percent::end) return;
+  if (flow_.skip_to || text_ != 0) fail_at_end();
+  ended_ = true;
+}
+
+// The text ends although the program does not.
+void Interpreter::Machine::fail_at_end() {
+  ended_ = true;
+  std::string message(kNoEnd);
+  if (flow_.skips_to_sub) {
+    message = fmt::format("no subroutine O<{}> up to here; line {} calls it", *flow_.skip_to,
+                          flow_.skip_from);
+  } else if (flow_.skip_to) {
+    const std::string label = flow_.skip_to->substr(flow_.skip_to->find('#') + 1);
+    message =
+        fmt::format("the program ends while it skips to O{} from line {}", label, flow_.skip_from);
+  }
+  fail(0, message + call_stack());
+}
+
+// "; in O<hole>, called in part.ngc:12" for every call that is under way.
+std::string Interpreter::Machine::call_stack() const {
+  std::string text;
+  for (auto call = flow_.calls.rbegin(); call != flow_.calls.rend(); ++call) {
+    const std::string& from = texts_[call->return_to.text].lines.file();
+    text += fmt::format("{} O<{}>, called in {}:{}", text.empty() ? "; in" : ", in", call->name,
+                        from, call->line);
+  }
+  return text;
+}
+
+void Interpreter::Machine::execute() {
+  before_ = state_;
+  const std::size_t moves_before = out_.size();
+  try {
+    block_.o_word.flow == Flow::none ? run_block() : run_flow();
   } catch (const InputError&) {
     state_ = before_;
     parameters_.roll_back();
-    out_.clear();
+    out_.erase(out_.begin() + static_cast<std::ptrdiff_t>(moves_before), out_.end());
     throw;
   }
   parameters_.commit();
-  return true;
 }
 
 void Interpreter::Machine::run_block() {
   const bool has_vectors = state_.tool_control == ToolControl::tool_axis;
-  request_ = resolve(block_, parameters_, state_.motion, has_vectors, file_);
+  resolve(block_, parameters_, state_.motion, has_vectors, file(), request_);
+  new_numbers_.clear();
   assign_parameters();
   for (const Step step : kSteps) (this->*step)();
+}
+
+std::optional<ExecutedBlock> Interpreter::Machine::next_block() {
+  clear_output();
+  if (ended_) return std::nullopt;
+  request_.clear();
+  new_numbers_.clear();
+  const std::size_t read_from = text_;
+  const int depth = static_cast<int>(flow_.calls.size());
+  read_block();
+  ExecutedBlock out;
+  out.text = line_;
+  out.block = block_.pieces.empty() ? nullptr : &block_;
+  out.words = request_.values;
+  out.assignments = new_numbers_;
+  out.moves = out_;
+  out.file = &texts_[read_from].lines.file();
+  out.line = here_.mark.line + 1;
+  out.call_depth = depth;
+  return out;
 }
 
 // All right-hand sides are read before the first parameter changes.
 void Interpreter::Machine::assign_parameters() {
   if (block_.assignments.empty()) return;
-  new_numbers_.clear();
   for (const Assignment& a : block_.assignments) {
-    const double value = evaluate(a.value, block_, parameters_, file_);
+    const double value = evaluate(a.value, block_, parameters_, file());
     int number = 0;
     if (a.name < 0) {
-      const double index = evaluate(a.index, block_, parameters_, file_);
-      number = parameter_number(index, {file_, block_.line, a.column});
+      const double index = evaluate(a.index, block_, parameters_, file());
+      number = parameter_number(index, {file(), block_.line, a.column});
       if (parameter::is_read_only(number)) {
         fail(a.column, fmt::format("parameter #{} is read-only", number));
       }
@@ -183,14 +275,14 @@ int Interpreter::Machine::integer(char letter, double tolerance) const {
 
 // ---------------------------------------------------------------- speed, feed, tool and the like
 
-void Interpreter::Machine::messages() {
-  for (const Comment& comment : block_.messages) {
-    Move& move = emit(MoveKind::message);
-    move.text =
-        comment.kind == CommentKind::message ? comment.text : substitute(comment.text, parameters_);
-    move.text = trimmed(move.text);
-    move.number = comment.kind == CommentKind::print ? kPrintMessage : 0;
-  }
+void Interpreter::Machine::message() {
+  const Comment& comment = block_.message;
+  if (comment.kind == CommentKind::plain) return;
+  Move& move = emit(MoveKind::message);
+  move.text =
+      comment.kind == CommentKind::message ? comment.text : substitute(comment.text, parameters_);
+  move.text = trimmed(move.text);
+  move.number = comment.kind == CommentKind::print ? kPrintMessage : 0;
 }
 
 void Interpreter::Machine::feed_mode() {
@@ -573,10 +665,10 @@ void Interpreter::Machine::require_feed() const {
 
 // @param length  of the XYZ path, m
 // @param angle   of a rotation, rad
-double Interpreter::Machine::move_feed(const AxisWords& end, double length, double angle) const {
+double Interpreter::Machine::move_feed(double length, double angle) const {
   const bool is_linear_move = state_.controls_tip()
                                   ? length > kStandingTip
-                                  : end.head<3>() != state_.position.head<3>() || length > 0.0;
+                                  : state_.s + length > state_.s;  // else it moves by rounding only
   if (state_.feed_mode == FeedMode::units_per_minute) {
     return is_linear_move ? state_.feed_linear : state_.feed_rotary;
   }
@@ -600,7 +692,7 @@ void Interpreter::Machine::straight() {
     state_.tool_axis = k;
   }
   move_to(is_rapid ? MoveKind::rapid : MoveKind::feed, end, length,
-          is_rapid ? 0.0 : move_feed(end, length, angle));
+          is_rapid ? 0.0 : move_feed(length, angle));
   if (has_tool_axis) out_.back().tool_axis = state_.tool_axis;
 }
 
@@ -677,7 +769,7 @@ void Interpreter::Machine::arc() {
       ArcSweep(state_.position.head<3>(), end.head<3>(), centre.head<3>(), n, turns).length();
   const double angle = (end - state_.position).tail<3>().norm();
   warn_of_leaning_tool();
-  move_to(MoveKind::arc, end, length, move_feed(end, length, angle));
+  move_to(MoveKind::arc, end, length, move_feed(length, angle));
   out_.back().arc = {n, centre.head<3>(), turns};
   if (state_.plane) {
     out_.back().plane = std::make_shared<const WorkPlane>(state_.plane_in_workpiece());
@@ -709,7 +801,7 @@ void Interpreter::Machine::stop() {
 Move& Interpreter::Machine::emit(MoveKind kind) {
   Move& move = out_.emplace_back();
   move.kind = kind;
-  move.line = lines_.number();
+  move.line = line();
   move.end = state_.position;
   move.end_machine = state_.to_machine(state_.position);
   move.path_mode = state_.path_mode;
@@ -764,18 +856,24 @@ std::optional<double> Interpreter::Machine::system_name(std::string_view name) c
   if (name == "_selected_tool") return state_.selected_tool;
   if (name == "_feed") return state_.feed_linear * minute / state_.unit;
   if (name == "_rpm") return state_.spindle_speed / rpm;
+  if (name == "_value") return flow_.value;
+  if (name == "_value_returned") return flow_.has_value ? 1.0 : 0.0;
+  if (name == "_call_level") return static_cast<double>(flow_.calls.size());
   return std::nullopt;
 }
 
 // ------------------------------------------------------------------------------------- public API
 
+Interpreter::Interpreter(ProgramText text, ProgramSetup setup)
+    : machine_(std::make_unique<Machine>(std::move(text), std::move(setup))) {}
 Interpreter::Interpreter(std::string text, std::string file, ProgramSetup setup)
-    : machine_(std::make_unique<Machine>(std::move(text), std::move(file), std::move(setup))) {}
+    : Interpreter(ProgramText::of_text(std::move(text), std::move(file)), std::move(setup)) {}
 Interpreter::~Interpreter() = default;
 Interpreter::Interpreter(Interpreter&&) noexcept = default;
 Interpreter& Interpreter::operator=(Interpreter&&) noexcept = default;
 
-std::optional<Move> Interpreter::next() { return machine_->next(); }
+const Move* Interpreter::next() { return machine_->next(); }
+std::optional<ExecutedBlock> Interpreter::next_block() { return machine_->next_block(); }
 std::vector<Move> Interpreter::rest() { return machine_->rest(); }
 const std::vector<Fault>& Interpreter::warnings() const { return machine_->warnings(); }
 
@@ -795,53 +893,61 @@ bool ends_program(const Block& block) {
 void append(std::vector<Fault>& faults, const InputError& error) {
   for (const Fault& fault : error.faults()) {
     const bool known = std::any_of(faults.begin(), faults.end(), [&](const Fault& other) {
-      return other.place == fault.place && other.message == fault.message;
+      return other.place == fault.place && fault.message.starts_with(other.message);
     });
     if (!known) faults.push_back(fault);
   }
 }
 
-std::vector<Fault> syntax_faults(std::string_view text, const std::string& file,
-                                 bool block_delete) {
+// Subroutines may stand behind M2: where the program has O-words it is read to its last line.
+std::vector<Fault> syntax_faults(ProgramText& text, bool block_delete) {
   std::vector<Fault> faults;
-  Parser parser(file, block_delete);
+  Parser parser(block_delete);
   Block block;
-  Lines lines(text);
   PercentRule percent;
-  for (std::string_view line; lines.next(line);) {
+  bool has_o_words = false;
+  for (std::string_view line; text.next(line);) {
     if (is_blank(line)) continue;
     try {
-      parser.parse(line, lines.number(), block);
+      parser.parse(line, text.file(), text.number(), block);
       if (block.percent) {
         if (percent.saw_percent() == Percent::end) break;
         continue;
       }
       percent.saw_line();
-      check_codes(block, file);
-      if (ends_program(block)) break;
+      has_o_words = has_o_words || block.o_word.flow != Flow::none;
+      check_codes(block, text.file());
+      if (ends_program(block) && !has_o_words) break;
     } catch (const InputError& error) {
       percent.saw_line();
       append(faults, error);
     }
   }
+  text.rewind();
   return faults;
 }
 
 }  // namespace
 
-std::vector<Fault> check_program(std::string text, std::string file, ProgramSetup setup) {
-  std::vector<Fault> faults = syntax_faults(text, file, setup.block_delete);
+std::vector<Fault> check_program(ProgramText text, ProgramSetup setup) {
+  std::vector<Fault> faults = syntax_faults(text, setup.block_delete);
+  const std::string file = text.file();
   try {
-    Interpreter interpreter(std::move(text), std::move(file), std::move(setup));
-    while (interpreter.next()) {
+    Interpreter interpreter(std::move(text), std::move(setup));
+    while (interpreter.next() != nullptr) {
     }
   } catch (const InputError& error) {
     append(faults, error);
   }
-  std::stable_sort(faults.begin(), faults.end(), [](const Fault& a, const Fault& b) {
+  std::stable_sort(faults.begin(), faults.end(), [&](const Fault& a, const Fault& b) {
+    if (a.place.file != b.place.file) return a.place.file == file;
     return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
   });
   return faults;
+}
+
+std::vector<Fault> check_program(std::string text, std::string file, ProgramSetup setup) {
+  return check_program(ProgramText::of_text(std::move(text), std::move(file)), std::move(setup));
 }
 
 }  // namespace servomill::controllers

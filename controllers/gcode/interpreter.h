@@ -1,7 +1,7 @@
 /// The RS274/NGC interpreter: program text in, canonical moves out.
 ///
 /// Meaning and order of execution are those of LinuxCNC 2.9: within a block, whatever the order of
-/// its words, (1) messages, (2) G93 G94, (3) F, in the unit in force before the block, (4) S,
+/// its words, (1) message, (2) G93 G94, (3) F, in the unit in force before the block, (4) S,
 /// (5) T, (6) M6, (7) M3 M4 M5, (8) M7 M8 M9, (9) M48 M49, (10) G4, (11) plane, (12) unit,
 /// (13) cutter compensation, (14) tool length and tool-centre-point control, (15) work system,
 /// (16) tilted work plane, (17) path control, (18) distance modes, (19) G10 G28 G30 G52 G53.1 G92,
@@ -23,18 +23,28 @@
 /// rotary axes at zero, and turns with the workpiece. Switching them on or off moves nothing.
 ///
 /// Different from LinuxCNC on purpose: M6 leaves the position as it
-/// is; M48 M49 do nothing, since no operator turns the override; all messages of a block are given,
-/// not only its last; a G0 or G1 without axis words gives no move; Q of G64 is accepted and unused
-/// (it allows, and does not ask for, the merging of short lines).
+/// is; M48 M49 do nothing, since no operator turns the override; a G0 or G1 without axis words
+/// gives no move; Q of G64 is accepted and unused (it allows, and does not ask for, the merging of
+/// short lines); words in the block of M98 other than P and L are warned of.
+///
+/// O-words: subroutines, loops and conditions as LinuxCNC has them, its oddities included (the
+/// notes at FlowState in interpreter_machine.h); where a program is skipped, only comments, labels
+/// and keywords are looked at.
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "controllers/gcode/block.h"
+#include "controllers/gcode/program_text.h"
 #include "controllers/gcode/tool_table.h"
 #include "controllers/path/tool_centre_point.h"
 #include "plant/vocabulary/axes.h"
@@ -54,6 +64,11 @@ struct ProgramSetup {
   int tool = 0;                         // in the spindle at the start; 0: none
   AxisWords start = AxisWords::Zero();  // machine coordinates before the first block; m, rad
   bool block_delete = false;            // leave out the lines that start with '/'
+  /// The file of a subroutine that the program calls and does not define: `o<name> call` asks for
+  /// "name", `o100 call` and `M98 P100` for "100". Empty: there are no such files.
+  std::function<std::optional<ProgramText>(const std::string& name)> subroutine_file;
+  /// Loops turned and subroutines called before a program counts as endless.
+  long most_jumps = 10'000'000;
   /// The machine, for tool-centre-point control and tilted planes. Without it a program may use
   /// G43.4 and G68.2 as long as its rotary axes are at zero where they are switched on and off.
   std::shared_ptr<const ToolCentrePoint> machine;
@@ -61,20 +76,39 @@ struct ProgramSetup {
   static std::array<AxisWords, 9> zero_offsets();
 };
 
-/// Reads a program block by block, so that a long one is never held as moves.
+/// A line of a program that was run: also a blank one, and one that O-words skip.
+struct ExecutedBlock {
+  std::string_view text;                                // as it stands in the file, without its end
+  const Block* block = nullptr;                         // nullptr: blank, or skipped
+  std::span<const double> words;                        // values of block->words
+  std::span<const std::pair<int, double>> assignments;  // of block->assignments; 0: a named one
+  std::span<const Move> moves;
+  const std::string* file = nullptr;
+  int line = 0;
+  int call_depth = 0;  // 0: outside of subroutines
+};
+
+/// Reads a program block by block, so that a long one is never held: neither its text nor its
+/// moves.
 class Interpreter {
  public:
-  /// @param file  name for messages
   /// @throws InputError for parameters that cannot be set
+  Interpreter(ProgramText text, ProgramSetup setup);
+  /// @param file  name for messages
   Interpreter(std::string text, std::string file, ProgramSetup setup);
   ~Interpreter();
   Interpreter(Interpreter&&) noexcept;
   Interpreter& operator=(Interpreter&&) noexcept;
 
-  /// The next move, or nullopt behind the end of the program.
+  /// The next move, or nullptr behind the end of the program. It stays valid until the next call.
   /// @throws InputError at a block with an error, which then has changed nothing; the call after
   /// that goes on with the next block
-  std::optional<Move> next();
+  const Move* next();
+
+  /// The next line with its moves, or nullopt behind the end of the program. What it points to
+  /// stays valid until the next call. Not to be mixed with `next`.
+  /// @throws InputError as next()
+  std::optional<ExecutedBlock> next_block();
 
   /// All moves that are left.
   /// @throws InputError at a block with an error; the moves before it are lost
@@ -94,6 +128,7 @@ class Interpreter {
 std::vector<Move> interpret(std::string text, std::string file, ProgramSetup setup);
 
 /// Every fault of syntax in the program (up to its end), and the first fault met on running it.
+std::vector<Fault> check_program(ProgramText text, ProgramSetup setup);
 std::vector<Fault> check_program(std::string text, std::string file, ProgramSetup setup);
 
 }  // namespace servomill::controllers

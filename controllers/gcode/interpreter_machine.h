@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,28 +17,74 @@
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/parameters.h"
 #include "controllers/gcode/parser.h"
-#include "controllers/gcode/program_lines.h"
+#include "controllers/gcode/program_text.h"
 #include "controllers/gcode/request.h"
 
 namespace servomill::controllers {
 
 inline constexpr double kIntegerTol = 1e-4;  // as LinuxCNC, for words that must be integers
 
+// ---- flow control
+
+/// A line to which a program can go: of a subroutine or a loop.
+struct LinePlace {
+  std::size_t text = 0;    // index into the texts of a program
+  ProgramText::Mark mark;  // before the line
+  bool operator==(const LinePlace& o) const {
+    return text == o.text && mark.offset == o.mark.offset;
+  }
+};
+
+struct Label {
+  Flow flow = Flow::none;
+  LinePlace place;
+  std::optional<long> repeats_left;  // of a `repeat` that is under way
+};
+
+inline constexpr int kArguments = 30;  // #1 ... #30
+inline constexpr int kMostCalls = 9;   // in each other, as LinuxCNC
+
+/// One call that is under way.
+struct Call {
+  std::string name;
+  Flow flow = Flow::call;  // or m98
+  LinePlace return_to;
+  int line = 0;  // of the call
+  std::array<double, kArguments> saved{};
+};
+
+/// Where a program goes on. The flags are LinuxCNC's, with what they leave standing: a `break` out
+/// of a `while` lets the next `do` run once only, a `continue` in a `do` turns the next `break` out
+/// of a `while` into a `continue`.
+struct FlowState {
+  std::map<std::string, Label> labels;
+  std::vector<Call> calls;
+  std::vector<long> turns_left{0};      // of M98 L, of the program and of each call; 0: none
+  std::optional<std::string> skip_to;   // label that ends the skipping
+  bool skips_to_sub = false;            // only `sub` or a bare O-word ends it
+  int skip_from = 0;                    // line where the skipping began
+  std::optional<std::string> defining;  // the subroutine whose definition is passed over
+  bool has_taken_branch = false;
+  bool breaks = false;
+  bool continues = false;
+  double value = 0.0;  // of the last return or endsub
+  bool has_value = false;
+  long jumps = 0;
+};
+
 class Interpreter::Machine {
  public:
-  Machine(std::string text, std::string file, ProgramSetup setup)
-      : text_(std::move(text)),
-        file_(std::move(file)),
-        setup_(std::move(setup)),
+  Machine(ProgramText text, ProgramSetup setup)
+      : setup_(std::move(setup)),
         parameters_({[this](int number) { return system_number(number); },
                      [this](std::string_view name) { return system_name(name); }}),
-        parser_(file_, setup_.block_delete),
-        lines_(text_) {
+        parser_(setup_.block_delete) {
+    texts_.push_back({std::move(text), {}});
     for (const auto& [name, value] : setup_.parameters) set_initial(name, value);
     for (int system = 1; system <= kWorkSystems; ++system) store_setup_offset(system);
     if (setup_.work_system < 1 || setup_.work_system > kWorkSystems) {
-      throw InputError({file_, 0, 0}, fmt::format("work system {}; must be in 1 ... {}",
-                                                  setup_.work_system, kWorkSystems));
+      throw InputError({file(), 0, 0}, fmt::format("work system {}; must be in 1 ... {}",
+                                                   setup_.work_system, kWorkSystems));
     }
     state_.tool = setup_.tool;
     load_work_system(setup_.work_system);
@@ -44,21 +92,19 @@ class Interpreter::Machine {
     parameters_.commit();
   }
 
-  std::optional<Move> next() {
+  const Move* next() {
     while (given_ == out_.size()) {
-      out_.clear();
-      given_ = 0;
-      if (ended_ || !read_block()) return std::nullopt;
+      clear_output();
+      if (ended_ || !read_block()) return nullptr;
     }
-    return std::move(out_[given_++]);
+    return &out_[given_++];
   }
+
+  std::optional<ExecutedBlock> next_block();
 
   std::vector<Move> rest() {
     out_.erase(out_.begin(), out_.begin() + static_cast<std::ptrdiff_t>(given_));
     given_ = 0;
-    // of long programs most lines are moves; of many blank ones nothing should be held
-    constexpr std::size_t kMostReserved = 1U << 18;
-    out_.reserve(out_.size() + std::min(lines_.count(), kMostReserved));
     while (!ended_ && read_block()) {
     }
     return std::exchange(out_, {});
@@ -67,16 +113,61 @@ class Interpreter::Machine {
   const std::vector<Fault>& warnings() const { return warnings_; }
 
  private:
+  struct Text {
+    ProgramText lines;
+    PercentRule percent;
+  };
+
   // ---- setup
   void set_initial(const std::string& name, double value);
   void store_setup_offset(int system);
 
   // ---- reading
   bool read_block();
+  void read_executed_line();
+  void read_skipped_line();
+  bool may_end_skipping(const OWord& o) const;
+  void saw_percent();
+  [[noreturn]] void fail_at_end();
+  void execute();
   void run_block();
-  [[noreturn]] void fail(int column, std::string message) const {
-    throw InputError({file_, lines_.number(), column}, std::move(message));
+  void clear_output() {
+    out_.clear();
+    given_ = 0;
   }
+  ProgramText& text() { return texts_[text_].lines; }
+  const ProgramText& text() const { return texts_[text_].lines; }
+  const std::string& file() const { return text().file(); }
+  int line() const { return text().number(); }
+  [[noreturn]] void fail(int column, std::string message) const {
+    throw InputError({file(), line(), column}, std::move(message));
+  }
+  std::string call_stack() const;
+
+  // ---- flow control (flow_control.cpp)
+  void run_flow();
+  std::string label_of(const OWord& o) const;
+  std::string label_text(const OWord& o) const;
+  const std::string& scope_name() const;
+  double flow_value(const OWord& o);
+  void skip_to(const std::string& label);
+  void go_to(const LinePlace& place);
+  void count_jump();
+  Label& new_label(const std::string& name, Flow flow);
+  Label& same_label(const std::string& name, Flow flow);
+  Label& known_label(const std::string& name, const OWord& o);
+  void begin_subroutine(const std::string& name, const OWord& o);
+  void end_subroutine(const std::string& name, const OWord& o);
+  void call_subroutine(const std::string& name, const OWord& o);
+  void call_subprogram(const std::string& name, const OWord& o);
+  void enter_call(const std::string& name, const OWord& o, const LinePlace& return_to);
+  void find_subroutine(const std::string& name);
+  void leave_call();
+  void repeat(const std::string& name, const OWord& o);
+  void while_line(const std::string& name, const OWord& o);
+  void branch(const std::string& name, const OWord& o);
+  void leave_loop(const std::string& name, const OWord& o);
+  void end_loop(const std::string& name, const OWord& o);
   void assign_parameters();
 
   // ---- words
@@ -100,7 +191,7 @@ class Interpreter::Machine {
   // ---- steps of a block, in the order of execution
   using Step = void (Machine::*)();
   static const std::array<Step, 21> kSteps;
-  void messages();
+  void message();
   void feed_mode();
   void feed();
   void spindle_speed();
@@ -158,7 +249,7 @@ class Interpreter::Machine {
   int arc_turns(bool clockwise) const;
   AxisWords programmed_end() const;
   AxisWords machine_end() const;
-  double move_feed(const AxisWords& end, double length, double angle) const;
+  double move_feed(double length, double angle) const;
   void require_feed() const;
 
   // ---- output
@@ -170,13 +261,14 @@ class Interpreter::Machine {
   double system_number(int number) const;
   std::optional<double> system_name(std::string_view name) const;
 
-  std::string text_;
-  std::string file_;
+  std::deque<Text> texts_;  // the program and the files of its subroutines
+  std::size_t text_ = 0;    // the one that is read
   ProgramSetup setup_;
   Parameters parameters_;
   Parser parser_;
-  Lines lines_;
-  PercentRule percent_;
+  std::string_view line_;  // as it was read last
+  LinePlace here_;         // where it begins
+  FlowState flow_;
   Block block_;
   Request request_;
   ModalState state_;

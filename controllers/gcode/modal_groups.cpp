@@ -137,7 +137,7 @@ constexpr auto kMCodes = std::to_array<Code>({
     {720, m_input_output, false, ""},
     {730, m_input_output, false, ""},
     {980, m_input_output, false, ""},
-    {990, m_input_output, false, ""},
+    {990, m_stop, true, ""},
 });
 
 constexpr bool by_tenths(const Code& a, const Code& b) { return a.tenths < b.tenths; }

@@ -146,7 +146,8 @@ double Parameters::get(int number) const {
 }
 
 std::optional<double> Parameters::get(const std::string& name) const {
-  if (const auto found = named_.find(name); found != named_.end()) return found->second;
+  const Names& names = names_of(name);
+  if (const auto found = names.find(name); found != names.end()) return found->second;
   return system_.name(name);
 }
 
@@ -158,10 +159,11 @@ void Parameters::set(int number, double value) {
 }
 
 void Parameters::set(const std::string& name, double value) {
-  const auto found = named_.find(name);
+  Names& names = names_of(name);
+  const auto found = names.find(name);
   old_names_.emplace_back(
-      name, found == named_.end() ? std::nullopt : std::optional<double>(found->second));
-  named_[name] = value;
+      name, found == names.end() ? std::nullopt : std::optional<double>(found->second));
+  names[name] = value;
 }
 
 void Parameters::commit() {
@@ -177,9 +179,9 @@ void Parameters::roll_back() {
   for (; !old_names_.empty(); old_names_.pop_back()) {
     const auto& [name, value] = old_names_.back();
     if (value) {
-      named_[name] = *value;
+      names_of(name)[name] = *value;
     } else {
-      named_.erase(name);
+      names_of(name).erase(name);
     }
   }
 }
@@ -195,9 +197,8 @@ int parameter_number(double value, const Place& place) {
   return static_cast<int>(nearest);
 }
 
-double evaluate(const Value& value, const Block& block, const Parameters& parameters,
-                const std::string& file) {
-  if (value.is_constant()) return value.number;
+double evaluate_code(const Value& value, const Block& block, const Parameters& parameters,
+                     const std::string& file) {
   Stack stack;
   std::size_t top = 0;  // one above the topmost number
   for (int i = value.begin; i < value.end; ++i) {

@@ -34,7 +34,8 @@ constexpr int work_rotation(int system) { return kWorkRotation + 20 * (system - 
 constexpr bool is_read_only(int number) { return number >= kTool && number <= kLastReadOnly; }
 }  // namespace parameter
 
-/// All parameters. Changes since the last `commit` can be taken back.
+/// All parameters. Changes since the last `commit` can be taken back. Names that begin with '_' are
+/// global; others belong to the subroutine, or to the program outside of all, that sets them.
 class Parameters {
  public:
   /// What the interpreter computes on demand: read-only numbers 5400 ... 5428, and named ones that
@@ -54,13 +55,24 @@ class Parameters {
   void set(int number, double value);
   void set(const std::string& name, double value);
 
+  /// A subroutine with names of its own begins; ends.
+  void enter_scope() { local_.emplace_back(); }
+  void leave_scope() { local_.pop_back(); }
+
   void commit();
   void roll_back();
 
  private:
   System system_;
   std::vector<double> numbered_;
-  std::unordered_map<std::string, double> named_;
+  using Names = std::unordered_map<std::string, double>;
+  Names& names_of(const std::string& name) { return name[0] == '_' ? global_ : local_.back(); }
+  const Names& names_of(const std::string& name) const {
+    return name[0] == '_' ? global_ : local_.back();
+  }
+
+  Names global_;
+  std::vector<Names> local_{Names()};  // of each call
   std::vector<std::pair<int, double>> old_numbers_;
   std::vector<std::pair<std::string, std::optional<double>>> old_names_;
 };
@@ -71,8 +83,12 @@ int parameter_number(double value, const Place& place);
 
 /// @throws InputError for a parameter that is not defined, an argument out of the domain of a
 /// function, a division by zero or a result that is not finite
-double evaluate(const Value& value, const Block& block, const Parameters& parameters,
-                const std::string& file);
+double evaluate_code(const Value& value, const Block& block, const Parameters& parameters,
+                     const std::string& file);
+inline double evaluate(const Value& value, const Block& block, const Parameters& parameters,
+                       const std::string& file) {
+  return value.is_constant() ? value.number : evaluate_code(value, block, parameters, file);
+}
 
 /// Text of (DEBUG, ...) and (PRINT, ...): #5 and #<name> replaced by their values with six
 /// decimals, an undefined name by ######.

@@ -9,9 +9,16 @@
 
 namespace servomill::controllers {
 
-/// Reads the lines of one program.
-/// Grammar (blanks removed, upper case):
-///   line  = ["/"] ["N" digits ["." digits]] {comment | "#" param "=" value | letter value} | "%"
+/// Reads the lines of programs.
+/// Grammar (blanks and case do not count):
+///   line  = ["/"] ["N" digits ["." digits]] (oword | {comment | "#" param "=" value | letter
+///   value})
+///         | "%"
+///   oword = "O" label ["SUB" | "DO" | "ELSE" | "ENDIF" | "ENDWHILE" | "ENDREPEAT" | "BREAK" |
+///           "CONTINUE" | ("ENDSUB" | "RETURN") ["[" expr "]"] | "CALL" {"[" expr "]"} |
+///           ("IF" | "ELSEIF" | "WHILE" | "REPEAT") "[" expr "]"] {comment}
+///         | "M98" {"P" value | "L" value} {comment} | "M99" {comment}
+///   label = "<" name ">" | value
 ///   value = number | "[" expr "]" | "#" param | ("+"|"-") value | function "[" expr "]"
 ///         | "ATAN[" expr "]/[" expr "]"
 ///   param = value | "<" name ">"
@@ -19,44 +26,61 @@ namespace servomill::controllers {
 ///           | EQ NE GT GE LT LE | AND OR XOR; all of them from left to right
 class Parser {
  public:
-  explicit Parser(std::string file, bool block_delete = false)
-      : file_(std::move(file)), block_delete_(block_delete) {}
+  explicit Parser(bool block_delete = false) : block_delete_(block_delete) {}
+
+  /// How much of a line is read. Where flow control skips, RS274/NGC does not look at what a line
+  /// says, only at its comments, and at the label and the keyword of its O-word.
+  enum class Extent { all, flow_only };
 
   /// @param line  without its end
-  /// @param block cleared and filled
+  /// @param block cleared and filled. Its pieces tell of the whole line: behind the last one, and
+  /// between them, there are blanks only
   /// @throws InputError with file:line:column
-  void parse(std::string_view line, int number, Block& block);
+  void parse(std::string_view line, const std::string& file, int number, Block& block,
+             Extent extent = Extent::all);
 
  private:
   [[noreturn]] void fail(std::size_t at, std::string message) const;
-  [[noreturn]] void fail_here(std::string message) const { fail(at_, std::move(message)); }
-  char peek() const { return at_ < line_.text.size() ? line_.text[at_] : '\0'; }
-  bool accept(std::string_view token);
-  int column() const { return line_.column_at(at_); }
+  [[noreturn]] void fail_here(std::string message) const { fail(cursor_.at(), std::move(message)); }
+  char peek() const { return cursor_.peek(); }
+  bool accept(std::string_view token) { return cursor_.accept(token); }
+  int column() const { return cursor_.column(); }
   void emit(OpCode code, int column, double value = 0.0, int name = -1);
+  void add_piece(PieceKind kind, std::size_t begin, char letter = '\0');
 
   void item();
   void word();
   void assignment();
   void line_number();
   void skip_digits();
-  void take_comment();
+  void comment();
+  void flow(Extent extent);
+  void label(OWord& o);
+  void value_of_flow(OWord& o, std::string_view keyword);
+  void arguments(OWord& o, std::size_t start);
+  [[noreturn]] void fail_at_keyword();
+  void subprogram_call(OWord& o);
+  void only_comments(std::string_view keyword);
+  Value bracketed_value(std::string_view what);
   Value value(std::string_view what);
   void real(std::string_view what);
   double number(std::string_view what);
   void parameter(OpCode numbered, OpCode named);
-  int parameter_name();
+  int name_in_angles(std::string_view what);
   void function();
   void bracketed();
   void expression(int loosest);
 
-  std::string file_;
   bool block_delete_;
-  CodeLine line_;
+  Cursor cursor_;
+  const std::string* file_ = nullptr;
   int number_ = 0;
-  std::size_t at_ = 0;
-  std::size_t comments_taken_ = 0;
+  std::uint32_t letters_ = 0;  // of the words so far but G and M, a bit each
   Block* block_ = nullptr;
 };
+
+/// The line as it was read, from its pieces and the blanks between them: the law that nothing of
+/// it is lost.
+std::string print_line(std::string_view line, const Block& block);
 
 }  // namespace servomill::controllers

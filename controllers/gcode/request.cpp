@@ -15,6 +15,13 @@ constexpr double kCodeTol = 1e-4;  // how far the number of a code may be from a
 constexpr int kMostMCodes = 4;     // as LinuxCNC
 constexpr std::string_view kClaimedLetters = "DHIJKLPQR";
 
+constexpr std::uint32_t mask_of(std::string_view letters) {
+  std::uint32_t mask = 0;
+  for (const char letter : letters) mask |= 1U << static_cast<unsigned>(letter - 'A');
+  return mask;
+}
+constexpr std::uint32_t kClaimedMask = mask_of(kClaimedLetters);
+
 struct Context {
   const std::string& file;
   int line;
@@ -40,17 +47,17 @@ const Code& look_up(const Context& context, char letter, double value, int colum
 }
 
 void choose(const Context& context, Request& request, char letter, const Code& code, int column) {
-  Request::Chosen& chosen = request.codes[static_cast<std::size_t>(code.group)];
+  const Request::Chosen& chosen = request.of(code.group);
   // G80 cancels nothing that its own block programs: G0 G17 G40 G80 is how many programs begin
   if (code.group == Group::g_motion && chosen.code != nullptr) {
     if (code.tenths == kNoMotion) return;
-    if (chosen.code->tenths == kNoMotion) chosen.code = nullptr;
+    if (chosen.code->tenths == kNoMotion) return request.set(code.group, {&code, column});
   }
   if (chosen.code != nullptr) {
     context.fail(column, fmt::format("{} and {} in one block (same modal group)",
                                      name_of(letter, *chosen.code), name_of(letter, code)));
   }
-  chosen = {&code, column};
+  request.set(code.group, {&code, column});
 }
 
 constexpr std::string_view kVectorLetters = "IJK";
@@ -125,6 +132,7 @@ bool is_straight(const Request& request) {
 }
 
 void check_claims(const Context& context, const Request& request, bool has_vectors) {
+  if ((request.letters & kClaimedMask) == 0) return;
   for (const char letter : kClaimedLetters) {
     if (!request.has(letter)) continue;
     bool claimed = claims(request.motion, letter);
@@ -151,24 +159,24 @@ void add_code(const Context& context, Request& request, const Word& word, double
 
 }  // namespace
 
-Request resolve(const Block& block, const Parameters& parameters, int modal_motion,
-                bool has_vectors, const std::string& file) {
+void resolve(const Block& block, const Parameters& parameters, int modal_motion, bool has_vectors,
+             const std::string& file, Request& request) {
   const Context context{file, block.line};
-  Request request;
+  request.clear();
   request.line = block.line;
   int m_codes_seen = 0;
   for (const Word& word : block.words) {
     const double value = evaluate(word.value, block, parameters, file);
+    request.values.push_back(value);
     if (word.letter == 'G' || word.letter == 'M') {
       add_code(context, request, word, value, m_codes_seen);
     } else {
-      request.words[static_cast<std::size_t>(word.letter - 'A')] = {value, word.column};
+      request.set(word.letter, value, word.column);
     }
   }
   has_vectors = has_vectors_after(request, has_vectors);
   request.motion = choose_motion(context, request, modal_motion, has_vectors);
   check_claims(context, request, has_vectors);
-  return request;
 }
 
 void check_codes(const Block& block, const std::string& file) {

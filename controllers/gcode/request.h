@@ -2,7 +2,10 @@
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "controllers/gcode/block.h"
 #include "controllers/gcode/modal_groups.h"
@@ -23,11 +26,33 @@ struct Request {
 
   int line = 0;
   std::array<Cell, 26> words;  // by letter; G and M are in `codes`
+  std::uint32_t letters = 0;   // those of `words` that are in the block, a bit each from A
+  std::uint32_t groups = 0;    // those of `codes` that are in the block, a bit each
   std::array<Chosen, static_cast<std::size_t>(Group::count)> codes;
-  Chosen motion;  // in this block, programmed or still in force; not G80
+  std::vector<double> values;  // of all words, in their order
+  Chosen motion;               // in this block, programmed or still in force; not G80
+
+  void clear() {
+    for (; letters != 0; letters &= letters - 1) {
+      words[static_cast<std::size_t>(std::countr_zero(letters))] = {};
+    }
+    for (; groups != 0; groups &= groups - 1) {
+      codes[static_cast<std::size_t>(std::countr_zero(groups))] = {};
+    }
+    motion = {};
+    values.clear();
+  }
+  void set(char letter, double value, int column) {
+    words[static_cast<std::size_t>(letter - 'A')] = {value, column};
+    letters |= 1U << static_cast<unsigned>(letter - 'A');
+  }
+  void set(Group group, const Chosen& chosen) {
+    codes[static_cast<std::size_t>(group)] = chosen;
+    groups |= 1U << static_cast<unsigned>(group);
+  }
 
   const Cell& word(char letter) const { return words[static_cast<std::size_t>(letter - 'A')]; }
-  bool has(char letter) const { return word(letter).column > 0; }
+  bool has(char letter) const { return (letters >> (letter - 'A') & 1U) != 0; }
   double operator[](char letter) const { return word(letter).value; }
 
   const Chosen& of(Group group) const { return codes[static_cast<std::size_t>(group)]; }
@@ -40,12 +65,13 @@ struct Request {
 inline constexpr int kNoMotion = 800;       // G80
 inline constexpr int kVectorControl = 435;  // G43.5
 
+/// @param request  set anew; it may hold any other
 /// @param modal_motion  ten times the motion code in force
 /// @param has_vectors   whether I J K of G0 and G1 give the tool axis (G43.5 in force)
 /// @throws InputError for an unknown or unsupported code, two codes of a group, axis words that no
 /// code or more than one code claims, and words that belong to no code of the block
-Request resolve(const Block& block, const Parameters& parameters, int modal_motion,
-                bool has_vectors, const std::string& file);
+void resolve(const Block& block, const Parameters& parameters, int modal_motion, bool has_vectors,
+             const std::string& file, Request& request);
 
 /// The part of `resolve` that needs no run: codes that are plain numbers.
 void check_codes(const Block& block, const std::string& file);

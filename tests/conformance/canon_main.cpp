@@ -29,7 +29,13 @@ void run(int argc, char** argv) {
       const std::string table = argv[++i];
       setup.tools = servomill::controllers::ToolTable::parse(read_file(table), table);
     } else if (word == "--subs" && has_value) {
-      ++i;  // subroutines are refused by the interpreter
+      const std::string folder = argv[++i];
+      setup.subroutine_file =
+          [folder](const std::string& name) -> std::optional<servomill::controllers::ProgramText> {
+        const std::string file = folder + "/" + name + ".ngc";
+        if (!std::ifstream(file)) return std::nullopt;
+        return servomill::controllers::ProgramText::of_file(file);
+      };
     } else if (word == "--block-delete") {
       setup.block_delete = true;
     } else {
@@ -37,7 +43,7 @@ void run(int argc, char** argv) {
     }
   }
   servomill::controllers::Interpreter interpreter(read_file(program), program, setup);
-  while (const auto move = interpreter.next()) {
+  while (const servomill::Move* move = interpreter.next()) {
     print_line(servomill::controllers::canon_json(*move));
   }
 }

@@ -115,7 +115,7 @@ std::vector<Record> interpreted(const std::filesystem::path& program) {
   std::vector<Record> records;
   try {
     Interpreter interpreter(read_file(program), program.string(), setup);
-    while (const auto move = interpreter.next()) {
+    while (const Move* move = interpreter.next()) {
       if (move->kind != MoveKind::coolant) records.push_back(record_of(canon_json(*move)));
     }
   } catch (const InputError& error) {

@@ -3,6 +3,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "sim/canon.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/program_options.h"
 
 namespace servomill::tools {
 
@@ -17,18 +18,11 @@ int check_command(const Arguments& arguments) {
       "FILE");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenarios, as for servomill run");
-  options.add()("tools", po::value<std::string>()->value_name("TABLE"),
-                "tool table for the programs, in LinuxCNC's format, mm");
-  options.add()("parameter", po::value<std::vector<std::string>>()->value_name("#N=NUMBER"),
-                "sets a parameter before the program runs, such as '#101=1394'");
-  options.add()("machine", po::value<std::string>()->value_name("M.toml"),
-                "machine that runs the programs, for tool-centre-point control");
+  add_program_options(options);
   options.add()("quiet,q", "prints nothing but faults");
   if (!options.parse(arguments)) return kDone;
   if (options.words().empty()) throw InputError({"servomill check"}, "needs a FILE; see --help");
-  const sim::ProgramInputs inputs = {
-      options.has("tools") ? options.get<std::string>("tools") : "", options.list("parameter"),
-      options.has("machine") ? options.get<std::string>("machine") : ""};
+  const sim::ProgramInputs inputs = program_inputs(options);
   std::size_t faults = 0;
   for (const std::string& path : options.words()) {
     const auto found = sim::check_file(path, options.list("set"), inputs);

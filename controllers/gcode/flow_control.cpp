@@ -1,0 +1,383 @@
+// O-words: subroutines, loops, conditions; M98 and M99.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "controllers/gcode/interpreter_machine.h"
+
+namespace servomill::controllers {
+namespace {
+
+// Subroutines are known everywhere, other labels within their subroutine only.
+bool is_global(Flow flow) {
+  switch (flow) {
+    case Flow::sub:
+    case Flow::endsub:
+    case Flow::return_:
+    case Flow::call:
+    case Flow::program:
+    case Flow::m98:
+    case Flow::m99:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::string_view name_of(Flow flow) {
+  switch (flow) {
+    case Flow::sub:
+      return "sub";
+    case Flow::do_:
+      return "do";
+    case Flow::while_:
+      return "while";
+    case Flow::if_:
+      return "if";
+    case Flow::repeat:
+      return "repeat";
+    default:
+      return "a subprogram of M98";
+  }
+}
+
+}  // namespace
+
+// The subroutine whose labels are meant: that which runs or is being defined, or "" outside of all.
+const std::string& Interpreter::Machine::scope_name() const {
+  static const std::string outside;
+  if (!flow_.calls.empty()) return flow_.calls.back().name;
+  return flow_.defining ? *flow_.defining : outside;
+}
+
+// As the program says it: a name, or a whole number.
+std::string Interpreter::Machine::label_text(const OWord& o) const {
+  if (o.name >= 0) return block_.names[static_cast<std::size_t>(o.name)];
+  const double value = evaluate(o.number, block_, parameters_, file());
+  const double nearest = std::round(value);
+  if (!(std::abs(value - nearest) <= kIntegerTol) || std::abs(nearest) > 1e9) {
+    fail(o.column,
+         fmt::format("{}{}; must be an integer", o.flow == Flow::m98 ? "M98 P" : "O", value));
+  }
+  return fmt::format("{}", static_cast<long>(nearest));
+}
+
+std::string Interpreter::Machine::label_of(const OWord& o) const {
+  if (o.flow == Flow::m99) return scope_name();
+  std::string label = label_text(o);
+  return is_global(o.flow) ? label : scope_name() + "#" + label;
+}
+
+double Interpreter::Machine::flow_value(const OWord& o) {
+  return o.has_value ? evaluate(o.value, block_, parameters_, file()) : 0.0;
+}
+
+void Interpreter::Machine::skip_to(const std::string& label) {
+  flow_.skip_to = label;
+  flow_.skip_from = line();
+}
+
+void Interpreter::Machine::go_to(const LinePlace& place) {
+  text_ = place.text;
+  text().go_to(place.mark);
+}
+
+// Called where the program turns back or into a subroutine.
+void Interpreter::Machine::count_jump() {
+  if (++flow_.jumps <= setup_.most_jumps) return;
+  fail(
+      block_.o_word.column,
+      fmt::format("more than {} turns of loops and calls of subroutines; the program seems endless",
+                  setup_.most_jumps));
+}
+
+Label& Interpreter::Machine::new_label(const std::string& name, Flow flow) {
+  return flow_.labels[name] = {flow, here_, std::nullopt};
+}
+
+// The label of a loop or condition that begins here. It may be known from an earlier turn.
+Label& Interpreter::Machine::same_label(const std::string& name, Flow flow) {
+  const auto found = flow_.labels.find(name);
+  if (found == flow_.labels.end()) return new_label(name, flow);
+  if (found->second.place == here_) return found->second;
+  fail(block_.o_word.column,
+       fmt::format("label used before, in line {}, for {}", found->second.place.mark.line + 1,
+                   name_of(found->second.flow)));
+}
+
+Label& Interpreter::Machine::known_label(const std::string& name, const OWord& o) {
+  const auto found = flow_.labels.find(name);
+  if (found != flow_.labels.end()) return found->second;
+  fail(o.column, fmt::format("O{} is not begun anywhere before", label_text(o)));
+}
+
+void Interpreter::Machine::run_flow() {
+  const OWord& o = block_.o_word;
+  if (o.flow == Flow::m99 && flow_.calls.empty()) {  // of the program itself: its end
+    block_.words.push_back({'M', {99.0, 0, 0}, o.column});
+    block_.o_word.flow = Flow::none;
+    return run_block();
+  }
+  const std::string name = label_of(o);
+  if (flow_.skips_to_sub && o.flow != Flow::sub && o.flow != Flow::program) return;
+  switch (o.flow) {
+    case Flow::sub:
+    case Flow::program:
+      return begin_subroutine(name, o);
+    case Flow::endsub:
+    case Flow::return_:
+    case Flow::m99:
+      return end_subroutine(name, o);
+    case Flow::call:
+      return call_subroutine(name, o);
+    case Flow::m98:
+      return call_subprogram(name, o);
+    case Flow::do_:
+      flow_.skip_to.reset();
+      if (!flow_.labels.contains(name)) new_label(name, Flow::do_);
+      return;
+    case Flow::while_:
+      return while_line(name, o);
+    case Flow::repeat:
+      return repeat(name, o);
+    case Flow::if_:
+    case Flow::elseif:
+    case Flow::else_:
+    case Flow::endif:
+      return branch(name, o);
+    case Flow::break_:
+    case Flow::continue_:
+      return leave_loop(name, o);
+    case Flow::endwhile:
+    case Flow::endrepeat:
+      return end_loop(name, o);
+    case Flow::none:
+    case Flow::unknown:
+      return;
+  }
+}
+
+// ------------------------------------------------------------------------------------ subroutines
+
+void Interpreter::Machine::begin_subroutine(const std::string& name, const OWord& o) {
+  if (flow_.defining) {
+    fail(o.column, fmt::format("a subroutine within the definition of O<{}>", *flow_.defining));
+  }
+  if (!flow_.calls.empty()) {
+    const bool by_m98 = flow_.calls.back().flow == Flow::m98;
+    if (o.flow == Flow::program && !by_m98) {
+      fail(o.column, fmt::format("O{} is a subprogram; call it with M98 P{}", name, name));
+    }
+    if (o.flow == Flow::sub && by_m98) {
+      fail(o.column, fmt::format("O<{}> is a subroutine; call it with O<{}> CALL", name, name));
+    }
+  }
+  const auto known = flow_.labels.find(name);
+  const bool is_sought = flow_.skip_to.has_value();
+  flow_.skip_to.reset();
+  flow_.skips_to_sub = false;
+  if (is_sought && known == flow_.labels.end()) new_label(name, o.flow);
+  if (o.flow == Flow::program || !flow_.calls.empty()) return;
+  if (known != flow_.labels.end()) {
+    fail(o.column,
+         known->second.place == here_
+             ? fmt::format("the program runs into O<{}>, which it has called before", name)
+             : fmt::format("O<{}> is defined before, in line {}", name,
+                           known->second.place.mark.line + 1));
+  }
+  new_label(name, o.flow);
+  flow_.defining = name;
+  skip_to(name);
+}
+
+void Interpreter::Machine::end_subroutine(const std::string& name, const OWord& o) {
+  const double value = flow_value(o);
+  if (flow_.calls.empty()) {
+    if (!flow_.defining) fail(o.column, fmt::format("no subroutine O<{}> is begun here", name));
+    if (o.flow != Flow::endsub) return;
+    flow_.skip_to.reset();
+    flow_.defining.reset();
+    return;
+  }
+  const bool by_m98 = flow_.calls.back().flow == Flow::m98;
+  if (by_m98 != (o.flow == Flow::m99)) {
+    fail(o.column, by_m98 ? "a subprogram that M98 calls ends with M99"
+                          : "a subroutine ends with ENDSUB or RETURN, not with M99");
+  }
+  flow_.value = value;
+  flow_.has_value = o.has_value;
+  if (o.flow == Flow::endsub) flow_.skip_to.reset();
+  leave_call();
+}
+
+void Interpreter::Machine::leave_call() {
+  const Call call = std::move(flow_.calls.back());
+  flow_.calls.pop_back();
+  flow_.turns_left.pop_back();
+  parameters_.commit();
+  parameters_.leave_scope();
+  if (call.flow == Flow::call) {
+    for (int i = 0; i < kArguments; ++i) {
+      parameters_.set(i + 1, call.saved[static_cast<std::size_t>(i)]);
+    }
+  }
+  go_to(call.return_to);
+}
+
+void Interpreter::Machine::call_subroutine(const std::string& name, const OWord& o) {
+  if (o.arguments.size() > kArguments) {
+    fail(o.column, fmt::format("{} arguments; a subroutine takes at most {}", o.arguments.size(),
+                               kArguments));
+  }
+  std::array<double, kArguments> arguments{};
+  for (std::size_t i = 0; i < o.arguments.size(); ++i) {
+    arguments[i] = evaluate(o.arguments[i], block_, parameters_, file());
+  }
+  enter_call(name, o, {text_, text().mark()});
+  for (int i = 0; i < kArguments; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    flow_.calls.back().saved[k] = parameters_.get(i + 1);
+    parameters_.set(i + 1, arguments[k]);
+  }
+  find_subroutine(name);
+}
+
+// With L it is this block that runs again and again, so P may change from turn to turn.
+void Interpreter::Machine::call_subprogram(const std::string& name, const OWord& o) {
+  long& turns = flow_.turns_left.back();
+  if (o.has_value) {
+    const double L = flow_value(o);
+    if (!(std::abs(L - std::round(L)) <= kIntegerTol) || L < -kIntegerTol || L > 1e9) {
+      fail(o.value_column, fmt::format("L{}; must be an integer, not negative", L));
+    }
+    if (turns == 0) turns = std::lround(L);
+    if (turns == 0) return;
+    --turns;
+  }
+  if (!block_.words.empty()) {
+    warnings_.push_back({{file(), line(), block_.words.front().column},
+                         "words in the block of M98 other than P and L have no effect"});
+  }
+  const bool again = o.has_value && turns > 0;
+  enter_call(name, o, again ? here_ : LinePlace{text_, text().mark()});
+  find_subroutine(name);
+}
+
+void Interpreter::Machine::enter_call(const std::string& name, const OWord& o,
+                                      const LinePlace& return_to) {
+  if (flow_.calls.size() == kMostCalls) {
+    fail(o.column, fmt::format("more than {} subroutines called by each other", kMostCalls));
+  }
+  count_jump();
+  Call call;
+  call.name = name;
+  call.flow = o.flow;
+  call.return_to = return_to;
+  call.line = line();
+  flow_.calls.push_back(std::move(call));
+  flow_.turns_left.push_back(0);
+  parameters_.enter_scope();
+}
+
+// Where it is known to be; else in a file of its name; else further on in this text.
+void Interpreter::Machine::find_subroutine(const std::string& name) {
+  if (const auto known = flow_.labels.find(name); known != flow_.labels.end()) {
+    return go_to(known->second.place);
+  }
+  std::optional<ProgramText> found;
+  if (setup_.subroutine_file) found = setup_.subroutine_file(name);
+  skip_to(name);
+  flow_.skips_to_sub = true;
+  if (!found) return;
+  texts_.push_back({std::move(*found), {}});
+  text_ = texts_.size() - 1;
+}
+
+// ------------------------------------------------------------------------------ loops, conditions
+
+void Interpreter::Machine::repeat(const std::string& name, const OWord& o) {
+  const double count = flow_value(o);
+  Label& label = same_label(name, Flow::repeat);
+  flow_.skip_to.reset();
+  if (label.flow != Flow::repeat) return;
+  if (!label.repeats_left) label.repeats_left = std::lround(std::clamp(count, -1.0, 1e15));
+  if (*label.repeats_left > 0) {
+    --*label.repeats_left;
+    return;
+  }
+  label.repeats_left.reset();
+  skip_to(name);
+}
+
+// Begins a loop, or ends one that `do` began.
+void Interpreter::Machine::while_line(const std::string& name, const OWord& o) {
+  const bool holds = flow_value(o) != 0.0;
+  const auto known = flow_.labels.find(name);
+  const bool ends_do = known != flow_.labels.end() && known->second.flow == Flow::do_;
+  if (!ends_do) same_label(name, Flow::while_);
+  flow_.skip_to.reset();
+  if (!ends_do) {
+    if (!holds) skip_to(name);
+    return;
+  }
+  if (holds && !flow_.breaks) {
+    count_jump();
+    return go_to(known->second.place);
+  }
+  flow_.breaks = false;
+}
+
+void Interpreter::Machine::branch(const std::string& name, const OWord& o) {
+  const bool holds = flow_value(o) != 0.0;
+  if (o.flow == Flow::if_) {
+    same_label(name, Flow::if_);
+    flow_.skip_to.reset();
+    flow_.has_taken_branch = holds;
+    if (!holds) skip_to(name);
+    return;
+  }
+  const Label& label = known_label(name, o);
+  if (label.flow != Flow::if_) {
+    fail(o.column, fmt::format("O{} is no IF but {}, in line {}", label_text(o),
+                               name_of(label.flow), label.place.mark.line + 1));
+  }
+  if (o.flow == Flow::endif) {
+    flow_.skip_to.reset();
+    flow_.has_taken_branch = true;  // an IF around this one was taken
+  } else if (flow_.has_taken_branch) {
+    skip_to(name);
+  } else if (o.flow == Flow::else_ || holds) {
+    flow_.skip_to.reset();
+    flow_.has_taken_branch = true;
+  }
+}
+
+void Interpreter::Machine::leave_loop(const std::string& name, const OWord& o) {
+  const Label& label = known_label(name, o);
+  if (label.flow != Flow::while_ && label.flow != Flow::do_) {
+    fail(o.column, fmt::format("O{} is no WHILE and no DO but {}, in line {}", label_text(o),
+                               name_of(label.flow), label.place.mark.line + 1));
+  }
+  if (flow_.skip_to && o.flow == Flow::continue_) return;
+  skip_to(name);
+  (o.flow == Flow::break_ ? flow_.breaks : flow_.continues) = true;
+}
+
+void Interpreter::Machine::end_loop(const std::string& name, const OWord& o) {
+  const Label& label = known_label(name, o);
+  const Flow wanted = o.flow == Flow::endwhile ? Flow::while_ : Flow::repeat;
+  if (label.flow != wanted) {
+    fail(o.column, fmt::format("O{} is no {} but {}, in line {}", label_text(o),
+                               wanted == Flow::while_ ? "WHILE" : "REPEAT", name_of(label.flow),
+                               label.place.mark.line + 1));
+  }
+  if (flow_.skip_to) {
+    flow_.skip_to.reset();
+    if (!flow_.continues) return;
+    flow_.continues = false;
+  }
+  count_jump();
+  go_to(label.place);
+}
+
+}  // namespace servomill::controllers

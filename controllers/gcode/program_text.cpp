@@ -1,0 +1,127 @@
+#include "controllers/gcode/program_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "plant/vocabulary/input_error.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr std::size_t kPiece = 1U << 16;        // read at once, bytes
+constexpr std::size_t kLongestKept = 1U << 15;  // of one line
+
+}  // namespace
+
+struct ProgramText::Reader {
+  explicit Reader(const std::string& path) : file(std::fopen(path.c_str(), "rb")) {}
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  ~Reader() {
+    if (file != nullptr) std::fclose(file);
+  }
+  std::FILE* file;
+};
+
+ProgramText::ProgramText() = default;
+ProgramText::ProgramText(ProgramText&&) noexcept = default;
+ProgramText& ProgramText::operator=(ProgramText&&) noexcept = default;
+ProgramText::~ProgramText() = default;
+
+ProgramText ProgramText::of_text(std::string text, std::string file) {
+  ProgramText out;
+  out.file_ = std::move(file);
+  out.buffer_ = std::move(text);
+  out.at_end_ = true;
+  return out;
+}
+
+ProgramText ProgramText::of_file(const std::string& path) {
+  ProgramText out;
+  out.file_ = path;
+  out.reader_ = std::make_unique<Reader>(path);
+  if (out.reader_->file == nullptr || !out.refill()) out.fail();
+  return out;
+}
+
+void ProgramText::fail() const {
+  throw InputError({file_, number_, 0}, fmt::format("cannot be read: {}", std::strerror(errno)));
+}
+
+// Keeps what is left of the buffer and reads on behind it. False if the file cannot be read.
+bool ProgramText::refill() {
+  if (at_end_) return true;
+  buffer_.erase(0, at_);
+  base_ += at_;
+  at_ = 0;
+  const std::size_t kept = buffer_.size();
+  buffer_.resize(kept + kPiece);
+  const std::size_t got = std::fread(buffer_.data() + kept, 1, kPiece, reader_->file);
+  buffer_.resize(kept + got);
+  at_end_ = got < kPiece;
+  return std::ferror(reader_->file) == 0;
+}
+
+bool ProgramText::next(std::string_view& line) {
+  if (wanted_) seek(*std::exchange(wanted_, std::nullopt));
+  const auto line_end = [&] {
+    const void* found = std::memchr(buffer_.data() + at_, '\n', buffer_.size() - at_);
+    return found == nullptr
+               ? std::string::npos
+               : static_cast<std::size_t>(static_cast<const char*>(found) - buffer_.data());
+  };
+  std::size_t end = line_end();
+  while (end == std::string::npos && !at_end_ && buffer_.size() - at_ <= kLongestKept) {
+    if (!refill()) fail();
+    end = line_end();
+  }
+  if (at_ == buffer_.size()) return false;
+  ++number_;
+  if (end == std::string::npos) {
+    if (!at_end_) {
+      long_line_.assign(buffer_, at_, kLongestKept);
+      skip_to_line_end();
+      line = long_line_;
+      return true;
+    }
+    end = buffer_.size();
+  }
+  line = std::string_view(buffer_).substr(at_, std::min(end - at_, kLongestKept));
+  at_ = std::min(end + 1, buffer_.size());
+  return true;
+}
+
+// A line without end must not fill the memory.
+void ProgramText::skip_to_line_end() {
+  for (;;) {
+    const std::size_t end = buffer_.find('\n', at_);
+    if (end != std::string::npos) {
+      at_ = end + 1;
+      return;
+    }
+    at_ = buffer_.size();
+    if (at_end_) return;
+    if (!refill()) fail();
+  }
+}
+
+void ProgramText::seek(std::uint64_t offset) {
+  if (offset >= base_ && offset <= base_ + buffer_.size()) {
+    at_ = static_cast<std::size_t>(offset - base_);
+    return;
+  }
+  buffer_.clear();
+  at_ = 0;
+  base_ = offset;
+  at_end_ = false;
+  if (::fseeko(reader_->file, static_cast<off_t>(offset), SEEK_SET) != 0 || !refill()) {
+    fail();
+  }
+}
+
+}  // namespace servomill::controllers

@@ -1,0 +1,90 @@
+/// The text of a program, line by line, and what a '%' among its lines means.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace servomill::controllers {
+
+inline bool is_blank(std::string_view line) {
+  return line.find_first_not_of(" \t\r") == std::string_view::npos;
+}
+
+/// Hands out the lines of a text or of a file, and goes back to a line that it has handed out. Of
+/// a file it holds a piece of constant size, however long the file is.
+class ProgramText {
+ public:
+  /// Where a line begins.
+  struct Mark {
+    std::uint64_t offset = 0;  // in bytes
+    int line = 0;              // number of the line before
+  };
+
+  /// @param file  name for messages
+  static ProgramText of_text(std::string text, std::string file);
+  /// @throws InputError if the file cannot be read
+  static ProgramText of_file(const std::string& path);
+
+  ProgramText(ProgramText&&) noexcept;
+  ProgramText& operator=(ProgramText&&) noexcept;
+  ~ProgramText();
+
+  /// The next line without its end; it stays valid until the next call. Of a line longer than
+  /// 32 KiB only so much.
+  /// @throws InputError if the file can no longer be read
+  bool next(std::string_view& line);
+  /// Of the line handed out last, from 1.
+  int number() const { return number_; }
+  const std::string& file() const { return file_; }
+
+  /// Behind the line handed out last.
+  Mark mark() const { return {wanted_ ? *wanted_ : base_ + at_, number_}; }
+  /// From the next call of `next` on; the line handed out last stays valid until then.
+  void go_to(const Mark& mark) {
+    wanted_ = mark.offset;
+    number_ = mark.line;
+  }
+  void rewind() { go_to({}); }
+
+ private:
+  struct Reader;  // an open file
+
+  ProgramText();
+  [[noreturn]] void fail() const;
+  bool refill();
+  void seek(std::uint64_t offset);
+  void skip_to_line_end();
+
+  std::string file_;
+  std::string buffer_;      // of a text: all of it
+  std::uint64_t base_ = 0;  // offset of buffer_ in the file
+  std::size_t at_ = 0;      // where the next line begins, in buffer_
+  int number_ = 0;
+  std::optional<std::uint64_t> wanted_;  // where to read on
+  bool at_end_ = false;                  // nothing follows buffer_
+  std::string long_line_;                // what is kept of a line that does not fit
+  std::unique_ptr<Reader> reader_;
+};
+
+/// What a '%' means where it stands.
+enum class Percent { start, end, misplaced };
+
+class PercentRule {
+ public:
+  void saw_line() { first_ = false; }
+  Percent saw_percent() {
+    const Percent meaning = first_ ? Percent::start : open_ ? Percent::end : Percent::misplaced;
+    if (meaning == Percent::start) open_ = true;
+    first_ = false;
+    return meaning;
+  }
+
+ private:
+  bool first_ = true;
+  bool open_ = false;
+};
+
+}  // namespace servomill::controllers

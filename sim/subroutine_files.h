@@ -1,0 +1,18 @@
+/// Subroutines in files of their own.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "controllers/gcode/program_text.h"
+
+namespace servomill::sim {
+
+/// Finds the file NAME.ngc of a subroutine: beside the program, then in `folders`, in their order.
+/// As LinuxCNC, folders within these are not looked into.
+std::function<std::optional<controllers::ProgramText>(const std::string& name)> subroutine_files(
+    const std::string& program_file, const std::vector<std::string>& folders);
+
+}  // namespace servomill::sim

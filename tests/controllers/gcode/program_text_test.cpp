@@ -1,0 +1,81 @@
+#include "controllers/gcode/program_text.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <vector>
+
+#include "plant/vocabulary/input_error.h"
+
+namespace servomill::controllers {
+namespace {
+
+class TempFile {
+ public:
+  explicit TempFile(const std::string& text) : path_(testing::TempDir() + "program_text.ngc") {
+    std::ofstream(path_, std::ios::binary) << text;
+  }
+  ~TempFile() { std::remove(path_.c_str()); }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+std::vector<std::string> lines_of(ProgramText text) {
+  std::vector<std::string> lines;
+  for (std::string_view line; text.next(line);) lines.emplace_back(line);
+  return lines;
+}
+
+using Lines = std::vector<std::string>;
+
+TEST(ProgramText, AFileReadsLikeItsText) {
+  for (const std::string& text : {std::string("a\nb\n"), std::string("a\n\nb"), std::string(),
+                                  std::string("\n"), std::string("a\r\nb\r\n")}) {
+    const TempFile file(text);
+    EXPECT_EQ(lines_of(ProgramText::of_file(file.path())),
+              lines_of(ProgramText::of_text(text, "p.nc")));
+  }
+  EXPECT_EQ(lines_of(ProgramText::of_text("a\n\nb", "p.nc")), (Lines{"a", "", "b"}));
+}
+
+TEST(ProgramText, GoesBackToAnyLineOfALongFile) {
+  std::string text;
+  for (int i = 1; i <= 50'000; ++i) text += "line " + std::to_string(i) + "\n";
+  const TempFile file(text);
+  ProgramText program = ProgramText::of_file(file.path());
+  std::vector<ProgramText::Mark> marks;
+  std::string_view line;
+  do {
+    marks.push_back(program.mark());
+  } while (program.next(line));
+  for (const int i : {1, 49'999, 7, 25'000, 25'001, 50'000}) {
+    program.go_to(marks[static_cast<std::size_t>(i - 1)]);
+    ASSERT_TRUE(program.next(line));
+    EXPECT_EQ(line, "line " + std::to_string(i));
+    EXPECT_EQ(program.number(), i);
+  }
+  EXPECT_FALSE(program.next(line));
+}
+
+TEST(ProgramText, ALineWithoutEndDoesNotFillTheMemory) {
+  const TempFile file(std::string(1 << 20, 'x') + "\nnext\n");
+  const Lines lines = lines_of(ProgramText::of_file(file.path()));
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0], std::string(1 << 15, 'x'));
+  EXPECT_EQ(lines[1], "next");
+}
+
+TEST(ProgramText, SaysThatAFileCannotBeRead) {
+  try {
+    ProgramText::of_file("/nowhere/p.ngc");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "/nowhere/p.ngc: error: cannot be read: No such file or directory");
+  }
+}
+
+}  // namespace
+}  // namespace servomill::controllers

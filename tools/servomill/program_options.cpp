@@ -1,0 +1,40 @@
+#include "tools/servomill/program_options.h"
+
+namespace servomill::tools {
+
+void add_program_options(Options& options) {
+  namespace po = boost::program_options;
+  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
+  const auto texts = [](const char* name) {
+    return po::value<std::vector<std::string>>()->value_name(name);
+  };
+  options.add()("tools", text("TABLE"), "tool table in LinuxCNC's format, mm");
+  options.add()("parameter", texts("#N=NUMBER"),
+                "sets a parameter before the program runs, such as '#101=1394'");
+  options.add()("subs", texts("FOLDER"),
+                "where files of subroutines are, NAME.ngc for O<NAME> CALL; the folder of the "
+                "program comes first");
+  options.add()("block-delete", "leaves out the lines that start with '/'");
+  options.add()("max-jumps", po::value<long>()->value_name("N"),
+                "loops turned and subroutines called before a program counts as endless "
+                "(10000000)");
+  options.add()("machine", text("M.toml"),
+                "machine that runs it: G43.5, G53.1, and G43.4 or G68.2 with turned axes need it");
+}
+
+sim::ProgramInputs program_inputs(const Options& options) {
+  const auto text = [&](const char* name) {
+    return options.has(name) ? options.get<std::string>(name) : std::string();
+  };
+  sim::ProgramInputs inputs;
+  inputs.tool_table = text("tools");
+  inputs.parameters = options.list("parameter");
+  inputs.machine = text("machine");
+  inputs.subroutine_folders = options.list("subs");
+  inputs.block_delete = options.has("block-delete");
+  if (options.has("max-jumps")) inputs.most_jumps = options.get<long>("max-jumps");
+  if (inputs.most_jumps < 1) throw InputError({"--max-jumps"}, "must be >= 1");
+  return inputs;
+}
+
+}  // namespace servomill::tools
