@@ -55,7 +55,7 @@ struct Op {
 
 /// A value as written: a plain number, or the steps [begin, end) of Block::code.
 struct Value {
-  double number = 0.0;
+  double number = 0.0;  // where there are steps: what came out when they were run last
   int begin = 0;
   int end = 0;
 

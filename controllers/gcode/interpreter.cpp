@@ -44,29 +44,29 @@ std::array<AxisWords, 9> ProgramSetup::zero_offsets() {
   return offsets;
 }
 
-const std::array<Interpreter::Machine::Step, 21> Interpreter::Machine::kSteps = {
-    &Machine::message,
-    &Machine::feed_mode,
-    &Machine::feed,
-    &Machine::spindle_speed,
-    &Machine::select_tool,
-    &Machine::change_tool,
-    &Machine::spindle,
-    &Machine::coolant,
-    &Machine::override_switches,
-    &Machine::dwell,
-    &Machine::plane,
-    &Machine::units,
-    &Machine::cutter_compensation,
-    &Machine::tool_length,
-    &Machine::work_system,
-    &Machine::work_plane,
-    &Machine::path_control,
-    &Machine::distance,
-    &Machine::non_modal,
-    &Machine::motion,
-    &Machine::stop,
-};
+const std::array<Interpreter::Machine::Step, 21> Interpreter::Machine::kSteps = {{
+    {&Machine::message, kAlways},
+    {&Machine::feed_mode, bit(Group::g_feed_mode)},
+    {&Machine::feed, bit('F')},
+    {&Machine::spindle_speed, bit('S')},
+    {&Machine::select_tool, bit('T')},
+    {&Machine::change_tool, bit(Group::m_tool)},
+    {&Machine::spindle, bit(Group::m_spindle)},
+    {&Machine::coolant, bit(Group::m_coolant)},
+    {&Machine::override_switches, bit(Group::m_override)},
+    {&Machine::dwell, bit(Group::g_non_modal)},
+    {&Machine::plane, bit(Group::g_plane)},
+    {&Machine::units, bit(Group::g_units)},
+    {&Machine::cutter_compensation, bit(Group::g_cutter_compensation)},
+    {&Machine::tool_length, bit(Group::g_tool_length)},
+    {&Machine::work_system, bit(Group::g_work_system)},
+    {&Machine::work_plane, bit(Group::g_work_plane)},
+    {&Machine::path_control, bit(Group::g_path_control)},
+    {&Machine::distance, bit(Group::g_distance) | bit(Group::g_arc_distance)},
+    {&Machine::non_modal, bit(Group::g_non_modal)},
+    {&Machine::motion, kAlways},
+    {&Machine::stop, bit(Group::m_stop)},
+}};
 
 // ------------------------------------------------------------------------------------------ setup
 
@@ -212,24 +212,24 @@ void Interpreter::Machine::execute() {
 void Interpreter::Machine::run_block() {
   const bool has_vectors = state_.tool_control == ToolControl::tool_axis;
   resolve(block_, parameters_, state_.motion, has_vectors, file(), request_);
-  new_numbers_.clear();
   assign_parameters();
-  for (const Step step : kSteps) (this->*step)();
+  const std::uint64_t asked =
+      kAlways | request_.letters | std::uint64_t{request_.groups} << kLetters;
+  for (const Step& step : kSteps) {
+    if ((step.due & asked) != 0) (this->*step.run)();
+  }
 }
 
 std::optional<ExecutedBlock> Interpreter::Machine::next_block() {
   clear_output();
   if (ended_) return std::nullopt;
-  request_.clear();
-  new_numbers_.clear();
+  parser_.keep_pieces(true);
   const std::size_t read_from = text_;
   const int depth = static_cast<int>(flow_.calls.size());
   read_block();
   ExecutedBlock out;
   out.text = line_;
   out.block = block_.pieces.empty() ? nullptr : &block_;
-  out.words = request_.values;
-  out.assignments = new_numbers_;
   out.moves = out_;
   out.file = &texts_[read_from].lines.file();
   out.line = here_.mark.line + 1;
@@ -240,7 +240,8 @@ std::optional<ExecutedBlock> Interpreter::Machine::next_block() {
 // All right-hand sides are read before the first parameter changes.
 void Interpreter::Machine::assign_parameters() {
   if (block_.assignments.empty()) return;
-  for (const Assignment& a : block_.assignments) {
+  new_numbers_.clear();
+  for (Assignment& a : block_.assignments) {
     const double value = evaluate(a.value, block_, parameters_, file());
     int number = 0;
     if (a.name < 0) {
@@ -653,13 +654,13 @@ AxisWords Interpreter::Machine::machine_end() const {
 
 void Interpreter::Machine::require_feed() const {
   const Request::Chosen& chosen = request().motion;
-  const std::string name = code_name('G', chosen.code->tenths);
+  const auto name = [&] { return code_name('G', chosen.code->tenths); };
   if (state_.feed_mode == FeedMode::inverse_time) {
     if (!request().has('F')) {
-      fail(chosen.column, fmt::format("{} without F; G93 needs one in every block", name));
+      fail(chosen.column, fmt::format("{} without F; G93 needs one in every block", name()));
     }
   } else if (state_.feed_linear == 0.0) {
-    fail(chosen.column, fmt::format("{} with zero feed; no F is in force", name));
+    fail(chosen.column, fmt::format("{} with zero feed; no F is in force", name()));
   }
 }
 
@@ -708,7 +709,7 @@ int Interpreter::Machine::arc_turns(bool clockwise) const {
 ArcCentre Interpreter::Machine::arc_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end,
                                            bool clockwise) {
   const Request::Chosen& chosen = request().motion;
-  const std::string name = code_name('G', chosen.code->tenths);
+  const auto name = [&] { return code_name('G', chosen.code->tenths); };
   const int n = state_.normal_axis;
   const int first = (n + 1) % 3, second = (n + 2) % 3;
   const ArcTolerance& tolerance = state_.unit == mm ? kArcToleranceMm : kArcToleranceInch;
@@ -717,11 +718,11 @@ ArcCentre Interpreter::Machine::arc_centre(const Eigen::Vector2d& start, const E
   const bool has_centre = request().has(letters[0]) || request().has(letters[1]);
   if (request().has('R')) {
     for (const char c : {'I', 'J', 'K'}) {
-      if (request().has(c)) fail_at(c, fmt::format("{} and R in one {} block", c, name));
+      if (request().has(c)) fail_at(c, fmt::format("{} and R in one {} block", c, name()));
     }
     if (!has_axis(first) && !has_axis(second)) {
       fail(chosen.column,
-           fmt::format("{} with R needs {} or {}", name, "XYZ"[first], "XYZ"[second]));
+           fmt::format("{} with R needs {} or {}", name(), "XYZ"[first], "XYZ"[second]));
     }
     return radius_format(start, end, request()['R'] * state_.unit, clockwise, tolerance);
   }
@@ -730,13 +731,13 @@ ArcCentre Interpreter::Machine::arc_centre(const Eigen::Vector2d& start, const E
             fmt::format("{} in an arc of the {}{} plane", normal, "XYZ"[first], "XYZ"[second]));
   }
   if (!has_centre) {
-    fail(chosen.column, fmt::format("{} needs R, {} or {}", name, letters[0], letters[1]));
+    fail(chosen.column, fmt::format("{} needs R, {} or {}", name(), letters[0], letters[1]));
   }
   Eigen::Vector2d centre(request()[letters[0]] * state_.unit, request()[letters[1]] * state_.unit);
   if (!state_.is_centre_absolute) return centre_format(start, end, start + centre, tolerance);
   for (const char c : letters) {
     if (!request().has(c)) {
-      fail(chosen.column, fmt::format("{} needs {}: with G90.1 the centre is absolute", name, c));
+      fail(chosen.column, fmt::format("{} needs {}: with G90.1 the centre is absolute", name(), c));
     }
   }
   return centre_format(start, end, centre, tolerance);

@@ -189,7 +189,20 @@ class Interpreter::Machine {
   int integer(char letter, double tolerance = kIntegerTol) const;
 
   // ---- steps of a block, in the order of execution
-  using Step = void (Machine::*)();
+  // Due if the block has the letter or a code of the group: bits 0 to 25 are letters, the next are
+  // groups.
+  struct Step {
+    void (Machine::*run)();
+    std::uint64_t due;
+  };
+  static constexpr std::uint64_t kAlways = std::uint64_t{1} << 63;
+  static constexpr std::uint64_t bit(char letter) {
+    return std::uint64_t{1} << static_cast<unsigned>(letter - 'A');
+  }
+  static constexpr std::uint64_t bit(Group group) {
+    return std::uint64_t{1} << (kLetters + static_cast<unsigned>(group));
+  }
+  static constexpr unsigned kLetters = 26;
   static const std::array<Step, 21> kSteps;
   void message();
   void feed_mode();

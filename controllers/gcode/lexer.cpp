@@ -16,19 +16,22 @@ constexpr std::array<std::pair<std::string_view, CommentKind>, 3> kActiveComment
     {"PRINT,", CommentKind::print},
 }};
 
-enum class Class : std::uint8_t { plain, blank, open, close, semicolon, forbidden };
+// What a character may be, as bits, so that a harmless line is seen in one pass.
+constexpr std::uint8_t kPlain = 0, kSemicolon = 1, kOpen = 2, kClose = 4, kForbidden = 8;
 
-constexpr std::array<Class, 256> kClasses = [] {
-  std::array<Class, 256> classes{};
+constexpr std::array<std::uint8_t, 256> kClasses = [] {
+  std::array<std::uint8_t, 256> classes{};
   for (std::size_t i = 0; i < classes.size(); ++i) {
-    classes[i] = i < 0x20 || i >= 0x7f ? Class::forbidden : Class::plain;
+    classes[i] = i < 0x20 || i >= 0x7f ? kForbidden : kPlain;
   }
-  classes[' '] = classes['\t'] = Class::blank;
-  classes['('] = Class::open;
-  classes[')'] = Class::close;
-  classes[';'] = Class::semicolon;
+  classes['\t'] = kPlain;
+  classes['('] = kOpen;
+  classes[')'] = kClose;
+  classes[';'] = kSemicolon;
   return classes;
 }();
+
+std::uint8_t class_of(char c) { return kClasses[static_cast<unsigned char>(c)]; }
 
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
@@ -57,25 +60,28 @@ void check_characters(std::string_view line, const std::string& file, int number
     fail(kLongestLine,
          fmt::format("line of {} characters; at most {} are allowed", line.size(), kLongestLine));
   }
+  std::uint8_t found = kPlain;
+  for (const char c : line) found |= class_of(c);
+  if (found == kPlain) return;
   for (std::size_t i = 0; i < line.size(); ++i) {
-    switch (kClasses[static_cast<unsigned char>(line[i])]) {
-      case Class::plain:
-      case Class::blank:
-        break;
-      case Class::semicolon:
+    switch (class_of(line[i])) {
+      case kSemicolon:
         return;
-      case Class::open: {
+      case kOpen: {
         const std::size_t close = line.find_first_of("()", i + 1);
         if (close == std::string_view::npos) fail(i, "comment is not closed; ')' is missing");
         if (line[close] == '(') fail(close, "comment within a comment");
         i = close;
         break;
       }
-      case Class::close:
+      case kClose:
         fail(i, "')' without '('");
         break;
-      case Class::forbidden:
+      case kForbidden:
         fail(i, fmt::format("{} is not allowed outside comments", shown(line[i])));
+        break;
+      default:
+        break;
     }
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -39,6 +40,19 @@ class Cursor {
     }
     return true;
   }
+  /// Passes digits and appends them to a number, modulo 2^64. Returns how many.
+  int take_digits(std::uint64_t& number) {
+    int count = 0;
+    for (;;) {
+      for (; at_ < line_.size(); ++at_, ++count) {
+        const auto digit = static_cast<unsigned char>(line_[at_] - '0');
+        if (digit > 9) break;
+        number = number * 10 + digit;
+      }
+      if (at_ == line_.size() || !is_blank(line_[at_])) return count;
+      skip_blanks();
+    }
+  }
   std::size_t at() const { return at_; }
   void go_to(std::size_t at) { at_ = at; }
   int column() const { return static_cast<int>(at_) + 1; }
@@ -55,8 +69,9 @@ class Cursor {
   }();
 
   std::size_t byte(std::size_t i) const { return static_cast<unsigned char>(line_[i]); }
+  static bool is_blank(char c) { return c == ' ' || c == '\t'; }
   void skip_blanks() {
-    while (at_ < line_.size() && (line_[at_] == ' ' || line_[at_] == '\t')) ++at_;
+    while (at_ < line_.size() && is_blank(line_[at_])) ++at_;
   }
 
   std::string_view line_;

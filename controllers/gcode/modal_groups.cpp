@@ -149,11 +149,31 @@ static_assert(std::is_sorted(kMCodes.begin(), kMCodes.end(), by_tenths));
 std::span<const Code> g_codes() { return kGCodes; }
 std::span<const Code> m_codes() { return kMCodes; }
 
+namespace {
+
+constexpr std::size_t kTenths = 1000;  // no code is G100 or above
+
+// Where the code of so many tenths stands in its table, counted from 1.
+template <std::size_t N>
+constexpr std::array<std::uint8_t, kTenths> index_of_codes(const std::array<Code, N>& codes) {
+  std::array<std::uint8_t, kTenths> index{};
+  for (std::size_t i = 0; i < N; ++i) {
+    index[static_cast<std::size_t>(codes[i].tenths)] = static_cast<std::uint8_t>(i + 1);
+  }
+  return index;
+}
+
+constexpr auto kGIndex = index_of_codes(kGCodes);
+constexpr auto kMIndex = index_of_codes(kMCodes);
+
+}  // namespace
+
 const Code* find_code(char letter, int tenths) {
-  const std::span<const Code> codes = letter == 'G' ? g_codes() : m_codes();
-  const auto found = std::lower_bound(codes.begin(), codes.end(), tenths,
-                                      [](const Code& c, int t) { return c.tenths < t; });
-  return found != codes.end() && found->tenths == tenths ? &*found : nullptr;
+  if (tenths < 0 || tenths >= static_cast<int>(kTenths)) return nullptr;
+  const auto i = static_cast<std::size_t>(tenths);
+  const std::size_t place = letter == 'G' ? kGIndex[i] : kMIndex[i];
+  if (place == 0) return nullptr;
+  return letter == 'G' ? &kGCodes[place - 1] : &kMCodes[place - 1];
 }
 
 std::string code_name(char letter, int tenths) {

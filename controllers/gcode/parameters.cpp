@@ -197,8 +197,8 @@ int parameter_number(double value, const Place& place) {
   return static_cast<int>(nearest);
 }
 
-double evaluate_code(const Value& value, const Block& block, const Parameters& parameters,
-                     const std::string& file) {
+double run_code(const Value& value, const Block& block, const Parameters& parameters,
+                const std::string& file) {
   Stack stack;
   std::size_t top = 0;  // one above the topmost number
   for (int i = value.begin; i < value.end; ++i) {

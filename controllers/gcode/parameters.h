@@ -83,11 +83,17 @@ int parameter_number(double value, const Place& place);
 
 /// @throws InputError for a parameter that is not defined, an argument out of the domain of a
 /// function, a division by zero or a result that is not finite
-double evaluate_code(const Value& value, const Block& block, const Parameters& parameters,
-                     const std::string& file);
+double run_code(const Value& value, const Block& block, const Parameters& parameters,
+                const std::string& file);
 inline double evaluate(const Value& value, const Block& block, const Parameters& parameters,
                        const std::string& file) {
-  return value.is_constant() ? value.number : evaluate_code(value, block, parameters, file);
+  return value.is_constant() ? value.number : run_code(value, block, parameters, file);
+}
+/// Keeps the number in the value, too.
+inline double evaluate(Value& value, const Block& block, const Parameters& parameters,
+                       const std::string& file) {
+  if (!value.is_constant()) value.number = run_code(value, block, parameters, file);
+  return value.number;
 }
 
 /// Text of (DEBUG, ...) and (PRINT, ...): #5 and #<name> replaced by their values with six

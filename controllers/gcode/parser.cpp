@@ -17,6 +17,16 @@ namespace {
 
 constexpr std::string_view kLetters = "ABCDFGHIJKLMPQRSTXYZ";
 
+constexpr std::uint32_t kLetterBits = [] {
+  std::uint32_t bits = 0;
+  for (const char letter : kLetters) bits |= 1U << static_cast<unsigned>(letter - 'A');
+  return bits;
+}();
+
+bool starts_word(char c) {
+  return c >= 'A' && c <= 'Z' && (kLetterBits >> static_cast<unsigned>(c - 'A') & 1U) != 0;
+}
+
 struct Operator {
   std::string_view token;
   OpCode code;
@@ -136,6 +146,7 @@ void Parser::emit(OpCode code, int column, double value, int name) {
 
 // The piece ends where the cursor has come to, blanks before it left out.
 void Parser::add_piece(PieceKind kind, std::size_t begin, char letter) {
+  if (!keeps_pieces_) return;
   const std::string_view line = cursor_.line();
   std::size_t end = cursor_.at();
   while (end > begin && (line[end - 1] == ' ' || line[end - 1] == '\t')) --end;
@@ -191,15 +202,13 @@ void Parser::skip_digits() {
 
 void Parser::item() {
   const char c = peek();
+  if (starts_word(c)) return word();
   if (c == '(' || c == ';') return comment();
   if (c == '#') return assignment();
   if (c == 'N') fail_here("N is only allowed at the start of a block");
   if (c == 'O') fail_here("an O-word must be the first word of its block");
   if (c == '%') fail_here("'%' must stand alone on its line, first and last in the program");
-  if (kLetters.find(c) == std::string_view::npos) {
-    fail_here(fmt::format("unexpected {}; a word starts with one of {}", shown(c), kLetters));
-  }
-  word();
+  fail_here(fmt::format("unexpected {}; a word starts with one of {}", shown(c), kLetters));
 }
 
 void Parser::comment() {
@@ -429,17 +438,12 @@ double Parser::number(std::string_view what) {
   const std::size_t start = cursor_.at();
   std::uint64_t digits = 0;
   int count = 0, decimals = 0;
-  const auto take_digits = [&] {
-    int taken = 0;
-    for (char c = peek(); is_digit(c); c = peek(), ++taken) {
-      digits = digits * 10 + static_cast<std::uint64_t>(c - '0');
-      cursor_.advance();
-    }
-    count += taken;
-    return taken;
-  };
-  take_digits();
-  if (accept(".")) decimals = take_digits();
+  count = cursor_.take_digits(digits);
+  if (peek() == '.') {
+    cursor_.advance();
+    decimals = cursor_.take_digits(digits);
+    count += decimals;
+  }
   if (count == 0) {
     fail(start, fmt::format("a value is expected after {}, not {}", what, shown(peek())));
   }

@@ -28,6 +28,9 @@ class Parser {
  public:
   explicit Parser(bool block_delete = false) : block_delete_(block_delete) {}
 
+  /// Whether blocks get their pieces. They do not at first: to run a program no one needs them.
+  void keep_pieces(bool keep) { keeps_pieces_ = keep; }
+
   /// How much of a line is read. Where flow control skips, RS274/NGC does not look at what a line
   /// says, only at its comments, and at the label and the keyword of its O-word.
   enum class Extent { all, flow_only };
@@ -72,6 +75,7 @@ class Parser {
   void expression(int loosest);
 
   bool block_delete_;
+  bool keeps_pieces_ = false;
   Cursor cursor_;
   const std::string* file_ = nullptr;
   int number_ = 0;

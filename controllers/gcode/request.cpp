@@ -34,10 +34,10 @@ struct Context {
 std::string name_of(char letter, const Code& code) { return code_name(letter, code.tenths); }
 
 const Code& look_up(const Context& context, char letter, double value, int column) {
-  const double tenths = std::round(10.0 * value);
+  const double tenths = std::floor(10.0 * value + 0.5);
   const bool exact = std::abs(10.0 * value - tenths) <= 10.0 * kCodeTol;
-  const Code* code =
-      exact && std::abs(tenths) < 1e6 ? find_code(letter, static_cast<int>(tenths)) : nullptr;
+  const bool is_near = exact && tenths >= 0.0 && tenths < 1e4;
+  const Code* code = is_near ? find_code(letter, static_cast<int>(tenths)) : nullptr;
   if (code == nullptr)
     context.fail(column, fmt::format("unknown {} code {}{}", letter, letter, value));
   if (!code->supported) {
@@ -159,15 +159,14 @@ void add_code(const Context& context, Request& request, const Word& word, double
 
 }  // namespace
 
-void resolve(const Block& block, const Parameters& parameters, int modal_motion, bool has_vectors,
+void resolve(Block& block, const Parameters& parameters, int modal_motion, bool has_vectors,
              const std::string& file, Request& request) {
   const Context context{file, block.line};
   request.clear();
   request.line = block.line;
   int m_codes_seen = 0;
-  for (const Word& word : block.words) {
+  for (Word& word : block.words) {
     const double value = evaluate(word.value, block, parameters, file);
-    request.values.push_back(value);
     if (word.letter == 'G' || word.letter == 'M') {
       add_code(context, request, word, value, m_codes_seen);
     } else {

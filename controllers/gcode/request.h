@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "controllers/gcode/block.h"
 #include "controllers/gcode/modal_groups.h"
@@ -29,8 +28,7 @@ struct Request {
   std::uint32_t letters = 0;   // those of `words` that are in the block, a bit each from A
   std::uint32_t groups = 0;    // those of `codes` that are in the block, a bit each
   std::array<Chosen, static_cast<std::size_t>(Group::count)> codes;
-  std::vector<double> values;  // of all words, in their order
-  Chosen motion;               // in this block, programmed or still in force; not G80
+  Chosen motion;  // in this block, programmed or still in force; not G80
 
   void clear() {
     for (; letters != 0; letters &= letters - 1) {
@@ -40,7 +38,6 @@ struct Request {
       codes[static_cast<std::size_t>(std::countr_zero(groups))] = {};
     }
     motion = {};
-    values.clear();
   }
   void set(char letter, double value, int column) {
     words[static_cast<std::size_t>(letter - 'A')] = {value, column};
@@ -65,12 +62,13 @@ struct Request {
 inline constexpr int kNoMotion = 800;       // G80
 inline constexpr int kVectorControl = 435;  // G43.5
 
+/// @param block    its values are evaluated
 /// @param request  set anew; it may hold any other
 /// @param modal_motion  ten times the motion code in force
 /// @param has_vectors   whether I J K of G0 and G1 give the tool axis (G43.5 in force)
 /// @throws InputError for an unknown or unsupported code, two codes of a group, axis words that no
 /// code or more than one code claims, and words that belong to no code of the block
-void resolve(const Block& block, const Parameters& parameters, int modal_motion, bool has_vectors,
+void resolve(Block& block, const Parameters& parameters, int modal_motion, bool has_vectors,
              const std::string& file, Request& request);
 
 /// The part of `resolve` that needs no run: codes that are plain numbers.

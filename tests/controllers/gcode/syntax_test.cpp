@@ -29,6 +29,7 @@ void PrintTo(const Shown& piece, std::ostream* out) {
 
 std::vector<Shown> pieces_of(const std::string& line) {
   Parser parser;
+  parser.keep_pieces(true);
   Block block;
   parser.parse(line, "p.nc", 1, block);
   std::vector<Shown> pieces;
@@ -42,6 +43,7 @@ std::vector<Shown> pieces_of(const std::string& line) {
 // Prints what was read; a line that cannot be read counts as printed.
 void expect_lossless(std::string_view line) {
   Parser parser;
+  parser.keep_pieces(true);
   Block block;
   try {
     parser.parse(line, "p.nc", 1, block);
