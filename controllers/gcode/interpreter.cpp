@@ -280,8 +280,10 @@ void Interpreter::Machine::message() {
   const Comment& comment = block_.message;
   if (comment.kind == CommentKind::plain) return;
   Move& move = emit(MoveKind::message);
+  is_printing_ = true;
   move.text =
       comment.kind == CommentKind::message ? comment.text : substitute(comment.text, parameters_);
+  is_printing_ = false;
   move.text = trimmed(move.text);
   move.number = comment.kind == CommentKind::print ? kPrintMessage : 0;
 }
@@ -632,7 +634,7 @@ void Interpreter::Machine::motion() {
 
 AxisWords Interpreter::Machine::programmed_end() const {
   if (request().code(Group::g_non_modal) == 530) return machine_end();
-  AxisWords end = state_.position;
+  AxisWords end = state_.programmed();
   for (int i = 0; i < kAxisWords; ++i) {
     if (has_axis(i)) end[i] = axis_word(i) + (state_.is_incremental ? end[i] : 0.0);
   }
@@ -679,21 +681,28 @@ double Interpreter::Machine::move_feed(double length, double angle) const {
 }
 
 void Interpreter::Machine::straight() {
+  state_.compensation.refuses_arc = false;
   const bool is_rapid = request().motion_code() == 0;
   if (!is_rapid) require_feed();
-  if (!has_any_axis() && !has_vector()) return;
+  const bool enters = state_.compensation.acts() && !state_.compensation.is_entered;
+  if (!has_any_axis() && !has_vector() && !enters) return;
   if (!is_rapid) warn_of_leaning_tool();
+  const AxisWords begin = state_.programmed();
   AxisWords end = programmed_end();
-  const double length = (end - state_.position).head<3>().norm();
-  double angle = (end - state_.position).tail<3>().norm();
+  const double length = (end - begin).head<3>().norm();
+  double angle = (end - begin).tail<3>().norm();
   const bool has_tool_axis = state_.tool_control == ToolControl::tool_axis;
   if (has_tool_axis) {
     const Eigen::Vector3d k = programmed_axis();
     angle = turn_towards(k, end);
     state_.tool_axis = k;
   }
-  move_to(is_rapid ? MoveKind::rapid : MoveKind::feed, end, length,
-          is_rapid ? 0.0 : move_feed(length, angle));
+  const MoveKind kind = is_rapid ? MoveKind::rapid : MoveKind::feed;
+  const double feed = is_rapid ? 0.0 : move_feed(length, angle);
+  if (state_.compensation.acts()) {
+    return compensate(kind, {state_.in_plane(begin), state_.in_plane(end)}, end, length, feed);
+  }
+  move_to(kind, end, length, feed);
   if (has_tool_axis) out_.back().tool_axis = state_.tool_axis;
 }
 
@@ -745,6 +754,10 @@ ArcCentre Interpreter::Machine::arc_centre(const Eigen::Vector2d& start, const E
 
 void Interpreter::Machine::arc() {
   require_feed();
+  if (state_.compensation.refuses_arc) {
+    fail(request().motion.column, fmt::format("{} is the first move behind G40; must be G0 or G1",
+                                              code_name('G', request().motion_code())));
+  }
   if (state_.tool_control == ToolControl::tool_axis) {
     fail(request().motion.column,
          fmt::format("{} under G43.5, where I J K are the tool axis; use G1 or G43.4",
@@ -753,34 +766,33 @@ void Interpreter::Machine::arc() {
   const bool clockwise = request().motion_code() == 20;
   const int turns = arc_turns(clockwise);
   const int n = state_.normal_axis;
-  const int first = (n + 1) % 3, second = (n + 2) % 3;
+  const AxisWords begin = state_.programmed();
   const AxisWords end = programmed_end();
-  const Eigen::Vector2d a(state_.position[first], state_.position[second]);
-  const Eigen::Vector2d b(end[first], end[second]);
+  const Eigen::Vector2d a = state_.in_plane(begin), b = state_.in_plane(end);
   const ArcCentre found = arc_centre(a, b, clockwise);
   if (!found.fault.empty()) {
     fail(request().motion.column,
          fmt::format("{}: {}", code_name('G', request().motion_code()), found.fault));
   }
-  AxisWords centre = AxisWords::Zero();
-  centre[first] = found.centre.x();
-  centre[second] = found.centre.y();
+  AxisWords centre = state_.with_plane(AxisWords::Zero(), found.centre);
   centre[n] = end[n];
   const double length =
-      ArcSweep(state_.position.head<3>(), end.head<3>(), centre.head<3>(), n, turns).length();
-  const double angle = (end - state_.position).tail<3>().norm();
+      ArcSweep(begin.head<3>(), end.head<3>(), centre.head<3>(), n, turns).length();
+  const double angle = (end - begin).tail<3>().norm();
   warn_of_leaning_tool();
-  move_to(MoveKind::arc, end, length, move_feed(length, angle));
-  out_.back().arc = {n, centre.head<3>(), turns};
-  if (state_.plane) {
-    out_.back().plane = std::make_shared<const WorkPlane>(state_.plane_in_workpiece());
+  const double feed = move_feed(length, angle);
+  if (state_.compensation.acts()) {
+    return compensate(MoveKind::arc, {a, b, true, found.centre, turns}, end, length, feed);
   }
-  out_.back().centre_machine = state_.to_machine(centre).head<3>();
+  move_to(MoveKind::arc, end, length, feed);
+  describe_arc(out_.back(), centre, turns);
 }
 
 void Interpreter::Machine::stop() {
   const int code = request().code(Group::m_stop);
   if (code < 0) return;
+  end_queue_at(state_.in_plane(state_.position));
+  state_.compensation.begin.reset();
   if (code == 0 || code == 10) {
     emit(MoveKind::stop).number = code / 10;
     return;
@@ -799,8 +811,16 @@ void Interpreter::Machine::stop() {
 
 // ----------------------------------------------------------------------------------------- output
 
+// While moves wait for the next one, everything but messages waits behind them.
 Move& Interpreter::Machine::emit(MoveKind kind) {
-  Move& move = out_.emplace_back();
+  std::vector<Compensation::Waiting>& queue = state_.compensation.queue;
+  const bool waits = !queue.empty() && kind != MoveKind::message;
+  Move& move = waits ? queue.emplace_back().move : out_.emplace_back();
+  describe(move, kind);
+  return move;
+}
+
+void Interpreter::Machine::describe(Move& move, MoveKind kind) const {
   move.kind = kind;
   move.line = line();
   move.end = state_.position;
@@ -815,7 +835,12 @@ Move& Interpreter::Machine::emit(MoveKind kind) {
   if (state_.plane && move.tool_control == ToolControl::none) {
     move.tool_control = ToolControl::work_plane;
   }
-  return move;
+}
+
+void Interpreter::Machine::describe_arc(Move& move, const AxisWords& centre, int turns) const {
+  move.arc = {state_.normal_axis, centre.head<3>(), turns};
+  if (state_.plane) move.plane = std::make_shared<const WorkPlane>(state_.plane_in_workpiece());
+  move.centre_machine = state_.to_machine(centre).head<3>();
 }
 
 void Interpreter::Machine::move_to(MoveKind kind, const AxisWords& end, double length,
@@ -839,6 +864,9 @@ double Interpreter::Machine::system_number(int number) const {
     return tool == nullptr ? 0.0 : in_parameter_unit(offset, tool->offset[offset]);
   }
   const int axis = number - parameter::kPosition;
+  if (axis >= 0 && state_.compensation.is_on && !is_printing_) {
+    fail(0, fmt::format("#{} with cutter compensation on: it is not known yet; G40 first", number));
+  }
   if (axis >= 0 && axis < kAxisWords) return state_.position[axis] / unit_of(axis_at(axis));
   return 0.0;
 }

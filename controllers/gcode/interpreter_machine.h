@@ -1,5 +1,5 @@
 /// The machine that the interpreter runs a program on: what it remembers, and the steps of a block.
-/// Private to the interpreter (interpreter.cpp, tip_control.cpp).
+/// Private to the interpreter (interpreter.cpp, compensated_motion.cpp, tip_control.cpp).
 #pragma once
 
 #include <array>
@@ -216,7 +216,7 @@ class Interpreter::Machine {
   void dwell();
   void plane();
   void units();
-  void cutter_compensation() {}
+  void cutter_compensation();
   void tool_length();
   void set_table_offset(bool is_added);
   ToolControl tool_control_of(int code) const;
@@ -256,6 +256,24 @@ class Interpreter::Machine {
   double turn_towards(const Eigen::Vector3d& k, AxisWords& end) const;
   void warn_of_leaning_tool();
 
+  // cutter radius compensation
+  void start_compensation();
+  double compensation_diameter() const;
+  void refuse_turning_tool(int column, int orientation) const;
+  void stop_compensation();
+  void refuse_code(Group group) const;
+  void refuse_codes_under_compensation();
+  void warn(int column, std::string message) {
+    warnings_.push_back({{file_, lines_.number(), column}, std::move(message)});
+  }
+  void compensate(MoveKind kind, const PlaneMove& path, const AxisWords& end, double length,
+                  double feed);
+  void turn_corner(MoveKind kind, const PlaneMove& path, const AxisWords& end, double feed);
+  void go_around(MoveKind kind, const PlaneMove& path, const Eigen::Vector2d& point,
+                 const AxisWords& end, double feed);
+  void end_queue_at(const Eigen::Vector2d& point);
+  void release_queue();
+
   void straight();
   void arc();
   ArcCentre arc_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end, bool clockwise);
@@ -267,6 +285,8 @@ class Interpreter::Machine {
 
   // ---- output
   Move& emit(MoveKind kind);
+  void describe(Move& move, MoveKind kind) const;
+  void describe_arc(Move& move, const AxisWords& centre, int turns) const;
   void move_to(MoveKind kind, const AxisWords& end, double length, double feed);
   void emit_spindle();
 
@@ -292,6 +312,7 @@ class Interpreter::Machine {
   std::vector<std::pair<int, double>> new_numbers_;
   std::vector<Fault> warnings_;
   std::shared_ptr<const WorkPlane> cut_plane_;  // the last in which a tool cut
+  bool is_printing_ = false;                    // messages may read what expressions may not
 };
 
 }  // namespace servomill::controllers

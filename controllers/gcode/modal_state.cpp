@@ -42,6 +42,12 @@ void ModalState::set_unit(double new_unit) {
   unit = new_unit;
 }
 
+AxisWords ModalState::with_plane(AxisWords p, const Eigen::Vector2d& in_plane) const {
+  p[first_axis()] = in_plane.x();
+  p[second_axis()] = in_plane.y();
+  return p;
+}
+
 AxisWords ModalState::rotated(const AxisWords& v) const {
   return turned(v, cos_rotation, sin_rotation);
 }

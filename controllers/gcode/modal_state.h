@@ -3,7 +3,10 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
+#include <vector>
 
+#include "controllers/gcode/cutter_compensation.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/move.h"
 #include "plant/vocabulary/units.h"
@@ -14,6 +17,25 @@ inline constexpr int kWorkSystems = 9;       // G54 ... G59.3
 inline constexpr int kOtherToolOffset = -1;  // `Move::tool_offset` of G43.1 and G43.2
 inline constexpr int kPrintMessage = 1;      // `Move::number` of (PRINT, ...); else 0
 inline constexpr int kMist = 1, kFlood = 2;  // bits of `Move::number` of a coolant move
+
+/// Cutter compensation in force, and the moves that wait until the next one is known.
+struct Compensation {
+  struct Waiting {
+    Move move;
+    HeldMove path;  // of a motion
+  };
+  bool is_on = false;
+  bool is_entered = false;  // the first move was made: the tool is beside the programmed path
+  Cutter cutter;
+  Eigen::Vector2d programmed = Eigen::Vector2d::Zero();  // where the programmed path is now
+  std::vector<Waiting> queue;            // a motion, and what followed without moving in the plane
+  HeldMove last_front;                   // of the queue before this one
+  std::optional<Eigen::Vector2d> begin;  // where the front of the queue begins, if known
+  bool refuses_arc = false;              // G40, and no straight move since
+
+  bool acts() const { return is_on && cutter.radius > 0.0; }
+  const HeldMove& front() const { return queue.empty() ? last_front : queue.front().path; }
+};
 
 /// Positions are SI. Machine coordinates = R (position + shift) + work_offset + tool_offset, where
 /// R turns X and Y by the rotation of the work system.
@@ -27,7 +49,7 @@ inline constexpr int kMist = 1, kFlood = 2;  // bits of `Move::number` of a cool
 /// them, and so it is of the account:
 /// tip = R (plane (position) + shift) + work_offset.
 struct ModalState {
-  AxisWords position = AxisWords::Zero();  // in work coordinates
+  AxisWords position = AxisWords::Zero();  // in work coordinates; of the compensated tool
   AxisWords shift = AxisWords::Zero();     // G92, G52
   AxisWords work_offset = AxisWords::Zero();
   AxisWords tool_offset = AxisWords::Zero();
@@ -40,6 +62,8 @@ struct ModalState {
   ToolControl tool_control = ToolControl::none;         // by G43.4 and G43.5
   Eigen::Vector3d tool_axis = Eigen::Vector3d::Zero();  // k_W of G43.5; 0: none given yet
   std::shared_ptr<const WorkPlane> plane;               // of G68.2, in work coordinates
+
+  Compensation compensation;
 
   int motion = 800;     // ten times the code; 800: none
   int normal_axis = 2;  // of the plane of arcs
@@ -63,6 +87,15 @@ struct ModalState {
   void set_rotation(double angle);
   void set_tool_offset(const AxisWords& offset);
   void set_unit(double new_unit);
+  /// Indices of the axes of the plane: X Y, Z X or Y Z.
+  int first_axis() const { return (normal_axis + 1) % 3; }
+  int second_axis() const { return (normal_axis + 2) % 3; }
+  Eigen::Vector2d in_plane(const AxisWords& p) const { return {p[first_axis()], p[second_axis()]}; }
+  AxisWords with_plane(AxisWords p, const Eigen::Vector2d& in_plane) const;
+  /// Where the program is: `position` but for cutter compensation.
+  AxisWords programmed() const {
+    return compensation.is_entered ? with_plane(position, compensation.programmed) : position;
+  }
   /// Whether X Y Z are the tip in the workpiece.
   bool controls_tip() const { return tool_control != ToolControl::none || plane != nullptr; }
   /// Tip in the spindle nose, m.

@@ -68,8 +68,10 @@ void read_word(Reader& reader, ToolEntry& tool, bool& has_number) {
       return;
     case 'I':
     case 'J':
-    case 'Q':
       reader.value(start);
+      return;
+    case 'Q':
+      tool.orientation = reader.integer(start);
       return;
     default:
       reader.fail(start, fmt::format("unknown word '{}'; a tool has T P X Y Z A B C D I J Q", c));

@@ -14,12 +14,13 @@ struct ToolEntry {
   int pocket = 0;
   AxisWords offset = AxisWords::Zero();  // m, rad; length along Z is offset[2]
   double diameter = 0.0;                 // m
+  int orientation = 0;                   // of a turning tool, 1 ... 9; 0: of a mill
 };
 
 class ToolTable {
  public:
   /// Reads LinuxCNC's format in mm and degrees: one tool a line, words T P X Y Z A B C D and, for
-  /// turning tools and unused here, I J Q; a ';' starts a comment.
+  /// turning tools, Q (orientation), I and J (angles, unused here); a ';' starts a comment.
   /// @throws InputError with every faulty line
   static ToolTable parse(std::string_view text, const std::string& file);
 

@@ -1,0 +1,242 @@
+// Cutter radius compensation: G40 G41 G42 G41.1 G42.1, and the moves under it.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "controllers/gcode/interpreter_machine.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers {
+
+// ------------------------------------------------------------------------------ switching on, off
+
+void Interpreter::Machine::cutter_compensation() {
+  const int code = request().code(Group::g_cutter_compensation);
+  if (state_.compensation.is_on) {
+    // these came before this step: G40 in their block is too late
+    if (state_.normal_axis != before_.normal_axis) refuse_code(Group::g_plane);
+    if (request().code(Group::m_tool) == 60) refuse_code(Group::m_tool);
+    refuse_code(Group::m_override);
+  }
+  if (code == 400) stop_compensation();
+  if (code > 400) start_compensation();
+  if (state_.compensation.is_on) refuse_codes_under_compensation();
+}
+
+void Interpreter::Machine::refuse_code(Group group) const {
+  const Request::Chosen& chosen = request().of(group);
+  if (chosen.code == nullptr) return;
+  const char letter = group >= Group::m_input_output ? 'M' : 'G';
+  fail(chosen.column, fmt::format("{} with cutter compensation on; G40 first",
+                                  code_name(letter, chosen.code->tenths)));
+}
+
+void Interpreter::Machine::refuse_codes_under_compensation() {
+  for (const Group group : {Group::g_tool_length, Group::g_work_system, Group::g_work_plane,
+                            Group::g_path_control, Group::g_retract}) {
+    refuse_code(group);
+  }
+  const int code = request().code(Group::g_non_modal);
+  if (code == 921 || code == 922 || code == 923) {
+    warn(request().of(Group::g_non_modal).column,
+         fmt::format("{} has no effect while cutter compensation is on", code_name('G', code)));
+    request_.codes[static_cast<std::size_t>(Group::g_non_modal)] = {};
+    return;
+  }
+  const bool sets_active_system =
+      code == 100 && (request()['L'] == 2.0 || request()['L'] == 20.0) &&
+      (std::abs(request()['P']) < 0.5 || std::abs(request()['P'] - state_.work_system) < 0.5);
+  const bool is_machine_move = code == 530 && state_.compensation.acts();
+  const bool is_other = code > 100 && code != 530;
+  if (sets_active_system || is_machine_move || is_other) refuse_code(Group::g_non_modal);
+  const int motion_code = request().motion_code();
+  if (motion_code > 30) {
+    fail(request().motion.column,
+         fmt::format("{} with cutter compensation on; G40 first", code_name('G', motion_code)));
+  }
+}
+
+void Interpreter::Machine::start_compensation() {
+  const Request::Chosen& chosen = request().of(Group::g_cutter_compensation);
+  const std::string name = code_name('G', chosen.code->tenths);
+  Compensation& compensation = state_.compensation;
+  if (state_.normal_axis == 0) {
+    fail(chosen.column, fmt::format("{} in the YZ plane; must be in G17 or G18", name));
+  }
+  if (compensation.is_on) {
+    fail(chosen.column, fmt::format("{} with cutter compensation on; G40 first", name));
+  }
+  if (state_.tool_control != ToolControl::none) {
+    fail(chosen.column, fmt::format("{} under tool-centre-point control; G49 first", name));
+  }
+  const double diameter = compensation_diameter();
+  const bool is_left = chosen.code->tenths < 420;
+  compensation.is_on = true;
+  compensation.cutter = {std::abs(diameter) / 2.0, is_left == (diameter >= 0.0)};
+  if (diameter == 0.0) {
+    warn(chosen.column, fmt::format("{}: the tool has no diameter; nothing is compensated", name));
+  }
+  const char unused = chosen.code->tenths % 10 == 1 ? 'R' : 'L';  // taken, and left, by LinuxCNC
+  if (request().has(unused)) {
+    warn(request().word(unused).column, fmt::format("{} has no effect with {}", unused, name));
+  }
+}
+
+// Diameter of the tool, m; negative: on the other side of the path.
+double Interpreter::Machine::compensation_diameter() const {
+  const Request::Chosen& chosen = request().of(Group::g_cutter_compensation);
+  const std::string name = code_name('G', chosen.code->tenths);
+  if (chosen.code->tenths % 10 == 1) {
+    if (!request().has('D'))
+      fail(chosen.column, fmt::format("{} needs a D word (mm or inch)", name));
+    if (request().has('L')) {
+      const int column = request().word('L').column;
+      if (state_.normal_axis == 2)
+        fail(column, fmt::format("L with {} in the XY plane; it is the orientation of a turning "
+                                 "tool, which needs G18",
+                                 name));
+      refuse_turning_tool(column, integer('L'));
+    }
+    return request()['D'] * state_.unit;
+  }
+  int number = state_.tool;
+  if (request().has('D')) {
+    number = integer('D');
+    if (number < 0) fail_at('D', fmt::format("{} D{}; must be >= 0", name, number));
+    if (number == 0) number = state_.tool;
+    tool_named('D', number);
+  }
+  const ToolEntry* tool = setup_.tools.find(number);
+  if (tool == nullptr) return 0.0;  // nothing in the spindle
+  refuse_turning_tool(request().has('D') ? request().word('D').column : chosen.column,
+                      tool->orientation);
+  return tool->diameter;
+}
+
+// In orientation 9 the controlled point is the centre of the cutter, as it is of a mill.
+void Interpreter::Machine::refuse_turning_tool(int column, int orientation) const {
+  if (orientation == 0 || orientation == 9) return;
+  fail(column,
+       fmt::format(
+           "turning tool of orientation {}; cutter compensation takes round tools only (0 or 9)",
+           orientation));
+}
+
+void Interpreter::Machine::stop_compensation() {
+  Compensation& compensation = state_.compensation;
+  if (compensation.is_entered) {
+    end_queue_at(state_.in_plane(state_.position));
+    state_.position = state_.programmed();
+    compensation.refuses_arc = true;
+  }
+  compensation.begin.reset();
+  compensation.is_on = compensation.is_entered = false;
+}
+
+// ------------------------------------------------------------------------------------------ motion
+
+// @param path            programmed, in the plane
+// @param end             of the programmed move
+// @param length          of the programmed path, m
+void Interpreter::Machine::compensate(MoveKind kind, const PlaneMove& path, const AxisWords& end,
+                                      double length, double feed) {
+  Compensation& compensation = state_.compensation;
+  if (request().code(Group::g_non_modal) == 530) refuse_code(Group::g_non_modal);
+  const bool enters = !compensation.is_entered;
+  const bool stays = !enters && !path.is_arc && path.begin == path.end;
+  Compensated made;
+  if (enters) {
+    made = entry_move(compensation.cutter, path);
+  } else if (stays) {
+    made.move.end = state_.in_plane(state_.position);
+  } else {
+    made = following_move(compensation.cutter, path);
+  }
+  if (!made.fault.empty()) fail(request().motion.column, made.fault);
+  if (enters && !path.is_arc) compensation.begin = path.begin;
+  if (!enters && !stays) turn_corner(kind, path, end, feed);
+
+  const double s_begin = state_.s;
+  state_.s += length;
+  state_.position = state_.with_plane(end, made.move.end);
+  compensation.programmed = path.end;
+  compensation.is_entered = true;
+  Compensation::Waiting& waiting = compensation.queue.emplace_back();
+  waiting.path = made.move;
+  describe(waiting.move, kind);
+  waiting.move.feed = feed;
+  waiting.move.s_begin = s_begin;
+  if (path.is_arc) {
+    AxisWords centre = state_.with_plane(AxisWords::Zero(), made.move.centre);
+    centre[state_.normal_axis] = end[state_.normal_axis];
+    describe_arc(waiting.move, centre, made.move.turns);
+  }
+}
+
+void Interpreter::Machine::turn_corner(MoveKind kind, const PlaneMove& path, const AxisWords& end,
+                                       double feed) {
+  Compensation& compensation = state_.compensation;
+  const Eigen::Vector2d tool = state_.in_plane(state_.position);
+  const Corner found = corner(compensation.cutter, tool, compensation.front(), path);
+  if (!found.fault.empty()) fail(request().motion.column, found.fault);
+  switch (found.kind) {
+    case CornerKind::straight:
+      release_queue();
+      compensation.begin = tool;
+      return;
+    case CornerKind::concave:
+      end_queue_at(found.point);
+      return;
+    case CornerKind::convex:
+      // as LinuxCNC: nothing is checked in front of an arc
+      path.is_arc ? release_queue() : end_queue_at(tool);
+      go_around(kind, path, found.point, end, feed);
+      compensation.begin = found.point;
+      return;
+  }
+}
+
+// Around a convex corner, which is of no length in the program. Rotary axes turn here, the axis
+// along the normal of the plane moves with the move behind.
+void Interpreter::Machine::go_around(MoveKind kind, const PlaneMove& path,
+                                     const Eigen::Vector2d& point, const AxisWords& end,
+                                     double feed) {
+  const bool is_rapid = kind == MoveKind::rapid;  // there are no arcs at rapid
+  AxisWords corner_end = end;
+  corner_end.head<3>() = state_.with_plane(state_.position, point).head<3>();
+  move_to(is_rapid ? kind : MoveKind::arc, corner_end, 0.0, feed);
+  if (is_rapid) return;
+  AxisWords centre = state_.with_plane(AxisWords::Zero(), path.begin);
+  centre[state_.normal_axis] = corner_end[state_.normal_axis];
+  describe_arc(out_.back(), centre, state_.compensation.cutter.is_left ? -1 : 1);
+}
+
+// Ends what waits at a point of the plane, and gives it out.
+void Interpreter::Machine::end_queue_at(const Eigen::Vector2d& point) {
+  Compensation& compensation = state_.compensation;
+  if (compensation.queue.empty()) return;
+  const EndTolerance& tolerance = state_.unit == mm ? kEndToleranceMm : kEndToleranceInch;
+  for (Compensation::Waiting& waiting : compensation.queue) {
+    if (is_motion(waiting.move.kind)) {
+      const std::string fault = move_end(waiting.path, compensation.begin, point, tolerance);
+      if (!fault.empty()) fail(0, fmt::format("{} (move of line {})", fault, waiting.move.line));
+    }
+    waiting.move.end = state_.with_plane(waiting.move.end, point);
+  }
+  release_queue();
+  compensation.begin = point;
+}
+
+void Interpreter::Machine::release_queue() {
+  Compensation& compensation = state_.compensation;
+  compensation.begin.reset();
+  if (compensation.queue.empty()) return;
+  compensation.last_front = compensation.queue.front().path;
+  for (Compensation::Waiting& waiting : compensation.queue) {
+    waiting.move.end_machine = state_.to_machine(waiting.move.end);
+    out_.push_back(std::move(waiting.move));
+  }
+  compensation.queue.clear();
+}
+
+}  // namespace servomill::controllers
