@@ -776,11 +776,13 @@ void Interpreter::Machine::arc() {
   }
   AxisWords centre = state_.with_plane(AxisWords::Zero(), found.centre);
   centre[n] = end[n];
-  const double length =
-      ArcSweep(begin.head<3>(), end.head<3>(), centre.head<3>(), n, turns).length();
+  const ArcSweep sweep(begin.head<3>(), end.head<3>(), centre.head<3>(), n, turns);
+  const double length = sweep.length();
   const double angle = (end - begin).tail<3>().norm();
   warn_of_leaning_tool();
-  const double feed = move_feed(length, angle);
+  // as LinuxCNC: the length that G93 speaks of is that of a circle with the radius at the start
+  const double nominal = std::hypot(sweep.r_begin * sweep.sweep, end[n] - begin[n]);
+  const double feed = move_feed(nominal, angle);
   if (state_.compensation.acts()) {
     return compensate(MoveKind::arc, {a, b, true, found.centre, turns}, end, length, feed);
   }

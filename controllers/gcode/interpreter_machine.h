@@ -264,7 +264,7 @@ class Interpreter::Machine {
   void refuse_code(Group group) const;
   void refuse_codes_under_compensation();
   void warn(int column, std::string message) {
-    warnings_.push_back({{file_, lines_.number(), column}, std::move(message)});
+    warnings_.push_back({{file(), line(), column}, std::move(message)});
   }
   void compensate(MoveKind kind, const PlaneMove& path, const AxisWords& end, double length,
                   double feed);
