@@ -164,6 +164,17 @@ void refuse_absent_axes(const InterpretedProgram& program, const Scenario& scena
   if (!faults.empty()) throw InputError(std::move(faults));
 }
 
+// A feed per revolution of a spindle that stands still moves nothing, for ever.
+void refuse_standing_spindle(const InterpretedProgram& program, const Scenario& scenario) {
+  for (const Move& move : program.moves) {
+    const bool is_fed = move.kind == MoveKind::feed || move.kind == MoveKind::arc;
+    if (!is_fed || move.feed_mode != FeedMode::units_per_revolution || move.feed > 0.0) continue;
+    throw InputError({scenario.program.file, move.line},
+                     "feed per revolution (G95) while the spindle stands still; it would never "
+                     "end: start the spindle (M3 S...) or use G94");
+  }
+}
+
 void refuse_start_outside(const Scenario& scenario, const MachineSettings& machine,
                           const Joints& start) {
   std::vector<Fault> faults;
@@ -426,6 +437,7 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   parts.machine_start = prepare.start();
   if (parts.program->path.size() == 0) throw InputError({scenario.program.file}, "moves no axis");
   refuse_absent_axes(*parts.program, scenario);
+  refuse_standing_spindle(*parts.program, scenario);
   refuse_start_outside(scenario, parts.machine(), prepare.start());
 
   // the strategies, each of which may rewrite what the one before left

@@ -122,9 +122,14 @@ std::string_view kind_name(const Move& move) {
 
 void add_feed(const Move& move, std::string& out) {
   const bool moves_xyz = move.kind == MoveKind::arc || move.s_end > move.s_begin;
+  const bool per_revolution = move.feed_mode == FeedMode::units_per_revolution;
   out += R"(,"feed":)";
-  add_number(move.feed / (moves_xyz ? mm_per_min : deg_per_min), out);
-  out += move.feed_mode == FeedMode::inverse_time ? R"(,"fmode":"inv")" : R"(,"fmode":"upm")";
+  add_number(per_revolution ? move.value / (moves_xyz ? mm : deg)
+                            : move.feed / (moves_xyz ? mm_per_min : deg_per_min),
+             out);
+  out += per_revolution                                 ? R"(,"fmode":"upr")"
+         : move.feed_mode == FeedMode::inverse_time ? R"(,"fmode":"inv")"
+                                                        : R"(,"fmode":"upm")";
 }
 
 void add_arc(const Move& move, std::string& out) {

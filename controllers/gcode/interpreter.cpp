@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <string_view>
 #include <utility>
 
@@ -291,7 +292,9 @@ void Interpreter::Machine::message() {
 void Interpreter::Machine::feed_mode() {
   const int code = request().code(Group::g_feed_mode);
   if (code < 0) return;
-  state_.feed_mode = code == 930 ? FeedMode::inverse_time : FeedMode::units_per_minute;
+  state_.feed_mode = code == 930   ? FeedMode::inverse_time
+                     : code == 940 ? FeedMode::units_per_minute
+                                   : FeedMode::units_per_revolution;
   state_.feed_linear = state_.feed_rotary = 0.0;  // as LinuxCNC: a feed does not outlive its mode
 }
 
@@ -300,8 +303,9 @@ void Interpreter::Machine::feed() {
   const double F = request()['F'];
   if (F < 0.0) fail_at('F', fmt::format("F{}; must be >= 0", F));
   if (state_.feed_mode == FeedMode::inverse_time) return;  // belongs to its block only
-  state_.feed_linear = F * state_.unit / minute;
-  state_.feed_rotary = F * deg / minute;
+  const double per = state_.feed_mode == FeedMode::units_per_revolution ? 1.0 : minute;
+  state_.feed_linear = F * state_.unit / per;
+  state_.feed_rotary = F * deg / per;
 }
 
 void Interpreter::Machine::emit_spindle() {
@@ -663,6 +667,9 @@ void Interpreter::Machine::require_feed() const {
     }
   } else if (state_.feed_linear == 0.0) {
     fail(chosen.column, fmt::format("{} with zero feed; no F is in force", name()));
+  } else if (state_.feed_mode == FeedMode::units_per_revolution && state_.spindle_speed == 0.0) {
+    fail(chosen.column,
+         fmt::format("{} under G95 with zero spindle speed; no S is in force", name()));
   }
 }
 
@@ -672,7 +679,7 @@ double Interpreter::Machine::move_feed(double length, double angle) const {
   const bool is_linear_move = state_.controls_tip()
                                   ? length > kStandingTip
                                   : state_.s + length > state_.s;  // else it moves by rounding only
-  if (state_.feed_mode == FeedMode::units_per_minute) {
+  if (state_.feed_mode != FeedMode::inverse_time) {
     return is_linear_move ? state_.feed_linear : state_.feed_rotary;
   }
   const double rate = request()['F'] / minute;
@@ -852,6 +859,11 @@ void Interpreter::Machine::move_to(MoveKind kind, const AxisWords& end, double l
   state_.position = end;
   Move& move = emit(kind);
   move.feed = feed;
+  if (move.feed_mode == FeedMode::units_per_revolution && kind != MoveKind::rapid) {
+    const bool turns = state_.spindle_direction != 0;
+    move.value = feed;
+    move.feed = turns ? feed * state_.spindle_speed / (2.0 * std::numbers::pi) : 0.0;
+  }
   move.s_begin = s_begin;
 }
 

@@ -1,7 +1,7 @@
 /// The RS274/NGC interpreter: program text in, canonical moves out.
 ///
 /// Meaning and order of execution are those of LinuxCNC 2.9: within a block, whatever the order of
-/// its words, (1) message, (2) G93 G94, (3) F, in the unit in force before the block, (4) S,
+/// its words, (1) message, (2) G93 G94 G95, (3) F, in the unit in force before the block, (4) S,
 /// (5) T, (6) M6, (7) M3 M4 M5, (8) M7 M8 M9, (9) M48 M49, (10) G4, (11) plane, (12) unit,
 /// (13) cutter compensation, (14) tool length and tool-centre-point control, (15) work system,
 /// (16) tilted work plane, (17) path control, (18) distance modes, (19) G10 G28 G30 G52 G53.1 G92,

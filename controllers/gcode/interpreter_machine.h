@@ -280,6 +280,7 @@ class Interpreter::Machine {
   int arc_turns(bool clockwise) const;
   AxisWords programmed_end() const;
   AxisWords machine_end() const;
+  /// Of a move: m/s or rad/s; under G95 a revolution.
   double move_feed(double length, double angle) const;
   void require_feed() const;
 

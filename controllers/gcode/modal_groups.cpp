@@ -97,7 +97,7 @@ constexpr auto kGCodes = std::to_array<Code>({
     {923, g_non_modal, true, ""},
     {930, g_feed_mode, true, ""},
     {940, g_feed_mode, true, ""},
-    {950, g_feed_mode, false, ""},
+    {950, g_feed_mode, true, ""},
     {960, g_spindle_mode, false, ""},
     {970, g_spindle_mode, true, ""},
     {980, g_retract, true, ""},

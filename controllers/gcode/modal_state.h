@@ -71,8 +71,8 @@ struct ModalState {
   bool is_incremental = false;
   bool is_centre_absolute = false;
   FeedMode feed_mode = FeedMode::units_per_minute;
-  double feed_linear = 0.0;  // m/s
-  double feed_rotary = 0.0;  // rad/s
+  double feed_linear = 0.0;  // m/s, or m per revolution under G95
+  double feed_rotary = 0.0;  // rad/s, or rad per revolution
   PathMode path_mode = PathMode::continuous;
   double path_tolerance = 0.0;  // m
 

@@ -162,8 +162,13 @@ class Printer {
     }
     change(tool_, tool_code(move.tool_offset), true);
     change(path_, path_code(move), false);
-    const bool is_inverse = move.feed_mode == FeedMode::inverse_time;
-    if (change(feed_mode_, is_inverse ? "G93" : "G94", false)) F_.clear();
+    if (change(feed_mode_, feed_mode_code(move.feed_mode), false)) F_.clear();
+  }
+
+  static std::string feed_mode_code(FeedMode mode) {
+    return mode == FeedMode::inverse_time       ? "G93"
+           : mode == FeedMode::units_per_minute ? "G94"
+                                                : "G95";
   }
 
   std::string tool_code(int offset) const {
@@ -228,12 +233,15 @@ class Printer {
     return std::abs(arc.sweep) < std::numbers::pi;
   }
 
-  // F in force for this move, in 1/min under G93.
+  // F in force for this move, in 1/min under G93, per revolution under G95.
   double feed_value(const Move& move) const {
     const double length = move.s_end - move.s_begin;
     const bool moves_xyz = move.kind == MoveKind::arc || length > 0.0;
     if (move.feed_mode == FeedMode::units_per_minute) {
       return move.feed / (moves_xyz ? mm_per_min : deg_per_min);
+    }
+    if (move.feed_mode == FeedMode::units_per_revolution) {
+      return move.value / (moves_xyz ? mm : deg);
     }
     const double way = moves_xyz ? length : (move.end_machine - machine_before_).tail<3>().norm();
     return way > 0.0 ? move.feed * minute / way : 1.0;
@@ -241,7 +249,7 @@ class Printer {
 
   std::string feed_word(const Move& move) {
     const std::string F = significant(feed_value(move));
-    if (move.feed_mode == FeedMode::units_per_minute && F == F_) return {};
+    if (move.feed_mode != FeedMode::inverse_time && F == F_) return {};
     F_ = F;
     return " F" + F;
   }

@@ -25,7 +25,7 @@ enum class MoveKind : std::uint8_t {
   message,  // (MSG, ...) `text`
 };
 
-enum class FeedMode : std::uint8_t { units_per_minute, inverse_time };
+enum class FeedMode : std::uint8_t { units_per_minute, inverse_time, units_per_revolution };
 
 /// How the path may leave the programmed one at corners.
 enum class PathMode : std::uint8_t {
@@ -69,12 +69,13 @@ struct Move {
   AxisWords end_machine = AxisWords::Zero();                 // m, rad
   Arc arc;                                                   // kind arc, centre in work coordinates
   Eigen::Vector3d centre_machine = Eigen::Vector3d::Zero();  // kind arc, m
-  double feed = 0.0;  // m/s if X, Y or Z moves, else rad/s; not for rapid
+  double feed = 0.0;  // m/s if X, Y or Z moves, else rad/s; not for rapid. Per revolution: what it
+                      // is at the speed of the spindle, 0 while that stands still
   FeedMode feed_mode =
       FeedMode::units_per_minute;  // how it was programmed; `feed` is the same quantity
   PathMode path_mode = PathMode::continuous;
   double path_tolerance = 0.0;  // m; 0 with `continuous`: the machine's default
-  double value = 0.0;           // dwell: s; spindle: rad/s
+  double value = 0.0;  // dwell: s; spindle: rad/s; feed per revolution: m or rad a revolution
   int number = 0;
   ToolControl tool_control = ToolControl::none;
   int direction = 0;    // spindle: 1 clockwise (M3), -1 (M4), 0 off
