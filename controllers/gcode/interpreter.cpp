@@ -384,7 +384,9 @@ void Interpreter::Machine::dwell() {
 
 void Interpreter::Machine::plane() {
   const int code = request().code(Group::g_plane);
-  if (code >= 0) state_.normal_axis = code == 170 ? 2 : code == 180 ? 1 : 0;
+  if (code < 0) return;
+  state_.normal_axis = code < 180 ? 2 : code < 190 ? 1 : 0;
+  state_.is_uvw_plane = code % 10 != 0;
 }
 
 void Interpreter::Machine::units() {
@@ -468,6 +470,8 @@ void Interpreter::Machine::distance() {
   if (code >= 0) state_.is_incremental = code == 910;
   const int arc_code = request().code(Group::g_arc_distance);
   if (arc_code >= 0) state_.is_centre_absolute = arc_code == 901;
+  const int retract_code = request().code(Group::g_retract);
+  if (retract_code >= 0) state_.retracts_to_r = retract_code == 990;
 }
 
 // -------------------------------------------------------------------- G10 G28 G30 G52 G53 G92
@@ -623,9 +627,11 @@ void Interpreter::Machine::restore_shift() {
 // ----------------------------------------------------------------------------------------- motion
 
 void Interpreter::Machine::motion() {
+  const int motion_before = state_.motion;
   const int explicit_code = request().code(Group::g_motion);
   if (explicit_code >= 0) state_.motion = explicit_code;
   const int code = request().motion_code();
+  if (std::max(code, explicit_code) >= 0 && !is_canned_cycle(code)) state_.cycle.has_level = false;
   if (request().code(Group::g_non_modal) == 530) {
     const int column = request().of(Group::g_non_modal).column;
     if (code != 0 && code != 10) fail(column, "G53 needs G0 or G1");
@@ -634,6 +640,7 @@ void Interpreter::Machine::motion() {
   if (code >= 0 && state_.controls_tip()) refuse_rotary_words();
   if (code == 0 || code == 10) straight();
   if (code == 20 || code == 30) arc();
+  if (is_canned_cycle(code)) canned_cycle(motion_before);
 }
 
 AxisWords Interpreter::Machine::programmed_end() const {
@@ -769,6 +776,10 @@ void Interpreter::Machine::arc() {
     fail(request().motion.column,
          fmt::format("{} under G43.5, where I J K are the tool axis; use G1 or G43.4",
                      code_name('G', request().motion_code())));
+  }
+  if (state_.is_uvw_plane) {
+    fail(request().motion.column, fmt::format("{} in a plane of U, V and W (G17.1 G18.1 G19.1)",
+                                              code_name('G', request().motion_code())));
   }
   const bool clockwise = request().motion_code() == 20;
   const int turns = arc_turns(clockwise);

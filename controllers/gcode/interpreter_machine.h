@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "controllers/gcode/arc_geometry.h"
+#include "controllers/gcode/canned_cycles.h"
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/parameters.h"
@@ -278,6 +279,19 @@ class Interpreter::Machine {
   void arc();
   ArcCentre arc_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end, bool clockwise);
   int arc_turns(bool clockwise) const;
+
+  // canned cycles
+  void canned_cycle(int motion_before);
+  void check_cycle() const;
+  void check_cycle_spindle() const;
+  double cycle_word(char letter, double kept, bool goes_on) const;
+  CycleHole cycle_hole(bool goes_on);
+  double cycle_offsets(const CycleHole& hole, bool goes_on);
+  int cycle_repeats(const CycleHole& hole) const;
+  void cycle_move(MoveKind kind, const AxisWords& end);
+  void do_cycle_step(const CycleStep& step, const AxisWords& over);
+  AxisWords confused_tap(const AxisWords& end);
+
   AxisWords programmed_end() const;
   AxisWords machine_end() const;
   /// Of a move: m/s or rad/s; under G95 a revolution.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "controllers/gcode/canned_cycles.h"
 #include "controllers/gcode/cutter_compensation.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/move.h"
@@ -65,11 +66,14 @@ struct ModalState {
 
   Compensation compensation;
 
-  int motion = 800;     // ten times the code; 800: none
-  int normal_axis = 2;  // of the plane of arcs
-  double unit = mm;     // of length words
+  int motion = 800;           // ten times the code; 800: none
+  int normal_axis = 2;        // of the plane of arcs and cycles
+  bool is_uvw_plane = false;  // G17.1 G18.1 G19.1, where neither can be done
+  double unit = mm;           // of length words
   bool is_incremental = false;
   bool is_centre_absolute = false;
+  bool retracts_to_r = true;  // G99, as rs274 begins; false: G98
+  CycleMemory cycle;
   FeedMode feed_mode = FeedMode::units_per_minute;
   double feed_linear = 0.0;  // m/s, or m per revolution under G95
   double feed_rotary = 0.0;  // rad/s, or rad per revolution

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "controllers/gcode/canned_cycles.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
 
@@ -107,6 +108,10 @@ Request::Chosen choose_motion(const Context& context, const Request& request, in
   const int axis_column = first_axis_word(request, has_vectors);
   if (cancel && axis_column > 0) context.fail(axis_column, "axis words with G80");
   if (cancel) return {};
+  if (programmed.code != nullptr && axis_column == 0 && is_canned_cycle(programmed.code->tenths)) {
+    context.fail(programmed.column,
+                 fmt::format("{} without an axis word", name_of('G', *programmed.code)));
+  }
   if (programmed.code != nullptr || axis_column == 0) return programmed;
   if (modal_motion == kNoMotion) {
     context.fail(axis_column, "axis words, but no G code is in force that uses them");

@@ -8,7 +8,7 @@ TEST(FeedPerRevolution, RunsAsTheSameFeedPerMinute) {
   const auto duration_of = [](const std::string& program) {
     const Scenario scenario = small_scenario(program, "[[case]]\nname = \"one\"\n");
     const CaseOutput output = run_case(scenario, "one");
-    return output.series.rows();
+    return output.duration;
   };
   EXPECT_EQ(duration_of("S1000 M3\nG95 G1 X5 F2\nM2\n"), duration_of("G1 X5 F2000\nM2\n"));
 }

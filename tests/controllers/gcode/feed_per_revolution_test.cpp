@@ -20,7 +20,7 @@ TEST(FeedPerRevolution, IsSpeedTimesTheRateOfTheSpindle) {
   EXPECT_NEAR(move.value, 0.5e-3, kExact);
   EXPECT_NEAR(move.feed, 0.5e-3 * 20, kExact);
   EXPECT_NEAR(last_fed_move("S1200 M4\nG95 G1 A10 F0.5").feed, 0.5 * deg * 20, kExact);
-  EXPECT_NEAR(last_fed_move("S1200 M3\nG20 G95 G1 X1 F0.01").feed, 0.254e-3 * 20, kExact);
+  EXPECT_NEAR(last_fed_move("S1200 M3\nG20 G95\nG1 X1 F0.01").feed, 0.254e-3 * 20, kExact);
 }
 
 TEST(FeedPerRevolution, FollowsTheSpeedFromMoveToMove) {
@@ -39,7 +39,7 @@ TEST(FeedPerRevolution, NeedsASpeed) {
 
 TEST(FeedPerRevolution, DropsTheFeedOfTheModeBefore) {
   EXPECT_EQ(fault_of("G1 X1 F100\nS100\nG95 X2"),
-            "p.nc:3:9: error: G1 with zero feed; no F is in force");
+            "p.nc:3:5: error: G1 with zero feed; no F is in force");
 }
 
 TEST(FeedPerRevolution, IsPrintedAndReadAgain) {
