@@ -19,11 +19,12 @@ std::size_t weight_of(const PlannedMotion& motion) {
 void add(MemoKey& key, const controllers::ToolTable& tools) {
   key.add(tools.size());
   for (const auto& [number, tool] : tools.entries()) {
-    const auto& [tool_number, pocket, offset, diameter] = tool;
+    const auto& [tool_number, pocket, offset, diameter, orientation] = tool;
     key.add(tool_number);
     key.add(pocket);
     key.add(offset);
     key.add(diameter);
+    key.add(orientation);
   }
 }
 

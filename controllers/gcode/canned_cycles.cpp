@@ -303,7 +303,7 @@ AxisWords Interpreter::Machine::confused_tap(const AxisWords& end) {
   out[first] = n == 0 ? end[n] : end[second];
   out[second] = n == 0 ? end[first] : end[n];
   out[n] = n == 0 ? end[second] : end[first];
-  const Place place{file_, lines_.number(), request().motion.column};
+  const Place place{file(), line(), request().motion.column};
   if (warnings_.empty() || warnings_.back().place != place) {
     warnings_.push_back({place, fmt::format("{} outside of G17 moves to exchanged coordinates, as "
                                             "LinuxCNC 2.9 does; tap in G17",

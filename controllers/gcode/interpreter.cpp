@@ -63,7 +63,7 @@ const std::array<Interpreter::Machine::Step, 21> Interpreter::Machine::kSteps = 
     {&Machine::work_system, bit(Group::g_work_system)},
     {&Machine::work_plane, bit(Group::g_work_plane)},
     {&Machine::path_control, bit(Group::g_path_control)},
-    {&Machine::distance, bit(Group::g_distance) | bit(Group::g_arc_distance)},
+    {&Machine::distance, bit(Group::g_distance) | bit(Group::g_arc_distance) | bit(Group::g_retract)},
     {&Machine::non_modal, bit(Group::g_non_modal)},
     {&Machine::motion, kAlways},
     {&Machine::stop, bit(Group::m_stop)},

@@ -72,15 +72,15 @@ TEST(ErrorGallery, WordsAndCodes) {
       {"G0 X1 X2", "1:7: error: second X word in one block; the first is in column 4"},
       {"G1.5 X1", "1:1: error: unknown G code G1.5"},
       {"M100", "1:1: error: unknown M code M100"},
-      {"G41 D1", "1:1: error: G41 is not supported yet"},
-      {"G81 X1 Z1 R1", "1:1: error: G81 is not supported yet"},
       {"G0 o100 if [1]", "1:4: error: an O-word must be the first word of its block"},
       {"N5.", "1:4: error: a digit is expected behind the point of N"},
       {"G0 N5", "1:4: error: N is only allowed at the start of a block"},
       {"N-5 G0", "1:1: error: N must be followed by an unsigned number"},
       {"G0 X1 H3", "1:7: error: H word without a code that uses it (G43, G43.2, G43.4, G43.5)"},
-      {"G0 X1 P3", "1:7: error: P word without a code that uses it (G2, G3, G4, G10, G64)"},
-      {"G40 D3", "1:5: error: no supported code uses the D word"},
+      {"G0 X1 P3",
+       "1:7: error: P word without a code that uses it (G2, G3, G4, G10, G64, G74, "
+       "G82, G84, G86, G88, G89)"},
+      {"G40 D3", "1:5: error: D word without a code that uses it (G41, G41.1, G42, G42.1)"},
       {"M0 M3 M7 M48 M6", "1:14: error: more than 4 M codes in one block"},
   });
 }
