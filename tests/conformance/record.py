@@ -1,59 +1,48 @@
 #!/usr/bin/env python3
 """Records what LinuxCNC's stand-alone interpreter makes of programs/*.ngc, one PROGRAM.jsonl each.
 
-    record.py ORACLE [PROGRAM.ngc ...]
+    record.py [PROGRAM.ngc ...]
 
-ORACLE is a script that runs `rs274` and prints its canonical calls as JSON lines, called as
-    ORACLE PROGRAM --tool-table TABLE --lines
-with the records that controllers/gcode/canon_json.h describes. Standard library only.
-
-Not recorded: path modes and coolant (LinuxCNC says them as separate calls, here they are fields of
-other records or states), the pallet shuttle of M30, and stops of a spindle that stands still. Of an
-error only its place behind the other records is kept, for the wording is our own.
+Needs rs274 (tools/rs274.py says where it is looked for). All programs run with programs/tools.tbl and find subroutines
+in programs/subs; those whose names end in block_delete_on leave out lines that begin with "/"; PROGRAM.var beside a
+program is its parameter file. Of an error its line is kept: the wording is our own.
 """
 import json
 import pathlib
-import subprocess
 import sys
 
+sys.dont_write_bytecode = True
 HERE = pathlib.Path(__file__).resolve().parent / "programs"
-KEPT = {"rapid", "feed", "arc", "dwell", "tool", "spindle", "stop", "end", "msg", "print", "error"}
+sys.path.insert(0, str(HERE.parents[2] / "tools"))
+import rs274  # noqa: E402
 
 
-def meaningful(records):
-    """The records that the test compares."""
-    turning = False
-    for record in records:
-        if record["t"] not in KEPT or record.get("kind") == "PALLET_SHUTTLE":
-            continue
-        if record["t"] == "spindle" and "dir" in record:
-            stops_again = record["dir"] == 0 and not turning
-            turning = record["dir"] != 0
-            if stops_again:
-                continue
-        if record["t"] == "error":
-            record = {"t": "error"}
-        if record.get("line", 0) is None:
-            del record["line"]
-        yield record
+def rounded(value):
+    """rs274 printed nine decimals; the last ones of a product with 25.4 or a cosine mean nothing."""
+    if isinstance(value, list):
+        return [rounded(x) for x in value]
+    return round(value, 12) + 0.0 if isinstance(value, float) else value
 
 
-def record(oracle, program):
-    run = subprocess.run([sys.executable, oracle, program, "--tool-table", HERE / "tools.tbl", "--lines"],
-                         stdout=subprocess.PIPE, check=False)
-    if run.returncode not in (0, 3):  # 3: the interpreter met an error in the program
-        sys.exit(f"{oracle} failed on {program}")
-    lines = [json.loads(line) for line in run.stdout.splitlines()]
-    text = "".join(json.dumps(r) + "\n" for r in meaningful(lines))
-    program.with_suffix(".jsonl").write_text(text)
+def record(interpreter, program):
+    parameters = program.with_suffix(".var")
+    records = interpreter.records(program, tools=HERE / "tools.tbl", subs=HERE / "subs",
+                                  parameter_file=parameters if parameters.exists() else None,
+                                  block_delete=program.stem.endswith("block_delete_on"))
+    if records is None:
+        sys.exit(f"{program}: rs274 did not come to an end")
+    kept = [{key: rounded(value) for key, value in rs274.without(r, "msg").items()} for r in records]
+    program.with_suffix(".jsonl").write_text("".join(json.dumps(r) + "\n" for r in kept))
 
 
 def main():
-    if len(sys.argv) < 2:
-        sys.exit(__doc__)
-    programs = [pathlib.Path(p).resolve() for p in sys.argv[2:]] or sorted(HERE.glob("*.ngc"))
-    for program in programs:
-        record(sys.argv[1], program)
+    programs = [pathlib.Path(p).resolve() for p in sys.argv[1:]] or sorted(HERE.glob("*.ngc"))
+    try:
+        with rs274.Interpreter() as interpreter:
+            for program in programs:
+                record(interpreter, program)
+    except rs274.Missing as fault:
+        sys.exit(str(fault))
 
 
 if __name__ == "__main__":
