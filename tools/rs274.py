@@ -10,14 +10,19 @@ import math
 import os
 import pathlib
 import re
+import resource
 import shutil
+import signal
 import struct
 import subprocess
 import tempfile
 
 SUFFIXES = {".ngc", ".nc", ".tap"}
-LONGEST_LINE = 250             # characters: rs274 takes 254, some are left for the N word
+LONGEST_LINE = 252             # characters that rs274 takes
 LINES_OF_A_FILE = 10 ** 6      # N words are FILE x this + LINE
+SAID = "msg", "text", "code"    # may name lines
+N_WORD = re.compile(rb"\s*(/?)\s*(?:n\s*\d[\d\s]*(?:\.\s*\d[\d\s]*)?)?(.*)$", re.IGNORECASE | re.DOTALL)
+MOST_OUTPUT = 1 << 28          # bytes; beyond it a program is taken to be without end
 MM_PER_INCH = 25.4
 COMPARED = {"rapid", "feed", "arc", "dwell", "tool", "spindle", "stop", "end", "msg", "print", "error",
             "nurbs", "probe", "tap"}
@@ -271,7 +276,7 @@ class Interpreter:
         """What rs274 makes of a program: compared records; "error" with "msg" comes last if it refuses the program.
 
         "line" counts in the file that "file" names, where that is not the program itself. It is missing where rs274
-        does not tell it. None if the program did not end within `timeout` seconds.
+        does not tell it. None if the program did not end within `timeout` seconds, or wrote far too much.
         """
         program = pathlib.Path(program).resolve()
         place = self._stage(program.parent, [program])
@@ -281,12 +286,19 @@ class Interpreter:
         plain, with_lines = run("plain"), run("numbered")
         if plain is None or with_lines is None:
             return None
-        same = [without(r, "line", "msg") for r in with_lines] == [without(r, "line", "msg") for r in plain]
-        records = with_lines if same else [without(r, "line") for r in plain]    # messages may name lines, too
+        records = [without(record, "line") for record in plain]
+        if [without(r, *SAID) for r in records] == [without(r, "line", *SAID) for r in with_lines]:
+            records = [{**record, **only(counted, "line")} for record, counted in zip(records, with_lines)]
         return [self._placed(record, program) for record in compared(records)]
 
     def _placed(self, record, program):
         """With "line" split into file and line."""
+        if "code" in record:
+            code = record.pop("code")
+            lines = program.read_text(errors="replace").split("\n")
+            like = [i for i, line in enumerate(lines, 1) if code and line.startswith(code)]
+            if "line" not in record and len(like) == 1:
+                return {"t": "error", "line": like[0], "msg": record["msg"]}
         if "line" not in record:
             return record
         index, line = divmod(record["line"], LINES_OF_A_FILE)
@@ -302,23 +314,29 @@ class Interpreter:
             ini = self.home / f"{kind}.ini"
             ini.write_text(f"[RS274NGC]\nSUBROUTINE_PATH = {subs / kind}\n")
             command += ["-i", ini]
-        try:
-            run = subprocess.run([*command, name], stdin=subprocess.DEVNULL, capture_output=True, timeout=timeout,
-                                 env=self.environment, cwd=place / kind, check=False)
-        except subprocess.TimeoutExpired:
-            return None
-        records = list(Canon().records(run.stdout.decode(errors="replace")))
+        with open(self.home / "canon", "w+b") as out:
+            try:
+                run = subprocess.run([*command, name], stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.PIPE,
+                                     timeout=timeout, env=self.environment, cwd=place / kind, check=False,
+                                     preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (MOST_OUTPUT,) * 2))
+            except subprocess.TimeoutExpired:
+                return None
+            if run.returncode == -signal.SIGXFSZ:
+                return None
+            out.seek(0)
+            records = list(Canon().records(out.read().decode(errors="replace")))
         return records + ([fault(run)] if run.returncode != 0 else [])
 
 
 def numbered(text, index):
-    """A program with N words that tell file and line, where there is room."""
+    """A program with N words that tell file and line, where there is room for them."""
     lines = text.split(b"\n")
+    marked = next((line for line in lines if line.strip()), b"").strip() == b"%"    # lines with % enclose it
     for i, line in enumerate(lines):
-        code = re.match(rb"\s*(/?)\s*(?:n\s*\d[\d\s]*(?:\.[\d\s]+)?)?\s*(.*)$", line, re.IGNORECASE | re.DOTALL)
-        slash, rest = code.groups()
-        if rest.strip() and not rest.startswith(b"%") and len(line) <= LONGEST_LINE:
-            lines[i] = b"%sN%d %s" % (slash, index * LINES_OF_A_FILE + i + 1, rest)
+        slash, code = N_WORD.match(line).groups()
+        line = b"%sN%d %s" % (slash, index * LINES_OF_A_FILE + i + 1, code)
+        if code.strip() and len(line) <= LONGEST_LINE and not (marked and lines[i].strip() == b"%"):
+            lines[i] = line
     return b"\n".join(lines)
 
 
@@ -328,7 +346,11 @@ def fault(run):
     number = re.match(r"/?N(\d+)", said[-1]) if len(said) > 1 else None
     line = {"line": int(number[1])} if number else {}
     message = said[-2] if len(said) > 1 else said[-1] if said else f"exit status {run.returncode}"
-    return {"t": "error", **line, "msg": message.strip()}
+    return {"t": "error", **line, "msg": message.strip(), "code": said[-1].rstrip() if len(said) > 1 else ""}
+
+
+def only(record, *keys):
+    return {key: record[key] for key in keys if key in record}
 
 
 def without(record, *keys):
