@@ -112,6 +112,12 @@ std::vector<Record> interpreted(const std::filesystem::path& program) {
   ProgramSetup setup;
   const std::filesystem::path table = program.parent_path() / "tools.tbl";
   setup.tools = ToolTable::parse(read_file(table), table.string());
+  setup.block_delete = program.stem().string().ends_with("block_delete_on");
+  setup.subroutine_file = [&](const std::string& name) -> std::optional<ProgramText> {
+    const std::filesystem::path file = program.parent_path() / "subs" / (name + ".ngc");
+    if (!std::filesystem::exists(file)) return std::nullopt;
+    return ProgramText::of_file(file.string());
+  };
   std::vector<Record> records;
   try {
     Interpreter interpreter(read_file(program), program.string(), setup);
@@ -120,13 +126,16 @@ std::vector<Record> interpreted(const std::filesystem::path& program) {
     }
   } catch (const InputError& error) {
     records.push_back(record_of(canon_error_json("")));
+    records.back()["line"].numbers = {static_cast<double>(error.faults().front().place.line)};
   }
   return records;
 }
 
-// LinuxCNC names no rotation with S and no line with some records: what it names must agree.
+// LinuxCNC names no rotation with S and no line with some records: what it names must agree, but
+// for the file in which a subroutine stands.
 std::string difference(const Record& ours, const Record& theirs) {
   for (const auto& [key, wanted] : theirs) {
+    if (key == "file") continue;
     const auto found = ours.find(key);
     if (found == ours.end()) return key + " is missing";
     if (found->second.text != wanted.text) return key;
