@@ -62,6 +62,14 @@ struct Value {
   bool is_constant() const { return begin == end; }
 };
 
+inline constexpr unsigned kWordLetters = 28;  // A to Z, and those of polar coordinates: @ ^
+
+/// Place of a letter among those of words.
+constexpr unsigned word_index(char letter) {
+  return letter == '@' ? 26U : letter == '^' ? 27U : static_cast<unsigned>(letter - 'A');
+}
+constexpr std::uint32_t word_bit(char letter) { return 1U << word_index(letter); }
+
 struct Word {
   char letter = '\0';  // upper case
   Value value;

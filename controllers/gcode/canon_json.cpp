@@ -73,7 +73,7 @@ std::string quoted(std::string_view text) {
     if (c == '"' || c == '\\') {
       out += '\\';
       out += c;
-    } else if (byte < 0x20 || byte >= 0x7f) {
+    } else if (byte < 0x20 || byte == 0x7f) {
       out += fmt::format("\\u{:04x}", byte);
     } else {
       out += c;
@@ -127,9 +127,9 @@ void add_feed(const Move& move, std::string& out) {
   add_number(per_revolution ? move.value / (moves_xyz ? mm : deg)
                             : move.feed / (moves_xyz ? mm_per_min : deg_per_min),
              out);
-  out += per_revolution                                 ? R"(,"fmode":"upr")"
+  out += per_revolution                             ? R"(,"fmode":"upr")"
          : move.feed_mode == FeedMode::inverse_time ? R"(,"fmode":"inv")"
-                                                        : R"(,"fmode":"upm")";
+                                                    : R"(,"fmode":"upm")";
 }
 
 void add_arc(const Move& move, std::string& out) {

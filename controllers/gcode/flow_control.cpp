@@ -254,9 +254,10 @@ void Interpreter::Machine::call_subprogram(const std::string& name, const OWord&
     if (turns == 0) return;
     --turns;
   }
-  if (!block_.words.empty()) {
-    warnings_.push_back({{file(), line(), block_.words.front().column},
-                         "words in the block of M98 other than P and L have no effect"});
+  for (const Word& word : block_.words) {
+    if (word.letter != 'P' && word.letter != 'L') {
+      warn(word.column, fmt::format("{} word in the block of M98 has no effect", word.letter));
+    }
   }
   const bool again = o.has_value && turns > 0;
   enter_call(name, o, again ? here_ : LinePlace{text_, text().mark()});

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "controllers/gcode/interpreter_machine.h"
+#include "controllers/gcode/message_text.h"
 #include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/units.h"
 
@@ -63,7 +64,8 @@ const std::array<Interpreter::Machine::Step, 21> Interpreter::Machine::kSteps = 
     {&Machine::work_system, bit(Group::g_work_system)},
     {&Machine::work_plane, bit(Group::g_work_plane)},
     {&Machine::path_control, bit(Group::g_path_control)},
-    {&Machine::distance, bit(Group::g_distance) | bit(Group::g_arc_distance) | bit(Group::g_retract)},
+    {&Machine::distance,
+     bit(Group::g_distance) | bit(Group::g_arc_distance) | bit(Group::g_retract)},
     {&Machine::non_modal, bit(Group::g_non_modal)},
     {&Machine::motion, kAlways},
     {&Machine::stop, bit(Group::m_stop)},
@@ -135,10 +137,13 @@ void Interpreter::Machine::read_executed_line() {
 // Only the line with the right label ends the skipping; it is then read in full.
 void Interpreter::Machine::read_skipped_line() {
   parser_.parse(line_, file(), line(), block_, Parser::Extent::flow_only);
-  if (block_.percent) return saw_percent();
+  if (block_.percent) {
+    if (!texts_[text_].percent.is_framed()) return;
+    return saw_percent();
+  }
   texts_[text_].percent.saw_line();
   if (block_.deleted || !may_end_skipping(block_.o_word)) return block_.clear();
-  parser_.parse(line_, file(), line(), block_);
+  parser_.parse(line_, file(), line(), block_, Parser::Extent::flow_value);
   execute();
 }
 
@@ -279,11 +284,15 @@ int Interpreter::Machine::integer(char letter, double tolerance) const {
 
 void Interpreter::Machine::message() {
   const Comment& comment = block_.message;
-  if (comment.kind == CommentKind::plain) return;
+  const bool is_silent =
+      comment.kind == CommentKind::plain ||
+      (comment.kind == CommentKind::debug && parameters_.get(parameter::kDebug) == 0.0) ||
+      (comment.kind == CommentKind::print && is_blank(comment.text));
+  if (is_silent) return;
   Move& move = emit(MoveKind::message);
   is_printing_ = true;
   move.text =
-      comment.kind == CommentKind::message ? comment.text : substitute(comment.text, parameters_);
+      comment.kind == CommentKind::message ? comment.text : message_text(comment.text, parameters_);
   is_printing_ = false;
   move.text = trimmed(move.text);
   move.number = comment.kind == CommentKind::print ? kPrintMessage : 0;
@@ -460,9 +469,11 @@ void Interpreter::Machine::path_control() {
   if (code != 640) return;
   for (const char word : {'P', 'Q'}) {
     const double value = request()[word];
-    if (value < 0.0) fail_at(word, fmt::format("G64 {}{}; must be >= 0", word, value));
+    if (value < 0.0) {
+      warn(request().word(word).column, fmt::format("G64 {}{} counts as 0", word, value));
+    }
   }
-  state_.path_tolerance = request()['P'] * state_.unit;
+  state_.path_tolerance = std::max(request()['P'], 0.0) * state_.unit;
 }
 
 void Interpreter::Machine::distance() {
@@ -644,12 +655,35 @@ void Interpreter::Machine::motion() {
 }
 
 AxisWords Interpreter::Machine::programmed_end() const {
-  if (request().code(Group::g_non_modal) == 530) return machine_end();
+  if (request().code(Group::g_non_modal) == 530) {
+    if (request().has_polar()) {
+      fail(request().of(Group::g_non_modal).column, "G53 with polar coordinates");
+    }
+    return machine_end();
+  }
   AxisWords end = state_.programmed();
+  if (request().has_polar()) end.head<2>() = polar_end(end.head<2>());
   for (int i = 0; i < kAxisWords; ++i) {
     if (has_axis(i)) end[i] = axis_word(i) + (state_.is_incremental ? end[i] : 0.0);
   }
   return end;
+}
+
+// Distance @ and direction ^ from the origin; what is left out stays.
+Eigen::Vector2d Interpreter::Machine::polar_end(const Eigen::Vector2d& begin) const {
+  const char first = request().has('@') ? '@' : '^';
+  if (state_.normal_axis != 2 || state_.is_uvw_plane) {
+    fail_at(first, "polar coordinates outside of G17");
+  }
+  for (const char word : {'X', 'Y'}) {
+    if (request().has(word)) fail_at(word, fmt::format("{} word with polar coordinates", word));
+  }
+  const double kept = state_.is_incremental ? 1.0 : 0.0;
+  double radius = begin.norm();
+  double angle = std::atan2(begin.y(), begin.x());
+  if (request().has('@')) radius = kept * radius + request()['@'] * state_.unit;
+  if (request().has('^')) angle = kept * angle + request()['^'] * deg;
+  return radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
 }
 
 // X and Y turn together, so a G53 with one of them keeps the other in machine coordinates.
@@ -699,7 +733,8 @@ void Interpreter::Machine::straight() {
   const bool is_rapid = request().motion_code() == 0;
   if (!is_rapid) require_feed();
   const bool enters = state_.compensation.acts() && !state_.compensation.is_entered;
-  if (!has_any_axis() && !has_vector() && !enters) return;
+  const bool stands = !has_any_axis() && !request().has_polar() && !has_vector();
+  if (stands && !enters && (state_.controls_tip() || state_.compensation.acts())) return;
   if (!is_rapid) warn_of_leaning_tool();
   const AxisWords begin = state_.programmed();
   AxisWords end = programmed_end();
@@ -811,6 +846,9 @@ void Interpreter::Machine::arc() {
 void Interpreter::Machine::stop() {
   const int code = request().code(Group::m_stop);
   if (code < 0) return;
+  if (code == 990 && !flow_.calls.empty()) {
+    fail(request().of(Group::m_stop).column, "M99 of a subprogram must stand alone in its block");
+  }
   end_queue_at(state_.in_plane(state_.position));
   state_.compensation.begin.reset();
   if (code == 0 || code == 10) {

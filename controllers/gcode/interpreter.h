@@ -25,7 +25,8 @@
 /// Different from LinuxCNC on purpose: M6 leaves the position as it
 /// is; M48 M49 do nothing, since no operator turns the override; a G0 or G1 without axis words
 /// gives no move; Q of G64 is accepted and unused (it allows, and does not ask for, the merging of
-/// short lines); words in the block of M98 other than P and L are warned of.
+/// short lines); words in the block of M98 other than P and L are warned of; M99 behind
+/// other words is refused in a subprogram before the motion in its block, not after.
 ///
 /// O-words: subroutines, loops and conditions as LinuxCNC has them, its oddities included (the
 /// notes at FlowState in interpreter_machine.h); where a program is skipped, only comments, labels

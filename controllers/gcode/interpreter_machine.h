@@ -190,20 +190,18 @@ class Interpreter::Machine {
   int integer(char letter, double tolerance = kIntegerTol) const;
 
   // ---- steps of a block, in the order of execution
-  // Due if the block has the letter or a code of the group: bits 0 to 25 are letters, the next are
-  // groups.
+  // Due if the block has the letter or a code of the group: the lowest bits are letters, the next
+  // are groups.
   struct Step {
     void (Machine::*run)();
     std::uint64_t due;
   };
   static constexpr std::uint64_t kAlways = std::uint64_t{1} << 63;
-  static constexpr std::uint64_t bit(char letter) {
-    return std::uint64_t{1} << static_cast<unsigned>(letter - 'A');
-  }
+  static constexpr std::uint64_t bit(char letter) { return word_bit(letter); }
   static constexpr std::uint64_t bit(Group group) {
     return std::uint64_t{1} << (kLetters + static_cast<unsigned>(group));
   }
-  static constexpr unsigned kLetters = 26;
+  static constexpr unsigned kLetters = kWordLetters;
   static const std::array<Step, 21> kSteps;
   void message();
   void feed_mode();
@@ -294,6 +292,7 @@ class Interpreter::Machine {
 
   AxisWords programmed_end() const;
   AxisWords machine_end() const;
+  Eigen::Vector2d polar_end(const Eigen::Vector2d& begin) const;
   /// Of a move: m/s or rad/s; under G95 a revolution.
   double move_feed(double length, double angle) const;
   void require_feed() const;

@@ -43,6 +43,7 @@ std::string shown(char c) {
 }  // namespace
 
 Comment classify_comment(std::string_view text, int column) {
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
   for (const auto& [keyword, kind] : kActiveComments) {
     const bool is_it =
         text.size() >= keyword.size() && std::equal(keyword.begin(), keyword.end(), text.begin(),

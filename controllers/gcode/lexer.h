@@ -79,7 +79,7 @@ class Cursor {
 };
 
 /// What the text between '(' and ')' is: a message if it begins with MSG, DEBUG, or PRINT, and a
-/// comma, in capitals or not, without blanks. A comment behind ';' is always a plain one.
+/// comma, in capitals or not, without blanks within. A comment behind ';' is always a plain one.
 /// @param column  of the '('
 Comment classify_comment(std::string_view text, int column);
 

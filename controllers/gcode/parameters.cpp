@@ -128,16 +128,24 @@ bool is_binary(OpCode code) {
   return (code >= OpCode::power && code <= OpCode::logical_xor) || code == OpCode::atan;
 }
 
-double named_value(const std::string& name, const Parameters& parameters, const Place& place) {
-  const std::optional<double> value = parameters.get(name);
-  if (!value) fail(place, fmt::format("parameter #<{}> is not defined", name));
-  return *value;
+// As LinuxCNC: a name that the block sets further left is known, as 0, before it is set.
+double named_value(const Op& op, const Block& block, const Parameters& parameters,
+                   const Place& place) {
+  const std::string& name = block.names[static_cast<std::size_t>(op.name)];
+  if (const std::optional<double> value = parameters.get(name)) return *value;
+  for (const Assignment& a : block.assignments) {
+    const bool is_it = a.name >= 0 && block.names[static_cast<std::size_t>(a.name)] == name;
+    if (is_it && a.column < op.column) return 0.0;
+  }
+  fail(place, fmt::format("parameter #<{}> is not defined", name));
 }
 
 }  // namespace
 
 Parameters::Parameters(System system)
-    : system_(std::move(system)), numbered_(static_cast<std::size_t>(parameter::kLast) + 1, 0.0) {}
+    : system_(std::move(system)), numbered_(static_cast<std::size_t>(parameter::kLast) + 1, 0.0) {
+  numbered_[parameter::kDebug] = 1.0;
+}
 
 double Parameters::get(int number) const {
   assert(number >= 1 && number <= parameter::kLast);
@@ -210,14 +218,15 @@ double run_code(const Value& value, const Block& block, const Parameters& parame
     if (op.code == OpCode::push) {
       stack[top++] = op.value;
     } else if (op.code == OpCode::named) {
-      stack[top++] = named_value(name(), parameters, here());
+      stack[top++] = named_value(op, block, parameters, here());
     } else if (op.code == OpCode::has_name) {
       stack[top++] = parameters.get(name()) ? 1.0 : 0.0;
     } else if (op.code == OpCode::numbered) {
       stack[top - 1] = parameters.get(parameter_number(stack[top - 1], here()));
     } else if (op.code == OpCode::has_number) {
-      parameter_number(stack[top - 1], here());
-      stack[top - 1] = 1.0;
+      const double nearest = std::round(stack[top - 1]);
+      const bool exists = nearest >= 1.0 && nearest <= parameter::kLast;
+      stack[top - 1] = exists ? 1.0 : 0.0;
     } else if (is_binary(op.code)) {
       --top;
       stack[top - 1] = binary(op.code, stack[top - 1], stack[top], here());
@@ -228,48 +237,6 @@ double run_code(const Value& value, const Block& block, const Parameters& parame
   }
   assert(top == 1);
   return stack[0];
-}
-
-namespace {
-
-// As LinuxCNC shows it: what counts as equal to zero reads as zero.
-std::string shown(double value) {
-  return fmt::format("{:.6f}", std::abs(value) < kEqualTol ? 0.0 : value);
-}
-
-}  // namespace
-
-std::string substitute(std::string_view text, const Parameters& parameters) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size();) {
-    std::size_t end = i + 1;
-    if (text[i] == '#' && end < text.size() && text[end] == '<') {
-      const std::size_t close = text.find('>', end);
-      if (close != std::string_view::npos) {
-        std::string name;
-        for (const char c : text.substr(end + 1, close - end - 1)) {
-          if (c != ' ' && c != '\t') name += c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-        }
-        const std::optional<double> value = parameters.get(name);
-        out += value ? shown(*value) : "######";
-        i = close + 1;
-        continue;
-      }
-    }
-    while (text[i] == '#' && end < text.size() && end - i <= 5 && text[end] >= '0' &&
-           text[end] <= '9') {
-      ++end;
-    }
-    if (end > i + 1) {
-      const int number = std::stoi(std::string(text.substr(i + 1, end - i - 1)));
-      const bool exists = number >= 1 && number <= parameter::kLast;
-      out += exists ? shown(parameters.get(number)) : "######";
-    } else {
-      out += text[i];
-    }
-    i = end;
-  }
-  return out;
 }
 
 }  // namespace servomill::controllers

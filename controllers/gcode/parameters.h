@@ -28,6 +28,7 @@ inline constexpr int kTool = 5400;          // tool in the spindle, then its off
 inline constexpr int kToolDiameter = 5410;
 inline constexpr int kPosition = 5420;  // in work coordinates and program units, read-only
 inline constexpr int kLastReadOnly = 5428;
+inline constexpr int kDebug = 5599;  // 0: (DEBUG, ...) says nothing; 1 at first
 inline constexpr int kLast = 5601;
 constexpr int work_offset(int system) { return kWorkOffset + 20 * (system - 1); }
 constexpr int work_rotation(int system) { return kWorkRotation + 20 * (system - 1); }
@@ -95,9 +96,5 @@ inline double evaluate(Value& value, const Block& block, const Parameters& param
   if (!value.is_constant()) value.number = run_code(value, block, parameters, file);
   return value.number;
 }
-
-/// Text of (DEBUG, ...) and (PRINT, ...): #5 and #<name> replaced by their values with six
-/// decimals, an undefined name by ######.
-std::string substitute(std::string_view text, const Parameters& parameters);
 
 }  // namespace servomill::controllers

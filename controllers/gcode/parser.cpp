@@ -15,16 +15,16 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr std::string_view kLetters = "ABCDFGHIJKLMPQRSTXYZ";
+constexpr std::string_view kLetters = "ABCDFGHIJKLMPQRSTXYZ@^";
 
 constexpr std::uint32_t kLetterBits = [] {
   std::uint32_t bits = 0;
-  for (const char letter : kLetters) bits |= 1U << static_cast<unsigned>(letter - 'A');
+  for (const char letter : kLetters) bits |= word_bit(letter);
   return bits;
 }();
 
 bool starts_word(char c) {
-  return c >= 'A' && c <= 'Z' && (kLetterBits >> static_cast<unsigned>(c - 'A') & 1U) != 0;
+  return (c >= '@' && c <= 'Z' && (kLetterBits & word_bit(c)) != 0) || c == '^';
 }
 
 struct Operator {
@@ -162,13 +162,13 @@ void Parser::parse(std::string_view line, const std::string& file, int number, B
   letters_ = 0;
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   cursor_ = Cursor(line);
+  check_characters(line, file, number);
   if (block_delete_ && peek() == '/') {
     block.deleted = true;
     cursor_.go_to(line.size());
     add_piece(PieceKind::block_delete, line.find('/'));
     return;
   }
-  check_characters(line, file, number);
   const std::size_t start = cursor_.at();
   if (accept("%")) {
     if (!cursor_.at_end()) {
@@ -180,7 +180,7 @@ void Parser::parse(std::string_view line, const std::string& file, int number, B
   if (accept("/")) add_piece(PieceKind::block_delete, start);
   if (peek() == 'N') line_number();
   flow(extent);
-  if (extent == Extent::flow_only) return;
+  if (extent != Extent::all) return;
   while (!cursor_.at_end()) item();
 }
 
@@ -235,7 +235,7 @@ void Parser::word() {
   cursor_.advance();
   word.value = value(std::string_view(&word.letter, 1));
   if (word.letter != 'G' && word.letter != 'M') {
-    const std::uint32_t bit = 1U << static_cast<unsigned>(word.letter - 'A');
+    const std::uint32_t bit = word_bit(word.letter);
     if ((letters_ & bit) != 0) {
       const auto first = std::find_if(block_->words.begin(), block_->words.end(),
                                       [&](const Word& w) { return w.letter == word.letter; });
@@ -285,7 +285,7 @@ void Parser::flow(Extent extent) {
     const auto* found = std::find_if(kKeywords.begin(), kKeywords.end(),
                                      [&](const Keyword& k) { return accept(k.name); });
     if (found == kKeywords.end()) {
-      if (extent == Extent::all) fail_at_keyword();
+      if (extent != Extent::flow_only) fail_at_keyword();
       o.flow = Flow::unknown;
       return;
     }
@@ -299,7 +299,7 @@ void Parser::flow(Extent extent) {
     value_of_flow(o, keyword);
     add_piece(PieceKind::o_word, start);
   }
-  only_comments(keyword);
+  if (extent == Extent::all) only_comments(keyword);
 }
 
 void Parser::fail_at_keyword() {
@@ -372,21 +372,17 @@ void Parser::subprogram_call(OWord& o) {
   o.flow = code == 98.0 ? Flow::m98 : Flow::m99;
   const std::string_view keyword = code == 98.0 ? "M98" : "M99";
   add_piece(PieceKind::o_word, start);
+  if (o.flow == Flow::m99) return only_comments(keyword);
+  while (!cursor_.at_end()) item();
   bool has_P = false;
-  while (!cursor_.at_end() && o.flow == Flow::m98) {
-    const char letter = peek();
-    if (letter != 'P' && letter != 'L') break;
-    const bool again = letter == 'P' ? has_P : o.has_value;
-    if (again) fail_here(fmt::format("second {} word in one block", letter));
-    const std::size_t at = cursor_.at();
-    cursor_.advance();
-    (letter == 'P' ? o.number : o.value) = value(std::string_view(&letter, 1));
-    (letter == 'P' ? has_P : o.has_value) = true;
-    if (letter == 'L') o.value_column = static_cast<int>(at) + 1;
-    add_piece(PieceKind::word, at, letter);
+  for (const Word& word : block_->words) {
+    if (word.letter == 'P') o.number = word.value;
+    if (word.letter == 'L') o.value = word.value;
+    if (word.letter == 'L') o.value_column = word.column;
+    has_P = has_P || word.letter == 'P';
+    o.has_value = o.has_value || word.letter == 'L';
   }
-  if (o.flow == Flow::m98 && !has_P) fail(start, "M98 needs a P word, the number of a subprogram");
-  only_comments(keyword);
+  if (!has_P) fail(start, "M98 needs a P word, the number of a subprogram");
 }
 
 Value Parser::bracketed_value(std::string_view what) {
@@ -480,7 +476,6 @@ int Parser::name_in_angles(std::string_view what) {
     name += is_letter(c) ? static_cast<char>(c - 'A' + 'a') : c;
     cursor_.advance();
   }
-  if (name.empty()) fail(start, fmt::format("{} is empty", what));
   cursor_.advance();
   block_->names.push_back(std::move(name));
   return static_cast<int>(block_->names.size()) - 1;

@@ -17,7 +17,7 @@ namespace servomill::controllers {
 ///   oword = "O" label ["SUB" | "DO" | "ELSE" | "ENDIF" | "ENDWHILE" | "ENDREPEAT" | "BREAK" |
 ///           "CONTINUE" | ("ENDSUB" | "RETURN") ["[" expr "]"] | "CALL" {"[" expr "]"} |
 ///           ("IF" | "ELSEIF" | "WHILE" | "REPEAT") "[" expr "]"] {comment}
-///         | "M98" {"P" value | "L" value} {comment} | "M99" {comment}
+///         | "M98" {"P" value | "L" value | any other word} | "M99" {comment}
 ///   label = "<" name ">" | value
 ///   value = number | "[" expr "]" | "#" param | ("+"|"-") value | function "[" expr "]"
 ///         | "ATAN[" expr "]/[" expr "]"
@@ -32,8 +32,9 @@ class Parser {
   void keep_pieces(bool keep) { keeps_pieces_ = keep; }
 
   /// How much of a line is read. Where flow control skips, RS274/NGC does not look at what a line
-  /// says, only at its comments, and at the label and the keyword of its O-word.
-  enum class Extent { all, flow_only };
+  /// says, only at its comments, and at the label and the keyword of its O-word; and where a line
+  /// ends the skipping, not behind its O-word.
+  enum class Extent { all, flow_only, flow_value };
 
   /// @param line  without its end
   /// @param block cleared and filled. Its pieces tell of the whole line: behind the last one, and

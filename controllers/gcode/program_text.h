@@ -75,6 +75,8 @@ enum class Percent { start, end, misplaced };
 class PercentRule {
  public:
   void saw_line() { first_ = false; }
+  /// Whether the program began with a '%'.
+  bool is_framed() const { return open_; }
   Percent saw_percent() {
     const Percent meaning = first_ ? Percent::start : open_ ? Percent::end : Percent::misplaced;
     if (meaning == Percent::start) open_ = true;

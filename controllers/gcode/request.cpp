@@ -18,7 +18,7 @@ constexpr std::string_view kClaimedLetters = "DHIJKLPQR";
 
 constexpr std::uint32_t mask_of(std::string_view letters) {
   std::uint32_t mask = 0;
-  for (const char letter : letters) mask |= 1U << static_cast<unsigned>(letter - 'A');
+  for (const char letter : letters) mask |= word_bit(letter);
   return mask;
 }
 constexpr std::uint32_t kClaimedMask = mask_of(kClaimedLetters);
@@ -71,6 +71,7 @@ int first_axis_word(const Request& request, bool has_vectors) {
     if (column > 0 && (first == 0 || column < first)) first = column;
   };
   for (const Axis axis : kAllAxes) look(letter(axis));
+  for (const char polar : {'@', '^'}) look(polar);
   if (has_vectors) {
     for (const char letter : kVectorLetters) look(letter);
   }

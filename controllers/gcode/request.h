@@ -24,9 +24,9 @@ struct Request {
   };
 
   int line = 0;
-  std::array<Cell, 26> words;  // by letter; G and M are in `codes`
-  std::uint32_t letters = 0;   // those of `words` that are in the block, a bit each from A
-  std::uint32_t groups = 0;    // those of `codes` that are in the block, a bit each
+  std::array<Cell, kWordLetters> words;  // by word_index(); G and M are in `codes`
+  std::uint32_t letters = 0;  // those of `words` that are in the block, a word_bit() each
+  std::uint32_t groups = 0;   // those of `codes` that are in the block, a bit each
   std::array<Chosen, static_cast<std::size_t>(Group::count)> codes;
   Chosen motion;  // in this block, programmed or still in force; not G80
 
@@ -40,16 +40,18 @@ struct Request {
     motion = {};
   }
   void set(char letter, double value, int column) {
-    words[static_cast<std::size_t>(letter - 'A')] = {value, column};
-    letters |= 1U << static_cast<unsigned>(letter - 'A');
+    words[word_index(letter)] = {value, column};
+    letters |= word_bit(letter);
   }
   void set(Group group, const Chosen& chosen) {
     codes[static_cast<std::size_t>(group)] = chosen;
     groups |= 1U << static_cast<unsigned>(group);
   }
 
-  const Cell& word(char letter) const { return words[static_cast<std::size_t>(letter - 'A')]; }
-  bool has(char letter) const { return (letters >> (letter - 'A') & 1U) != 0; }
+  const Cell& word(char letter) const { return words[word_index(letter)]; }
+  bool has(char letter) const { return (letters & word_bit(letter)) != 0; }
+  /// @ or ^: X and Y in polar coordinates.
+  bool has_polar() const { return (letters & (word_bit('@') | word_bit('^'))) != 0; }
   double operator[](char letter) const { return word(letter).value; }
 
   const Chosen& of(Group group) const { return codes[static_cast<std::size_t>(group)]; }

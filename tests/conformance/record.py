@@ -32,7 +32,7 @@ def record(interpreter, program):
     if records is None:
         sys.exit(f"{program}: rs274 did not come to an end")
     kept = [{key: rounded(value) for key, value in rs274.without(r, "msg").items()} for r in records]
-    program.with_suffix(".jsonl").write_text("".join(json.dumps(r) + "\n" for r in kept))
+    program.with_suffix(".jsonl").write_text("".join(json.dumps(r, ensure_ascii=False) + "\n" for r in kept), encoding="utf-8")
 
 
 def main():

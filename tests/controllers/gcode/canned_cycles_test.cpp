@@ -114,7 +114,7 @@ TEST(CannedCycle, FaultsNameTheWordAndTheRule) {
             "p.nc:4:1: error: G82 needs P; none is kept from a G82 before");
   EXPECT_EQ(fault("G87 X1 Z-1 R1 I1 K0"),
             "p.nc:3:1: error: G87 needs J; none is kept from a G87 before");
-  EXPECT_EQ(fault("G81 X1 Z-1 R-2"), "p.nc:3:12: error: G81: R = -2 is below Z = -1, the bottom");
+  EXPECT_EQ(fault("G81 X1 Z-1 R-2"), "p.nc:3:1: error: G81: R = -2 is below Z = -1, the bottom");
   EXPECT_EQ(fault("G83 X1 Z-1 R1 Q0"), "p.nc:3:15: error: Q0; must be > 0");
   EXPECT_EQ(fault("G73 X1 Z-1 R1 Q-2"), "p.nc:3:15: error: Q-2; must be > 0");
   EXPECT_EQ(fault("G82 X1 Z-1 R1 P-2"), "p.nc:3:15: error: P-2; must be >= 0");
@@ -126,7 +126,9 @@ TEST(CannedCycle, FaultsNameTheWordAndTheRule) {
   EXPECT_EQ(fault("G93 G81 X1 Z-1 R1 F1"),
             "p.nc:3:5: error: G81 under G93; a cycle needs G94 or G95");
   EXPECT_EQ(fault("F0\nG81 X1 Z-1 R1"), "p.nc:4:1: error: G81 with zero feed; no F is in force");
-  EXPECT_EQ(fault("G43.5 G81 X1 Z-1 R1"), "p.nc:3:7: error: G81 under G43.5; use G43.4 or G68.2");
+  EXPECT_EQ(
+      fault("G43.5 G81 X1 Z-1 R1"),
+      "p.nc:3:1: error: G43.5: where the rotary axes go depends on the machine, and none is given");
   EXPECT_EQ(fault("G17.1 G81 X1 Z-1 R1"),
             "p.nc:3:7: error: G81 in a plane of U, V and W (G17.1 G18.1 G19.1); use G17, G18 or "
             "G19");
@@ -141,7 +143,7 @@ TEST(CannedCycle, FaultsNameTheWordAndTheRule) {
   EXPECT_EQ(fault("G86 X1 Z-1 R1 P1"),
             "p.nc:3:1: error: G86 while the spindle stands still; start it with M3 or M4");
   EXPECT_EQ(fault("G83 X1 Z-1 R1 Q1e-5"),
-            "p.nc:3:17: error: unexpected 'E'; a word starts with one of ABCDFGHIJKLMPQRSTXYZ");
+            "p.nc:3:17: error: unexpected 'E'; a word starts with one of ABCDFGHIJKLMPQRSTXYZ@^");
 }
 
 TEST(CannedCycle, OfEndlessPecksIsRefused) {

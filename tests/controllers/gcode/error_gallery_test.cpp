@@ -21,8 +21,8 @@ TEST(ErrorGallery, Characters) {
       {"(a (b) c)", "1:4: error: comment within a comment"},
       {"G0 X1 )", "1:7: error: ')' without '('"},
       {"G0 X1 \xc3\xa4", "1:7: error: byte 0xC3 is not allowed outside comments"},
-      {"G0 X1 ?", "1:7: error: unexpected '?'; a word starts with one of ABCDFGHIJKLMPQRSTXYZ"},
-      {"G0 X1 U2", "1:7: error: unexpected 'U'; a word starts with one of ABCDFGHIJKLMPQRSTXYZ"},
+      {"G0 X1 ?", "1:7: error: unexpected '?'; a word starts with one of ABCDFGHIJKLMPQRSTXYZ@^"},
+      {"G0 X1 U2", "1:7: error: unexpected 'U'; a word starts with one of ABCDFGHIJKLMPQRSTXYZ@^"},
   });
   EXPECT_EQ(fault_of("G0 X1" + std::string(248, ' ')),
             "p.nc:1:253: error: line of 253 characters; at most 252 are allowed");
@@ -61,7 +61,6 @@ TEST(ErrorGallery, Parameters) {
       {"#1", "1:3: error: '=' expected after a parameter, not the end of the line"},
       {"G0 X#<nope>", "1:5: error: parameter #<nope> is not defined"},
       {"G0 X#<nope", "1:6: error: parameter name is not closed; '>' is missing"},
-      {"#<>=1", "1:2: error: parameter name is empty"},
   });
 }
 
@@ -100,7 +99,6 @@ TEST(ErrorGallery, Motion) {
       {"G53 X1", "1:5: error: axis words, but no G code is in force that uses them"},
       {"G53 G2 X1 I1 F1", "1:1: error: G53 needs G0 or G1"},
       {"G91 G53 G0 X1", "1:5: error: G53 with G91; machine coordinates are absolute"},
-      {"G64 P-1", "1:5: error: G64 P-1; must be >= 0"},
   });
 }
 

@@ -93,9 +93,10 @@ TEST(Subroutine, ComesFromAFileOfItsName) {
 
 TEST(Subroutine, FaultsNameTheFileAndTheCalls) {
   const ProgramSetup setup = with_files({{"hole", "o<hole> sub\nG1 X1/0\no<hole> endsub\n"}});
-  EXPECT_EQ(fault_of("o1 sub\no<hole> call\no1 endsub\nF100\no1 call", setup),
-            "hole.ngc:2:6: error: unexpected '/'; a word starts with one of ABCDFGHIJKLMPQRSTXYZ; "
-            "in O<hole>, called in p.nc:2, in O<1>, called in p.nc:5");
+  EXPECT_EQ(
+      fault_of("o1 sub\no<hole> call\no1 endsub\nF100\no1 call", setup),
+      "hole.ngc:2:6: error: unexpected '/'; a word starts with one of ABCDFGHIJKLMPQRSTXYZ@^; "
+      "in O<hole>, called in p.nc:2, in O<1>, called in p.nc:5");
 }
 
 TEST(Subroutine, RefusesWhatHasNoMeaning) {
@@ -114,7 +115,7 @@ TEST(Subroutine, RefusesWhatHasNoMeaning) {
        "p.nc:3:1: error: O<1> is defined before, in line 1"},
       {"o1 call\no1 sub\no1 endsub",
        "p.nc:2:1: error: the program runs into O<1>, which it has called before"},
-      {"o1 sub\no1 endsub x",
+      {"o1 sub\no1 endsub x\no1 call",
        "p.nc:2:11: error: unexpected 'X' after ENDSUB; an O-word stands "
        "alone in its block"},
       {"o1 sub\no1 endsub\nM98 P1",
