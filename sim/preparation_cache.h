@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "controllers/gcode/interpreter.h"
+#include "controllers/gcode/program_setup.h"
 #include "controllers/path/trajectory.h"
 #include "plant/drives/prepared_drives.h"
 #include "plant/geometry/volumetric.h"

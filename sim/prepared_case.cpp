@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/printer.h"
 #include "controllers/path/travel.h"
 #include "plant/vocabulary/units.h"

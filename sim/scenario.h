@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "controllers/gcode/interpreter.h"
+#include "controllers/gcode/tool_table.h"
 #include "plant/geometry/error_model.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/parameters.h"

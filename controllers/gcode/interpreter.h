@@ -33,49 +33,20 @@
 /// and keywords are looked at.
 #pragma once
 
-#include <array>
-#include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "controllers/gcode/block.h"
+#include "controllers/gcode/program_setup.h"
 #include "controllers/gcode/program_text.h"
-#include "controllers/gcode/tool_table.h"
-#include "controllers/path/tool_centre_point.h"
-#include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/move.h"
 
 namespace servomill::controllers {
-
-/// What the machine knows before the first block.
-struct ProgramSetup {
-  /// "#101", "#<name>" or "#<_name>", in program terms (whatever unit the program gives them).
-  std::map<std::string, double> parameters;
-  std::array<AxisWords, 9> work_offset = zero_offsets();  // G54 ... G59.3; m, rad
-  std::array<double, 9> work_rotation{};                  // about Z, rad
-  int work_system = 1;                                    // in force at the start; 1 is G54
-  ToolTable tools;
-  int tool = 0;                         // in the spindle at the start; 0: none
-  AxisWords start = AxisWords::Zero();  // machine coordinates before the first block; m, rad
-  bool block_delete = false;            // leave out the lines that start with '/'
-  /// The file of a subroutine that the program calls and does not define: `o<name> call` asks for
-  /// "name", `o100 call` and `M98 P100` for "100". Empty: there are no such files.
-  std::function<std::optional<ProgramText>(const std::string& name)> subroutine_file;
-  /// Loops turned and subroutines called before a program counts as endless.
-  long most_jumps = 10'000'000;
-  /// The machine, for tool-centre-point control and tilted planes. Without it a program may use
-  /// G43.4 and G68.2 as long as its rotary axes are at zero where they are switched on and off.
-  std::shared_ptr<const ToolCentrePoint> machine;
-
-  static std::array<AxisWords, 9> zero_offsets();
-};
 
 /// A line of a program that was run: also a blank one, and one that O-words skip.
 struct ExecutedBlock {
