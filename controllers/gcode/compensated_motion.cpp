@@ -88,7 +88,7 @@ double Interpreter::Machine::compensation_diameter() const {
   const std::string name = code_name('G', chosen.code->tenths);
   if (chosen.code->tenths % 10 == 1) {
     if (!request().has('D'))
-      fail(chosen.column, fmt::format("{} needs a D word (mm or inch)", name));
+      fail(chosen.column, fmt::format("{} needs a D word (diameter of the tool)", name));
     if (request().has('L')) {
       const int column = request().word('L').column;
       if (state_.normal_axis == 2)
@@ -211,6 +211,13 @@ void Interpreter::Machine::go_around(MoveKind kind, const PlaneMove& path,
   describe_arc(out_.back(), centre, state_.compensation.cutter.is_left ? -1 : 1);
 }
 
+// The code of this block that ends what waits.
+int Interpreter::Machine::column_of_cause() const {
+  if (request().motion.code != nullptr) return request().motion.column;
+  const Request::Chosen& off = request().of(Group::g_cutter_compensation);
+  return off.code != nullptr ? off.column : request().of(Group::m_stop).column;
+}
+
 // Ends what waits at a point of the plane, and gives it out.
 void Interpreter::Machine::end_queue_at(const Eigen::Vector2d& point) {
   Compensation& compensation = state_.compensation;
@@ -219,7 +226,9 @@ void Interpreter::Machine::end_queue_at(const Eigen::Vector2d& point) {
   for (Compensation::Waiting& waiting : compensation.queue) {
     if (is_motion(waiting.move.kind)) {
       const std::string fault = move_end(waiting.path, compensation.begin, point, tolerance);
-      if (!fault.empty()) fail(0, fmt::format("{} (move of line {})", fault, waiting.move.line));
+      if (!fault.empty()) {
+        fail(column_of_cause(), fmt::format("{} (move of line {})", fault, waiting.move.line));
+      }
     }
     waiting.move.end = state_.with_plane(waiting.move.end, point);
   }

@@ -270,6 +270,7 @@ class Interpreter::Machine {
   void turn_corner(MoveKind kind, const PlaneMove& path, const AxisWords& end, double feed);
   void go_around(MoveKind kind, const PlaneMove& path, const Eigen::Vector2d& point,
                  const AxisWords& end, double feed);
+  int column_of_cause() const;
   void end_queue_at(const Eigen::Vector2d& point);
   void release_queue();
 

@@ -235,7 +235,7 @@ TEST(TipControlErrors, Vectors) {
           {"G43.4 H1\nG53 G0 X1", "2:1: error: G53 under tool-centre-point control; G49 first"},
           {"G43.4 G43.5 H1", "1:7: error: G43.4 and G43.5 in one block (same modal group)"},
           {"G43.4 H9", "1:7: error: H9: no such tool in the tool table of 1 tools"},
-          {"G41 G43.4 H1", "1:1: error: G41 is not supported yet"},
+          {"G41 G43.4 H1", "1:5: error: G43.4 with cutter compensation on; G40 first"},
       });
 }
 
