@@ -4,6 +4,9 @@ The records are those of controllers/gcode/canon_json.h (mm, degrees). rs274 pri
 inches: a private copy of it prints nine and is one in millimetres. It prints no line numbers but the N words of the
 program: the same program runs a second time with an N word before each line. Both times it runs on copies in a folder
 of their own, so that nothing is written beside the programs.
+
+Left out are path modes and coolant (separate calls here, fields of other records and states in servomill), the pallet
+shuttle of M30, and stops at tool changes and ends of a spindle that stands already.
 """
 import functools
 import math
@@ -23,9 +26,8 @@ LINES_OF_A_FILE = 10 ** 6      # N words are FILE x this + LINE
 SAID = "msg", "text", "code"    # may name lines
 N_WORD = re.compile(rb"\s*(/?)\s*(?:n\s*\d[\d\s]*(?:\.\s*\d[\d\s]*)?)?(.*)$", re.IGNORECASE | re.DOTALL)
 MOST_OUTPUT = 1 << 28          # bytes; beyond it a program is taken to be without end
+LEAST_MOVE = 1e-7              # mm; nine decimals of an inch tell positions only so far
 MM_PER_INCH = 25.4
-COMPARED = {"rapid", "feed", "arc", "dwell", "tool", "spindle", "stop", "end", "msg", "print", "error",
-            "nurbs", "probe", "tap"}
 UNPACKED = "~/.cache/rs274/root/usr/bin/rs274"
 
 
@@ -59,22 +61,32 @@ class Canon:
         self.feed = {"linear": 0.0, "rotary": 0.0}    # mm/min and deg/min; per revolution with "upr"
         self.feed_mode = "upm"
         self.sync = None                              # mm per revolution
+        self.delayed = False                          # under G41 and G42 calls come lines later: theirs are not known
         self.at = [0.0] * 6
-        self.rpm, self.selected = 0.0, 0
+        self.direction, self.rpm, self.selected = 0, 0.0, 0
 
     def records(self, text):
         """All records of what rs274 printed, with "line" as the N word says it."""
+        held = None                                   # a stop of the standing spindle
         for printed in text.splitlines():
             call = self.CALL.match(printed)
+            if held and not (call and call[2] in ("CHANGE_TOOL", "SET_SPINDLE_MODE", "PROGRAM_END")):
+                yield held
+            held = None
             if call is None:
                 if printed.strip():                   # (PRINT,) writes bare text
                     yield {"t": "print", "text": " ".join(printed.split())}
                 continue
             number, name, arguments = call.groups()
+            stood = self.direction == 0
             record = getattr(self, "on_" + name.lower(), lambda _: None)(arguments)
             if record:
-                line = {"line": int(number)} if number.isdigit() else {}
-                yield {"t": record.pop("t"), **line, **record}
+                line = {"line": int(number)} if number.isdigit() and not self.delayed else {}
+                record = {"t": record.pop("t"), **line, **record}
+                if name == "STOP_SPINDLE_TURNING" and stood:
+                    held = record
+                else:
+                    yield record
 
     def mm(self, values):
         return [x * self.scale for x in values[:3]] + list(values[3:6])
@@ -86,7 +98,7 @@ class Canon:
         return [p + s + t for p, s, t in zip(turned, self.system, self.tool_offset)]
 
     def motion(self, kind, end, **more):
-        linear = kind == "arc" or any(abs(p - q) > 1e-9 for p, q in zip(end[:3], self.at[:3]))
+        linear = kind == "arc" or any(abs(p - q) > LEAST_MOVE for p, q in zip(end[:3], self.at[:3]))
         record = {"t": kind, "end": end, "mend": self.in_machine(end)}
         if kind in ("feed", "arc", "probe"):
             record.update(feed=self.feed["linear" if linear else "rotary"], fmode=self.feed_mode)
@@ -134,6 +146,7 @@ class Canon:
         return {"t": "spindle", "rpm": self.rpm}
 
     def turning(self, direction):
+        self.direction = direction
         return {"t": "spindle", "dir": direction, "rpm": self.rpm}
 
     def on_start_spindle_clockwise(self, _):
@@ -167,6 +180,8 @@ class Canon:
         self.feed_mode = "upr" if per_revolution else "upm" if self.feed_mode == "upr" else self.feed_mode
 
     def on_comment(self, arguments):
+        if arguments.startswith('"interpreter: cutter radius compensation'):
+            self.delayed = not arguments.endswith('off"')
         for text, mode in (("inverse time", "inv"), ("units per minute", "upm")):
             if arguments == f'"interpreter: feed mode set to {text}"':
                 self.feed_mode = mode
@@ -201,24 +216,6 @@ class Canon:
 
 def numbers(arguments):
     return [float(word) for word in re.split(r"[,\s]+", arguments.strip()) if word]
-
-
-def compared(records):
-    """The records that both interpreters must agree on.
-
-    Left out: path modes and coolant (separate calls here, fields of other records or states in servomill), the pallet
-    shuttle of M30, stops of a spindle that stands still, and lines that are not known.
-    """
-    turning = False
-    for record in records:
-        if record["t"] not in COMPARED:
-            continue
-        if record["t"] == "spindle" and "dir" in record:
-            stops_again = record["dir"] == 0 and not turning
-            turning = record["dir"] != 0
-            if stops_again:
-                continue
-        yield record
 
 
 # ---------------------------------------------------------------------------------------------------------- running it
@@ -273,7 +270,7 @@ class Interpreter:
         return place
 
     def records(self, program, *, tools=None, parameter_file=None, subs=None, block_delete=False, timeout=60.0):
-        """What rs274 makes of a program: compared records; "error" with "msg" comes last if it refuses the program.
+        """What rs274 makes of a program; a record "error" with "msg" comes last if it refuses the program.
 
         "line" counts in the file that "file" names, where that is not the program itself. It is missing where rs274
         does not tell it. None if the program did not end within `timeout` seconds, or wrote far too much.
@@ -289,7 +286,7 @@ class Interpreter:
         records = [without(record, "line") for record in plain]
         if [without(r, *SAID) for r in records] == [without(r, "line", *SAID) for r in with_lines]:
             records = [{**record, **only(counted, "line")} for record, counted in zip(records, with_lines)]
-        return [self._placed(record, program) for record in compared(records)]
+        return [self._placed(record, program) for record in records]
 
     def _placed(self, record, program):
         """With "line" split into file and line."""
