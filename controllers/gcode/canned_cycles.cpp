@@ -333,6 +333,7 @@ void Interpreter::Machine::canned_cycle(int motion_before) {
   const std::vector<CycleStep> steps = cycle_steps(request().motion_code(), hole);
   AxisWords over = state_.position;
   for (int repeat = 0; repeat < repeats; ++repeat) {
+    if (request().has_polar()) over.head<2>() = polar_end(over.head<2>());
     for (int k = 0; k < 3; ++k) {
       if (k == n || !has_axis(k)) continue;
       over[k] = axis_word(k) + (state_.is_incremental ? over[k] : 0.0);

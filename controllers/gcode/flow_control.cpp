@@ -24,6 +24,20 @@ bool is_global(Flow flow) {
   }
 }
 
+// Unknown names count as 0 while it lives.
+class Forgiving {
+ public:
+  explicit Forgiving(Parameters& parameters) : parameters_(parameters) {
+    parameters_.forgive_unknown_names(true);
+  }
+  Forgiving(const Forgiving&) = delete;
+  Forgiving& operator=(const Forgiving&) = delete;
+  ~Forgiving() { parameters_.forgive_unknown_names(false); }
+
+ private:
+  Parameters& parameters_;
+};
+
 std::string_view name_of(Flow flow) {
   switch (flow) {
     case Flow::sub:
@@ -190,10 +204,17 @@ void Interpreter::Machine::begin_subroutine(const std::string& name, const OWord
   skip_to(name);
 }
 
+void Interpreter::Machine::keep_result(const OWord& o) {
+  flow_.value = flow_value(o);
+  flow_.has_value = o.has_value;
+}
+
+// As LinuxCNC: a definition that is passed over leaves its result, too.
 void Interpreter::Machine::end_subroutine(const std::string& name, const OWord& o) {
-  const double value = flow_value(o);
   if (flow_.calls.empty()) {
     if (!flow_.defining) fail(o.column, fmt::format("no subroutine O<{}> is begun here", name));
+    const Forgiving forgiving(parameters_);
+    keep_result(o);
     if (o.flow != Flow::endsub) return;
     flow_.skip_to.reset();
     flow_.defining.reset();
@@ -204,8 +225,7 @@ void Interpreter::Machine::end_subroutine(const std::string& name, const OWord& 
     fail(o.column, by_m98 ? "a subprogram that M98 calls ends with M99"
                           : "a subroutine ends with ENDSUB or RETURN, not with M99");
   }
-  flow_.value = value;
-  flow_.has_value = o.has_value;
+  keep_result(o);
   if (o.flow == Flow::endsub) flow_.skip_to.reset();
   leave_call();
 }

@@ -59,7 +59,7 @@ const std::array<Interpreter::Machine::Step, 21> Interpreter::Machine::kSteps = 
     {&Machine::dwell, bit(Group::g_non_modal)},
     {&Machine::plane, bit(Group::g_plane)},
     {&Machine::units, bit(Group::g_units)},
-    {&Machine::cutter_compensation, bit(Group::g_cutter_compensation)},
+    {&Machine::cutter_compensation, kAlways},
     {&Machine::tool_length, bit(Group::g_tool_length)},
     {&Machine::work_system, bit(Group::g_work_system)},
     {&Machine::work_plane, bit(Group::g_work_plane)},
@@ -778,7 +778,7 @@ ArcCentre Interpreter::Machine::arc_centre(const Eigen::Vector2d& start, const E
     for (const char c : {'I', 'J', 'K'}) {
       if (request().has(c)) fail_at(c, fmt::format("{} and R in one {} block", c, name()));
     }
-    if (!has_axis(first) && !has_axis(second)) {
+    if (!has_axis(first) && !has_axis(second) && !request().has_polar()) {
       fail(chosen.column,
            fmt::format("{} with R needs {} or {}", name(), "XYZ"[first], "XYZ"[second]));
     }

@@ -151,6 +151,7 @@ class Interpreter::Machine {
   std::string label_text(const OWord& o) const;
   const std::string& scope_name() const;
   double flow_value(const OWord& o);
+  void keep_result(const OWord& o);
   void skip_to(const std::string& label);
   void go_to(const LinePlace& place);
   void count_jump();

@@ -156,7 +156,8 @@ double Parameters::get(int number) const {
 std::optional<double> Parameters::get(const std::string& name) const {
   const Names& names = names_of(name);
   if (const auto found = names.find(name); found != names.end()) return found->second;
-  return system_.name(name);
+  const std::optional<double> value = system_.name(name);
+  return !value && forgives_ ? 0.0 : value;
 }
 
 void Parameters::set(int number, double value) {

@@ -56,6 +56,9 @@ class Parameters {
   void set(int number, double value);
   void set(const std::string& name, double value);
 
+  /// Whether names that are not defined count as 0, as in a definition that is passed over.
+  void forgive_unknown_names(bool forgive) { forgives_ = forgive; }
+
   /// A subroutine with names of its own begins; ends.
   void enter_scope() { local_.emplace_back(); }
   void leave_scope() { local_.pop_back(); }
@@ -72,6 +75,7 @@ class Parameters {
     return name[0] == '_' ? global_ : local_.back();
   }
 
+  bool forgives_ = false;
   Names global_;
   std::vector<Names> local_{Names()};  // of each call
   std::vector<std::pair<int, double>> old_numbers_;

@@ -452,8 +452,8 @@ TEST(CompensatedProgram, ABlockWithAnErrorChangesNothing) {
   int faults = 0;
   for (bool more = true; more;) {
     try {
-      const std::optional<Move> move = interpreter.next();
-      more = move.has_value();
+      const Move* move = interpreter.next();
+      more = move != nullptr;
       if (more) moves.push_back(*move);
     } catch (const InputError&) {
       ++faults;
