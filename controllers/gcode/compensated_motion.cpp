@@ -41,7 +41,6 @@ void Interpreter::Machine::refuse_codes_under_compensation() {
     warn(request().of(Group::g_non_modal).column,
          fmt::format("{} has no effect while cutter compensation is on", code_name('G', code)));
     request_.codes[static_cast<std::size_t>(Group::g_non_modal)] = {};
-    return;
   }
   const bool sets_active_system =
       code == 100 && (request()['L'] == 2.0 || request()['L'] == 20.0) &&
@@ -141,7 +140,6 @@ void Interpreter::Machine::stop_compensation() {
 void Interpreter::Machine::compensate(MoveKind kind, const PlaneMove& path, const AxisWords& end,
                                       double length, double feed) {
   Compensation& compensation = state_.compensation;
-  if (request().code(Group::g_non_modal) == 530) refuse_code(Group::g_non_modal);
   const bool enters = !compensation.is_entered;
   const bool stays = !enters && !path.is_arc && path.begin == path.end;
   Compensated made;

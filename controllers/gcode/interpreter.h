@@ -22,11 +22,18 @@
 /// While one of them controls the tip, the origin is that of the work system as it lies with all
 /// rotary axes at zero, and turns with the workpiece. Switching them on or off moves nothing.
 ///
-/// Different from LinuxCNC on purpose: M6 leaves the position as it
-/// is; M48 M49 do nothing, since no operator turns the override; a G0 or G1 without axis words
-/// gives no move; Q of G64 is accepted and unused (it allows, and does not ask for, the merging of
-/// short lines); words in the block of M98 other than P and L are warned of; M99 behind
-/// other words is refused in a subprogram before the motion in its block, not after.
+/// Cutter compensation (G41 G42 G41.1 G42.1, cutter_compensation.h) holds a move back until the next
+/// one is known; what stands between them comes between them, but messages come at once. Moves are
+/// of the line that programmed them, an arc around a corner of the line of the move behind it;
+/// `s_begin` and `s_end` count the programmed path. #5420 ... and #<_x> are where the tool is, and
+/// expressions may not read the former until G40.
+///
+/// Different from LinuxCNC on purpose: a change of unit under cutter compensation leaves feeds and
+/// the test against gouging as they are (there, what waits for the next move is scaled wrongly); M6
+/// leaves the position as it is; M48 M49 do nothing, since no operator turns the override; Q of G64
+/// is accepted and unused (it allows, and does not ask for, the merging of short lines); words in
+/// the block of M98 other than P and L are warned of; M99 behind other words is refused in a
+/// subprogram before the motion in its block, not after.
 ///
 /// O-words: subroutines, loops and conditions as LinuxCNC has them, its oddities included (the
 /// notes at FlowState in interpreter_machine.h); where a program is skipped, only comments, labels
