@@ -22,9 +22,9 @@
 /// While one of them controls the tip, the origin is that of the work system as it lies with all
 /// rotary axes at zero, and turns with the workpiece. Switching them on or off moves nothing.
 ///
-/// Cutter compensation (G41 G42 G41.1 G42.1, cutter_compensation.h) holds a move back until the next
-/// one is known; what stands between them comes between them, but messages come at once. Moves are
-/// of the line that programmed them, an arc around a corner of the line of the move behind it;
+/// Cutter compensation (G41 G42 G41.1 G42.1, cutter_compensation.h) holds a move back until the
+/// next one is known; what stands between them comes between them, but messages come at once. Moves
+/// are of the line that programmed them, an arc around a corner of the line of the move behind it;
 /// `s_begin` and `s_end` count the programmed path. #5420 ... and #<_x> are where the tool is, and
 /// expressions may not read the former until G40.
 ///

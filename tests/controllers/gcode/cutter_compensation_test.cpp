@@ -432,7 +432,8 @@ TEST(CompensatedProgram, MachineCoordinatesFollow) {
   ProgramSetup setup = usual_setup();
   setup.work_offset[0] = axes(100, 200, 300);
   setup.work_rotation[0] = 90 * deg;
-  const std::vector<Move> moves = moves_of("G43 H1\n" + kEntry + "X20\nG3 X30 Y10 R10\nG1 X0", setup);
+  const std::vector<Move> moves =
+      moves_of("G43 H1\n" + kEntry + "X20\nG3 X30 Y10 R10\nG1 X0", setup);
   expect_axes(moves[2].end_machine, axes(98, 220, 0));
   EXPECT_LE((moves[3].centre_machine - axes(90, 220, 0).head<3>()).norm(), 10 * kExact);
 }
