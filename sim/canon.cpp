@@ -5,6 +5,7 @@
 #include "controllers/gcode/canon_json.h"
 #include "controllers/gcode/cl_data.h"
 #include "controllers/gcode/interpreter.h"
+#include "controllers/gcode/parameter_file.h"
 #include "sim/config/document.h"
 #include "sim/read_file.h"
 #include "sim/run.h"
@@ -35,6 +36,11 @@ controllers::ProgramSetup setup_of(const ProgramInputs& inputs, const std::strin
   if (!inputs.tool_table.empty()) {
     setup.tools = controllers::ToolTable::parse(read_file(inputs.tool_table, {}, "tool table"),
                                                 inputs.tool_table);
+  }
+  if (!inputs.parameter_file.empty()) {
+    setup.stored = controllers::parse_parameter_file(
+        read_file(inputs.parameter_file, {}, "parameter file"), inputs.parameter_file);
+    setup.work_system = controllers::work_system_of(setup.stored);
   }
   if (!inputs.machine.empty()) {
     setup.machine = tool_centre_point(read_machine_file(inputs.machine));

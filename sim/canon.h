@@ -15,6 +15,7 @@ struct ProgramInputs {
   std::string tool_table;                            // file in LinuxCNC's format, or empty
   std::vector<std::string> parameters;               // "#101=1394"
   std::string machine = {};                          // file of the machine that runs it, or empty
+  std::string parameter_file = {};                   // LinuxCNC's "var" file, or empty
   std::vector<std::string> subroutine_folders = {};  // beside that of the program
   bool block_delete = false;                         // leave out lines that start with '/'
   long most_jumps = 10'000'000;                      // loops turned and subroutines called

@@ -19,11 +19,14 @@ std::size_t weight_of(const PlannedMotion& motion) {
 void add(MemoKey& key, const controllers::ToolTable& tools) {
   key.add(tools.size());
   for (const auto& [number, tool] : tools.entries()) {
-    const auto& [tool_number, pocket, offset, diameter, orientation] = tool;
+    const auto& [tool_number, pocket, offset, diameter, front_angle, back_angle, orientation] =
+        tool;
     key.add(tool_number);
     key.add(pocket);
     key.add(offset);
     key.add(diameter);
+    key.add(front_angle);
+    key.add(back_angle);
     key.add(orientation);
   }
 }
@@ -149,8 +152,13 @@ void add(MemoKey& key, const plant::ErrorModel& errors) {
 }
 
 void add(MemoKey& key, const controllers::ProgramSetup& setup) {
-  const auto& [parameters, work_offset, work_rotation, work_system, tools, tool, start,
+  const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, start,
                block_delete, subroutine_file, most_jumps, machine] = setup;  // files do not change
+  key.add(stored.size());
+  for (const auto& [number, value] : stored) {
+    key.add(number);
+    key.add(value);
+  }
   key.add(parameters.size());
   for (const auto& [name, value] : parameters) {
     key.add(name);

@@ -198,7 +198,7 @@ void Interpreter::Machine::check_cycle_spindle() const {
   if (state_.spindle_direction != wanted) {
     fail(chosen.column,
          fmt::format("{} with the spindle turning {}; it needs {}", code_name('G', code),
-                     wanted > 0 ? "backwards (M4)" : "(M3)", wanted > 0 ? "M3" : "M4"));
+                     wanted > 0 ? "backwards (M4)" : "forwards (M3)", wanted > 0 ? "M3" : "M4"));
   }
 }
 
@@ -216,8 +216,9 @@ CycleHole Interpreter::Machine::cycle_hole(bool goes_on) {
   hole.r = kept.r + (state_.is_incremental ? kept.level : 0.0);
   hole.bottom = kept.bottom + (state_.is_incremental ? hole.r : 0.0);
   if (hole.r < hole.bottom) {
-    fail(request().motion.column, fmt::format("{}: R = {} is below {} = {}, the bottom",
-                                              code_name('G', code), hole.r, normal, hole.bottom));
+    fail(cycle_column(request().has('R') ? 'R' : normal),
+         fmt::format("{}: R = {} is below {} = {}, the bottom", code_name('G', code), hole.r,
+                     normal, hole.bottom));
   }
   hole.clear = state_.retracts_to_r ? hole.r : std::max(kept.level, hole.r);
   if (has_dwell(code) || is_tapping(code)) {
@@ -253,8 +254,9 @@ int Interpreter::Machine::cycle_repeats(const CycleHole& hole) const {
   const int code = request().motion_code();
   const double steps = (3.0 + cycle_step_count(code, hole)) * repeats;
   if (steps > kMostSteps) {
-    fail(request().motion.column, fmt::format("{} would make {:.0f} moves; must be <= {:.0f}",
-                                              code_name('G', code), steps, kMostSteps));
+    fail(cycle_column(repeats > 1 ? 'L' : 'Q'),
+         fmt::format("{} would make {:.0f} moves; must be <= {:.0f}", code_name('G', code), steps,
+                     kMostSteps));
   }
   return repeats;
 }

@@ -189,7 +189,7 @@ void add_own_fields(const Move& move, std::string& out) {
                      (move.number & kFlood) != 0);
       return;
     case MoveKind::stop:
-      out += move.number == 0 ? R"(,"kind":"PROGRAM_STOP")" : R"(,"kind":"OPTIONAL_PROGRAM_STOP")";
+      out += move.number == 1 ? R"(,"kind":"OPTIONAL_PROGRAM_STOP")" : R"(,"kind":"PROGRAM_STOP")";
       return;
     case MoveKind::message:
       fmt::format_to(end, R"(,"text":{})", quoted(collapsed_blanks(move.text)));

@@ -241,6 +241,7 @@ void Interpreter::Machine::leave_call() {
       parameters_.set(i + 1, call.saved[static_cast<std::size_t>(i)]);
     }
   }
+  restore_on_return();
   go_to(call.return_to);
 }
 

@@ -301,9 +301,13 @@ void Interpreter::Machine::message() {
 void Interpreter::Machine::feed_mode() {
   const int code = request().code(Group::g_feed_mode);
   if (code < 0) return;
-  state_.feed_mode = code == 930   ? FeedMode::inverse_time
-                     : code == 940 ? FeedMode::units_per_minute
-                                   : FeedMode::units_per_revolution;
+  set_feed_mode(code == 930   ? FeedMode::inverse_time
+                : code == 940 ? FeedMode::units_per_minute
+                              : FeedMode::units_per_revolution);
+}
+
+void Interpreter::Machine::set_feed_mode(FeedMode mode) {
+  state_.feed_mode = mode;
   state_.feed_linear = state_.feed_rotary = 0.0;  // as LinuxCNC: a feed does not outlive its mode
 }
 
@@ -311,6 +315,10 @@ void Interpreter::Machine::feed() {
   if (!request().has('F')) return;
   const double F = request()['F'];
   if (F < 0.0) fail_at('F', fmt::format("F{}; must be >= 0", F));
+  set_feed(F);
+}
+
+void Interpreter::Machine::set_feed(double F) {
   if (state_.feed_mode == FeedMode::inverse_time) return;  // belongs to its block only
   const double per = state_.feed_mode == FeedMode::units_per_revolution ? 1.0 : minute;
   state_.feed_linear = F * state_.unit / per;
@@ -363,6 +371,7 @@ void Interpreter::Machine::change_tool() {
 void Interpreter::Machine::spindle() {
   const int code = request().code(Group::m_spindle);
   if (code < 0) return;
+  if (code > 50) return saved_modes();
   state_.spindle_direction = code == 30 ? 1 : code == 40 ? -1 : 0;
   emit_spindle();
 }
@@ -374,6 +383,34 @@ void Interpreter::Machine::coolant() {
   if (code == 80) state_.coolant |= kFlood;
   if (code == 90) state_.coolant = 0;
   emit(MoveKind::coolant).number = state_.coolant;
+}
+
+// P of M50 ... M53: 0 switches off, anything else and nothing on.
+bool Interpreter::Machine::is_switch_on() const {
+  return !request().has('P') || request()['P'] != 0.0;
+}
+
+void Interpreter::Machine::override_switches() {
+  switch (request().code(Group::m_override)) {
+    case 480:
+    case 490:
+      state_.feed_override = state_.speed_override = request().code(Group::m_override) == 480;
+      return;
+    case 500:
+      state_.feed_override = is_switch_on();
+      return;
+    case 510:
+      state_.speed_override = is_switch_on();
+      return;
+    case 520:
+      state_.adaptive_feed = is_switch_on();
+      return;
+    case 530:
+      state_.feed_hold = is_switch_on();
+      return;
+    default:
+      return;
+  }
 }
 
 // ------------------------------------------------------------------------------------ modal codes
@@ -423,6 +460,13 @@ void Interpreter::Machine::tool_length() {
   }
   const ToolControl before = std::exchange(state_.tool_control, tool_control_of(code));
   if (before != state_.tool_control) state_.tool_axis.setZero();
+  const ToolEntry* at_start = tools_at_start_.find(state_.tool_offset_number);
+  if (state_.controls_tip() && at_start != nullptr &&
+      at_start->offset != tool_named('H', state_.tool_offset_number).offset) {
+    fail(column, fmt::format("{}: G10 has changed T{}; tool-centre-point control and tilted planes "
+                             "need the offset of the tool table",
+                             code_name('G', code), state_.tool_offset_number));
+  }
   if (state_.plane && state_.tool_offset_number == kOtherToolOffset) {
     fail(column, fmt::format("{} in a tilted work plane; use G43 H", code_name('G', code)));
   }
@@ -518,12 +562,16 @@ void Interpreter::Machine::non_modal() {
 
 void Interpreter::Machine::set_offsets() {
   const int column = request().of(Group::g_non_modal).column;
-  if (!request().has('L')) fail(column, "G10 needs an L word (L2 or L20)");
+  if (!request().has('L')) fail(column, "G10 needs an L word (L0 L1 L2 L10 L11 L20)");
   const int L = integer('L');
-  if (L == 0 || L == 1 || L == 10 || L == 11) {
-    fail_at('L', fmt::format("G10 L{} (tool table) is not supported yet", L));
+  if (L == 0) return reload_tools();
+  if (L == 1 || L == 10 || L == 11) return set_tool(L);
+  if (L != 2 && L != 20) {
+    fail_at('L', fmt::format("G10 L{}; must be L0, L1, L2, L10, L11 or L20", L));
   }
-  if (L != 2 && L != 20) fail_at('L', fmt::format("G10 L{}; must be L2 or L20", L));
+  for (const char word : {'I', 'J', 'Q'}) {
+    if (request().has(word)) fail_at(word, fmt::format("{} word with G10 L{}", word, L));
+  }
   if (!request().has('P')) fail(column, fmt::format("G10 L{} needs a P word (0 ... 9)", L));
   const int P = integer('P');
   if (P < 0 || P > kWorkSystems) fail_at('P', fmt::format("G10 L{} P{}; must be in 0 ... 9", L, P));
@@ -851,7 +899,7 @@ void Interpreter::Machine::stop() {
   }
   end_queue_at(state_.in_plane(state_.position));
   state_.compensation.begin.reset();
-  if (code == 0 || code == 10) {
+  if (code == 0 || code == 10 || code == 600) {
     emit(MoveKind::stop).number = code / 10;
     return;
   }
@@ -908,50 +956,16 @@ void Interpreter::Machine::move_to(MoveKind kind, const AxisWords& end, double l
   state_.position = end;
   Move& move = emit(kind);
   move.feed = feed;
+  if (move.feed_mode == FeedMode::inverse_time && kind != MoveKind::rapid) {
+    const bool is_rotary = !(s_begin + length > s_begin);  // #<_feed> is what it came to
+    state_.feed_linear = is_rotary ? feed / deg * state_.unit : feed;
+  }
   if (move.feed_mode == FeedMode::units_per_revolution && kind != MoveKind::rapid) {
     const bool turns = state_.spindle_direction != 0;
     move.value = feed;
     move.feed = turns ? feed * state_.spindle_speed / (2.0 * std::numbers::pi) : 0.0;
   }
   move.s_begin = s_begin;
-}
-
-// ------------------------------------------------------------------------------ system parameters
-
-double Interpreter::Machine::system_number(int number) const {
-  const ToolEntry* tool = setup_.tools.find(state_.tool);
-  if (number == parameter::kTool) return state_.tool;
-  if (number == parameter::kToolDiameter) return tool == nullptr ? 0.0 : tool->diameter / mm;
-  const int offset = number - parameter::kTool - 1;
-  if (offset >= 0 && offset < kAxisWords) {
-    return tool == nullptr ? 0.0 : in_parameter_unit(offset, tool->offset[offset]);
-  }
-  const int axis = number - parameter::kPosition;
-  if (axis >= 0 && state_.compensation.is_on && !is_printing_) {
-    fail(0, fmt::format("#{} with cutter compensation on: it is not known yet; G40 first", number));
-  }
-  if (axis >= 0 && axis < kAxisWords) return state_.position[axis] / unit_of(axis_at(axis));
-  return 0.0;
-}
-
-std::optional<double> Interpreter::Machine::system_name(std::string_view name) const {
-  if (name.size() == 2 && name[0] == '_') {
-    if (const auto axis = axis_of(name[1])) {
-      return state_.position[index_of(*axis)] / unit_of(*axis);
-    }
-  }
-  if (name == "_metric") return state_.unit == mm ? 1.0 : 0.0;
-  if (name == "_imperial") return state_.unit == mm ? 0.0 : 1.0;
-  if (name == "_absolute") return state_.is_incremental ? 0.0 : 1.0;
-  if (name == "_incremental") return state_.is_incremental ? 1.0 : 0.0;
-  if (name == "_current_tool") return state_.tool;
-  if (name == "_selected_tool") return state_.selected_tool;
-  if (name == "_feed") return state_.feed_linear * minute / state_.unit;
-  if (name == "_rpm") return state_.spindle_speed / rpm;
-  if (name == "_value") return flow_.value;
-  if (name == "_value_returned") return flow_.has_value ? 1.0 : 0.0;
-  if (name == "_call_level") return static_cast<double>(flow_.calls.size());
-  return std::nullopt;
 }
 
 // ------------------------------------------------------------------------------------- public API

@@ -2,11 +2,11 @@
 ///
 /// Meaning and order of execution are those of LinuxCNC 2.9: within a block, whatever the order of
 /// its words, (1) message, (2) G93 G94 G95, (3) F, in the unit in force before the block, (4) S,
-/// (5) T, (6) M6, (7) M3 M4 M5, (8) M7 M8 M9, (9) M48 M49, (10) G4, (11) plane, (12) unit,
-/// (13) cutter compensation, (14) tool length and tool-centre-point control, (15) work system,
-/// (16) tilted work plane, (17) path control, (18) distance modes, (19) G10 G28 G30 G52 G53.1 G92,
-/// (20) motion, (21) M0 M1 M2 M30. Parameters set in a block take effect after all its words are
-/// read. A block with an error changes nothing.
+/// (5) T, (6) M6, (7) M3 M4 M5, M70 ... M73, (8) M7 M8 M9, (9) M48 ... M53, (10) G4, (11) plane,
+/// (12) unit, (13) cutter compensation, (14) tool length and tool-centre-point control, (15) work
+/// system, (16) tilted work plane, (17) path control, (18) distance modes, G98 G99, (19) G10 G28
+/// G30 G52 G53.1 G92, (20) motion, (21) M0 M1 M2 M30 M60 M99. Parameters set in a block take effect after
+/// all its words are read. A block with an error changes nothing.
 ///
 /// Additions to LinuxCNC, in the manner of Fanuc's 30i series:
 ///   G43.4 H    tool-centre-point control: X Y Z are the tip in the workpiece, which turns with the
@@ -30,10 +30,12 @@
 ///
 /// Different from LinuxCNC on purpose: a change of unit under cutter compensation leaves feeds and
 /// the test against gouging as they are (there, what waits for the next move is scaled wrongly); M6
-/// leaves the position as it is; M48 M49 do nothing, since no operator turns the override; Q of G64
+/// leaves the position as it is; M48 ... M53 only set parameters like
+/// #<_feed_override>, since no operator turns the override; Q of G64
 /// is accepted and unused (it allows, and does not ask for, the merging of short lines); words in
 /// the block of M98 other than P and L are warned of; M99 behind other words is refused in a
-/// subprogram before the motion in its block, not after.
+/// subprogram before the motion in its block, not after; a dwell is not negative; a block makes at
+/// most 100000 moves (cycles with tiny pecks).
 ///
 /// O-words: subroutines, loops and conditions as LinuxCNC has them, its oddities included (the
 /// notes at FlowState in interpreter_machine.h); where a program is skipped, only comments, labels
@@ -57,10 +59,8 @@ namespace servomill::controllers {
 
 /// A line of a program that was run: also a blank one, and one that O-words skip.
 struct ExecutedBlock {
-  std::string_view text;                                // as it stands in the file, without its end
-  const Block* block = nullptr;                         // nullptr: blank, or skipped
-  std::span<const double> words;                        // values of block->words
-  std::span<const std::pair<int, double>> assignments;  // of block->assignments; 0: a named one
+  std::string_view text;         // as it stands in the file, without its end
+  const Block* block = nullptr;  // with its pieces and values; nullptr: blank, or skipped
   std::span<const Move> moves;
   const std::string* file = nullptr;
   int line = 0;

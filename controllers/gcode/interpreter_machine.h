@@ -20,6 +20,7 @@
 #include "controllers/gcode/parser.h"
 #include "controllers/gcode/program_text.h"
 #include "controllers/gcode/request.h"
+#include "controllers/gcode/saved_state.h"
 
 namespace servomill::controllers {
 
@@ -77,10 +78,12 @@ class Interpreter::Machine {
  public:
   Machine(ProgramText text, ProgramSetup setup)
       : setup_(std::move(setup)),
+        tools_at_start_(setup_.tools),
         parameters_({[this](int number) { return system_number(number); },
                      [this](std::string_view name) { return system_name(name); }}),
         parser_(setup_.block_delete) {
     texts_.push_back({std::move(text), {}});
+    load_stored_parameters();
     for (const auto& [name, value] : setup_.parameters) set_initial(name, value);
     for (int system = 1; system <= kWorkSystems; ++system) store_setup_offset(system);
     if (setup_.work_system < 1 || setup_.work_system > kWorkSystems) {
@@ -89,6 +92,7 @@ class Interpreter::Machine {
     }
     state_.tool = setup_.tool;
     load_work_system(setup_.work_system);
+    load_stored_shift();
     state_.position = state_.from_account(setup_.start);
     parameters_.commit();
   }
@@ -122,6 +126,8 @@ class Interpreter::Machine {
   // ---- setup
   void set_initial(const std::string& name, double value);
   void store_setup_offset(int system);
+  void load_stored_parameters();
+  void load_stored_shift();
 
   // ---- reading
   bool read_block();
@@ -212,7 +218,8 @@ class Interpreter::Machine {
   void change_tool();
   void spindle();
   void coolant();
-  void override_switches() {}
+  void override_switches();
+  bool is_switch_on() const;
   void dwell();
   void plane();
   void units();
@@ -227,6 +234,29 @@ class Interpreter::Machine {
   void non_modal();
   void motion();
   void stop();
+
+  // what is saved and restored, one level for each call of a subroutine
+  void saved_modes();  // M70 M71 M72 M73
+  SavedModes save_modal_state() const;
+  /// Whether anything had to be done.
+  bool restore_modal_state(const SavedModes& saved);
+  static bool needs_m_codes(const SavedModes& saved, const SavedModes& now);
+  void restore_m_codes(const SavedModes& saved, const SavedModes& now);
+  bool restore_g_codes(const SavedModes& saved, const SavedModes& now);
+  SavedLevel& saved_level();
+  void restore_saved_level(int column);
+  // behind the return of a subroutine, when the calls are those of the caller
+  void restore_on_return();
+  double feed_in_force() const;  // as an F word
+  void set_feed_mode(FeedMode mode);
+  void set_feed(double F);
+
+  // the tool table while the program runs
+  void reload_tools();   // G10 L0
+  void set_tool(int L);  // G10 L1 L10 L11
+  AxisWords position_for_tool(int system) const;
+  AxisWords offset_from_position(const AxisWords& old, int L) const;
+  double pocket_of(int number) const;
 
   void set_offsets();                     // G10
   void set_work_offset(int system);       // G10 L2
@@ -285,6 +315,9 @@ class Interpreter::Machine {
   void check_cycle() const;
   void check_cycle_spindle() const;
   double cycle_word(char letter, double kept, bool goes_on) const;
+  int cycle_column(char letter) const {
+    return request_.has(letter) ? request_.word(letter).column : request_.motion.column;
+  }
   CycleHole cycle_hole(bool goes_on);
   double cycle_offsets(const CycleHole& hole, bool goes_on);
   int cycle_repeats(const CycleHole& hole) const;
@@ -313,6 +346,7 @@ class Interpreter::Machine {
   std::deque<Text> texts_;  // the program and the files of its subroutines
   std::size_t text_ = 0;    // the one that is read
   ProgramSetup setup_;
+  ToolTable tools_at_start_;  // G10 changes those of `setup_`
   Parameters parameters_;
   Parser parser_;
   std::string_view line_;  // as it was read last
@@ -322,6 +356,7 @@ class Interpreter::Machine {
   Request request_;
   ModalState state_;
   ModalState before_;  // the block
+  std::vector<SavedLevel> saved_;  // by level of calls
   bool ended_ = false;
   std::vector<Move> out_;
   std::size_t given_ = 0;

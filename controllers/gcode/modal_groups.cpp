@@ -24,7 +24,7 @@ constexpr auto kGCodes = std::to_array<Code>({
     {53, g_non_modal, false, ""},
     {70, g_non_modal, false, ""},
     {80, g_non_modal, false, ""},
-    {100, g_non_modal, true, "LPR", true},
+    {100, g_non_modal, true, "IJLPQR", true},
     {170, g_plane, true, ""},
     {171, g_plane, true, ""},
     {180, g_plane, true, ""},
@@ -73,7 +73,11 @@ constexpr auto kGCodes = std::to_array<Code>({
     {690, g_work_plane, true, ""},
     {700, g_non_modal, false, ""},
     {710, g_non_modal, false, ""},
+    {711, g_non_modal, false, ""},
+    {712, g_non_modal, false, ""},
     {720, g_non_modal, false, ""},
+    {721, g_non_modal, false, ""},
+    {722, g_non_modal, false, ""},
     {730, g_motion, true, "LQR", true},
     {740, g_motion, true, "PR", true},
     {760, g_motion, false, ""},
@@ -119,11 +123,11 @@ constexpr auto kMCodes = std::to_array<Code>({
     {300, m_stop, true, ""},
     {480, m_override, true, ""},
     {490, m_override, true, ""},
-    {500, m_override, false, ""},
-    {510, m_override, false, ""},
-    {520, m_override, false, ""},
-    {530, m_override, false, ""},
-    {600, m_stop, false, ""},
+    {500, m_override, true, "P"},
+    {510, m_override, true, "P"},
+    {520, m_override, true, "P"},
+    {530, m_override, true, "P"},
+    {600, m_stop, true, ""},
     {610, m_tool, false, ""},
     {620, m_input_output, false, ""},
     {630, m_input_output, false, ""},
@@ -132,12 +136,36 @@ constexpr auto kMCodes = std::to_array<Code>({
     {660, m_input_output, false, ""},
     {670, m_input_output, false, ""},
     {680, m_input_output, false, ""},
-    {700, m_input_output, false, ""},
-    {710, m_input_output, false, ""},
-    {720, m_input_output, false, ""},
-    {730, m_input_output, false, ""},
+    {700, m_spindle, true, ""},
+    {710, m_spindle, true, ""},
+    {720, m_spindle, true, ""},
+    {730, m_spindle, true, ""},
     {980, m_input_output, false, ""},
     {990, m_stop, true, ""},
+});
+
+// Why a code that LinuxCNC knows is refused, from a code to a code.
+struct Refusal {
+  int first, last;  // tenths
+  std::string_view reason;
+};
+
+constexpr auto kGRefusals = std::to_array<Refusal>({
+    {50, 53, "splines are not interpolated here; post them as short lines or arcs"},
+    {70, 80, "diameter and radius mode belong to turning, and the machines here mill"},
+    {330, 331, "the axes cannot follow the angle of a spindle, which is not simulated"},
+    {382, 385, "what a probe touches is not simulated"},
+    {700, 722, "turning cycles belong to lathes, and the machines here mill"},
+    {760, 760, "threading belongs to lathes, and the machines here mill"},
+    {960, 960, "constant surface speed belongs to turning; give the speed with G97 S"},
+});
+
+constexpr auto kMRefusals = std::to_array<Refusal>({
+    {190, 190, "the angle of the spindle is not simulated, so it cannot be oriented"},
+    {610, 610, "renames the tool in the spindle by hand; use T and M6"},
+    {620, 650, "switches outputs of the control, and none are simulated"},
+    {660, 660, "waits for an input of the control, and none are simulated"},
+    {670, 680, "sets analog outputs of the control, and none are simulated"},
 });
 
 constexpr bool by_tenths(const Code& a, const Code& b) { return a.tenths < b.tenths; }
@@ -174,6 +202,15 @@ const Code* find_code(char letter, int tenths) {
   const std::size_t place = letter == 'G' ? kGIndex[i] : kMIndex[i];
   if (place == 0) return nullptr;
   return letter == 'G' ? &kGCodes[place - 1] : &kMCodes[place - 1];
+}
+
+std::string_view refusal(char letter, int tenths) {
+  const std::span<const Refusal> refusals =
+      letter == 'G' ? std::span<const Refusal>(kGRefusals) : std::span<const Refusal>(kMRefusals);
+  for (const Refusal& one : refusals) {
+    if (tenths >= one.first && tenths <= one.last) return one.reason;
+  }
+  return "not supported yet";
 }
 
 std::string code_name(char letter, int tenths) {

@@ -48,6 +48,9 @@ std::span<const Code> m_codes();
 /// nullptr if there is no such code.
 const Code* find_code(char letter, int tenths);
 
+/// Why a code that is known but not supported is refused.
+std::string_view refusal(char letter, int tenths);
+
 /// "G59.1"
 std::string code_name(char letter, int tenths);
 

@@ -85,6 +85,8 @@ struct ModalState {
   int spindle_direction = 0;
   double spindle_speed = 0.0;  // rad/s
   int coolant = 0;
+  bool feed_override = true, speed_override = true;  // M48 ... M51: whether the operator may
+  bool adaptive_feed = false, feed_hold = true;      // M52 M53
 
   double s = 0.0;  // m, length of the XYZ path so far
 

@@ -17,11 +17,12 @@ namespace servomill::controllers {
 
 /// What the machine knows before the first block.
 struct ProgramSetup {
+  std::map<int, double> stored;  // of the parameter file, in mm and degrees
   /// "#101", "#<name>" or "#<_name>", in program terms (whatever unit the program gives them).
   std::map<std::string, double> parameters;
   std::array<AxisWords, 9> work_offset = zero_offsets();  // G54 ... G59.3; m, rad
   std::array<double, 9> work_rotation{};                  // about Z, rad
-  int work_system = 1;                                    // in force at the start; 1 is G54
+  int work_system = 1;  // in force at the start; 1 is G54. `stored` does not set it
   ToolTable tools;
   int tool = 0;                         // in the spindle at the start; 0: none
   AxisWords start = AxisWords::Zero();  // machine coordinates before the first block; m, rad

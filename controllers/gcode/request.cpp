@@ -42,7 +42,8 @@ const Code& look_up(const Context& context, char letter, double value, int colum
   if (code == nullptr)
     context.fail(column, fmt::format("unknown {} code {}{}", letter, letter, value));
   if (!code->supported) {
-    context.fail(column, fmt::format("{} is not supported yet", name_of(letter, *code)));
+    context.fail(column,
+                 fmt::format("{}: {}", name_of(letter, *code), refusal(letter, code->tenths)));
   }
   return *code;
 }
@@ -98,7 +99,9 @@ Request::Chosen choose_motion(const Context& context, const Request& request, in
   const Request::Chosen programmed = request.of(Group::g_motion);
   const Request::Chosen taker = axis_taker(request);
   const bool cancel = programmed.code != nullptr && programmed.code->tenths == kNoMotion;
-  if (taker.code != nullptr) {
+  // words beside G43.1 and a motion are offsets and coordinates at once, as in LinuxCNC
+  const bool shares = taker.code != nullptr && taker.code->group == Group::g_tool_length;
+  if (taker.code != nullptr && !(shares && programmed.code != nullptr && !cancel)) {
     if (programmed.code != nullptr && !cancel) {
       context.fail(programmed.column,
                    fmt::format("{} and {} in one block: both use the axis words",
@@ -129,6 +132,10 @@ std::string users_of(char letter) {
   for (const Code& code : g_codes()) {
     if (!code.supported || code.uses.find(letter) == std::string_view::npos) continue;
     names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of('G', code));
+  }
+  for (const Code& code : m_codes()) {
+    if (!code.supported || code.uses.find(letter) == std::string_view::npos) continue;
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of('M', code));
   }
   return names;
 }

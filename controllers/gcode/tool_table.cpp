@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
@@ -14,82 +15,117 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-struct Reader {
-  std::string_view line;
-  const std::string& file;
-  int number;
-  std::size_t at = 0;
+constexpr std::string_view kWords = "TPXYZABCDIJQUVW";
+constexpr int kMostOrientation = 9;
 
-  [[noreturn]] void fail(std::size_t where, std::string message) const {
-    throw InputError({file, number, static_cast<int>(where) + 1}, std::move(message));
+// Reads one line, and goes on behind a fault with the next word.
+class ToolLine {
+ public:
+  ToolLine(std::string_view line, Place place, std::vector<Fault>& faults)
+      : line_(line), place_(std::move(place)), faults_(faults) {}
+
+  std::optional<ToolEntry> read() {
+    const std::size_t faults_before = faults_.size();
+    ToolEntry tool;
+    for (skip_blanks(); at_ < line_.size(); skip_blanks()) read_word(tool);
+    const bool has_number = seen_.find('T') != std::string::npos;
+    if (!has_number) fault(0, "tool without a number (T word)");
+    if (!has_number || faults_.size() > faults_before) return std::nullopt;
+    return tool;
   }
+
+  void fault(std::size_t at, std::string message) {
+    place_.column = static_cast<int>(at) + 1;
+    faults_.push_back({place_, std::move(message)});
+  }
+
+ private:
   void skip_blanks() {
-    while (at < line.size() && is_blank(line[at])) ++at;
+    while (at_ < line_.size() && is_blank(line_[at_])) ++at_;
   }
-  double value(std::size_t start) {
-    skip_blanks();
-    if (at < line.size() && line[at] == '+') ++at;
-    double x = 0.0;
-    const auto [end, status] =
-        std::from_chars(line.data() + at, line.data() + line.size(), x, std::chars_format::fixed);
-    if (status != std::errc() || !std::isfinite(x)) {
-      fail(start, fmt::format("{} must be followed by a number", line[start]));
+
+  void skip_word() {
+    while (at_ < line_.size() && !is_blank(line_[at_])) ++at_;
+  }
+
+  void read_word(ToolEntry& tool) {
+    const std::size_t start = at_++;
+    const char c = line_[start];
+    const char letter = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    if (kWords.find(letter) == std::string_view::npos) {
+      fault(start,
+            fmt::format("unknown word '{}'; a tool has T P X Y Z A B C D I J Q", printable(c)));
+      return skip_word();
     }
-    at = static_cast<std::size_t>(end - line.data());
+    if (seen_.find(letter) != std::string::npos) {
+      fault(start, fmt::format("second {} word of a tool", letter));
+    }
+    seen_ += letter;
+    const std::optional<double> value = number();
+    if (!value) {
+      fault(start, fmt::format("{} must be followed by a number", letter));
+      return skip_word();
+    }
+    store(tool, letter, *value, start);
+  }
+
+  static std::string printable(char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte > 0x20 && byte < 0x7f ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
+  }
+
+  std::optional<double> number() {
+    skip_blanks();
+    if (at_ < line_.size() && line_[at_] == '+') ++at_;
+    double x = 0.0;
+    const auto [end, status] = std::from_chars(line_.data() + at_, line_.data() + line_.size(), x);
+    if (status != std::errc() || !std::isfinite(x)) return std::nullopt;
+    at_ = static_cast<std::size_t>(end - line_.data());
     return x;
   }
-  int integer(std::size_t start) {
-    const double x = value(start);
-    if (x != std::floor(x) || x < 0.0 || x > 1e6) {
-      fail(start, fmt::format("{}{}; must be an integer >= 0", line[start], x));
+
+  int integer(char letter, double x, int most, std::size_t start) {
+    if (x == std::floor(x) && x >= 0.0 && x <= most) return static_cast<int>(x);
+    fault(start, fmt::format("{}{}; must be an integer in 0 ... {}", letter, x, most));
+    return 0;
+  }
+
+  void store(ToolEntry& tool, char letter, double x, std::size_t start) {
+    constexpr int kMostNumber = 1000000;
+    if (const auto axis = axis_of(letter)) {
+      tool.offset[index_of(*axis)] = x * (is_linear(*axis) ? mm : deg);
+      return;
     }
-    return static_cast<int>(x);
+    switch (letter) {
+      case 'T':
+        tool.number = integer(letter, x, kMostNumber, start);
+        return;
+      case 'P':
+        tool.pocket = integer(letter, x, kMostNumber, start);
+        return;
+      case 'Q':
+        tool.orientation = integer(letter, x, kMostOrientation, start);
+        return;
+      case 'D':
+        tool.diameter = x * mm;
+        return;
+      case 'I':
+        tool.front_angle = x * deg;
+        return;
+      case 'J':
+        tool.back_angle = x * deg;
+        return;
+      default:  // U V W
+        if (x != 0.0) fault(start, fmt::format("{}{}; must be 0: no axis {}", letter, x, letter));
+    }
   }
+
+  std::string_view line_;
+  Place place_;
+  std::vector<Fault>& faults_;
+  std::size_t at_ = 0;
+  std::string seen_;
 };
-
-void read_word(Reader& reader, ToolEntry& tool, bool& has_number) {
-  const std::size_t start = reader.at++;
-  const char c = reader.line[start];
-  const char letter = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  if (const auto axis = axis_of(letter)) {
-    tool.offset[index_of(*axis)] = reader.value(start) * (is_linear(*axis) ? mm : deg);
-    return;
-  }
-  switch (letter) {
-    case 'T':
-      tool.number = reader.integer(start);
-      has_number = true;
-      return;
-    case 'P':
-      tool.pocket = reader.integer(start);
-      return;
-    case 'D':
-      tool.diameter = reader.value(start) * mm;
-      return;
-    case 'I':
-    case 'J':
-      reader.value(start);
-      return;
-    case 'Q':
-      tool.orientation = reader.integer(start);
-      return;
-    default:
-      reader.fail(start, fmt::format("unknown word '{}'; a tool has T P X Y Z A B C D I J Q", c));
-  }
-}
-
-void read_tool(Reader reader, ToolTable& table) {
-  ToolEntry tool;
-  bool has_number = false;
-  for (reader.skip_blanks(); reader.at < reader.line.size(); reader.skip_blanks()) {
-    read_word(reader, tool, has_number);
-  }
-  if (!has_number) reader.fail(0, "tool without a number (T word)");
-  if (table.find(tool.number) != nullptr) {
-    reader.fail(0, fmt::format("second tool with number T{}", tool.number));
-  }
-  table.add(tool);
-}
 
 }  // namespace
 
@@ -104,10 +140,13 @@ ToolTable ToolTable::parse(std::string_view text, const std::string& file) {
     ++number;
     line = line.substr(0, line.find(';'));
     if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-    try {
-      read_tool({line, file, number}, table);
-    } catch (const InputError& error) {
-      faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    ToolLine tool_line(line, {file, number, 0}, faults);
+    const std::optional<ToolEntry> tool = tool_line.read();
+    if (!tool) continue;
+    if (table.find(tool->number) != nullptr) {
+      tool_line.fault(0, fmt::format("second tool with number T{}", tool->number));
+    } else {
+      table.add(*tool);
     }
   }
   if (!faults.empty()) throw InputError(std::move(faults));

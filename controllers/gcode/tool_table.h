@@ -14,18 +14,25 @@ struct ToolEntry {
   int pocket = 0;
   AxisWords offset = AxisWords::Zero();  // m, rad; length along Z is offset[2]
   double diameter = 0.0;                 // m
-  int orientation = 0;                   // of a turning tool, 1 ... 9; 0: of a mill
+  double front_angle = 0.0;              // rad, like the rest for turning tools only
+  double back_angle = 0.0;               // rad
+  int orientation = 0;                   // of the tip, 0 ... 9
 };
 
 class ToolTable {
  public:
-  /// Reads LinuxCNC's format in mm and degrees: one tool a line, words T P X Y Z A B C D and, for
-  /// turning tools, Q (orientation), I and J (angles, unused here); a ';' starts a comment.
-  /// @throws InputError with every faulty line
+  /// Reads LinuxCNC's format in mm and degrees: one tool a line, words T (number), P (pocket),
+  /// X Y Z A B C (offsets), D (diameter), I J (angles of the edges) and Q (orientation), each at
+  /// most once and in any order; a ';' starts a remark. U V W must be 0, for there are no such
+  /// axes.
+  /// @throws InputError with every fault of every line
   static ToolTable parse(std::string_view text, const std::string& file);
 
   /// @throws InputError (without a place) for a second tool of the same number
   void add(const ToolEntry& tool);
+
+  /// Puts a tool in the place of that of the same number.
+  void replace(const ToolEntry& tool) { tools_[tool.number] = tool; }
 
   /// nullptr if there is no such tool.
   const ToolEntry* find(int number) const;

@@ -20,7 +20,7 @@ enum class MoveKind : std::uint8_t {
   tool,     // M6: `number` is the tool now in the spindle
   spindle,  // M3 M4 M5: `direction`, `value` in rad/s
   coolant,  // M7 M8 M9: `number` bit 0 mist, bit 1 flood
-  stop,     // M0 M1 (number 0 or 1): waits for the operator, does not in a simulation
+  stop,     // M0 M1 M60 (number 0, 1, 60): waits for the operator, does not in a simulation
   end,      // M2 M30
   message,  // (MSG, ...) `text`
 };

@@ -11,6 +11,8 @@ void add_program_options(Options& options) {
   options.add()("tools", text("TABLE"), "tool table in LinuxCNC's format, mm");
   options.add()("parameter", texts("#N=NUMBER"),
                 "sets a parameter before the program runs, such as '#101=1394'");
+  options.add()("parameter-file", text("FILE"),
+                "LinuxCNC's file of numbered parameters (\"var\" file), mm; it is never written");
   options.add()("subs", texts("FOLDER"),
                 "where files of subroutines are, NAME.ngc for O<NAME> CALL; the folder of the "
                 "program comes first");
@@ -30,6 +32,7 @@ sim::ProgramInputs program_inputs(const Options& options) {
   inputs.tool_table = text("tools");
   inputs.parameters = options.list("parameter");
   inputs.machine = text("machine");
+  inputs.parameter_file = text("parameter-file");
   inputs.subroutine_folders = options.list("subs");
   inputs.block_delete = options.has("block-delete");
   if (options.has("max-jumps")) inputs.most_jumps = options.get<long>("max-jumps");
