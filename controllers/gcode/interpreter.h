@@ -5,8 +5,8 @@
 /// (5) T, (6) M6, (7) M3 M4 M5, M70 ... M73, (8) M7 M8 M9, (9) M48 ... M53, (10) G4, (11) plane,
 /// (12) unit, (13) cutter compensation, (14) tool length and tool-centre-point control, (15) work
 /// system, (16) tilted work plane, (17) path control, (18) distance modes, G98 G99, (19) G10 G28
-/// G30 G52 G53.1 G92, (20) motion, (21) M0 M1 M2 M30 M60 M99. Parameters set in a block take effect after
-/// all its words are read. A block with an error changes nothing.
+/// G30 G52 G53.1 G92, (20) motion, (21) M0 M1 M2 M30 M60 M99. Parameters set in a block take effect
+/// after all its words are read. A block with an error changes nothing.
 ///
 /// Additions to LinuxCNC, in the manner of Fanuc's 30i series:
 ///   G43.4 H    tool-centre-point control: X Y Z are the tip in the workpiece, which turns with the

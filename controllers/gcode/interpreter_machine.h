@@ -240,8 +240,7 @@ class Interpreter::Machine {
   SavedModes save_modal_state() const;
   /// Whether anything had to be done.
   bool restore_modal_state(const SavedModes& saved);
-  static bool needs_m_codes(const SavedModes& saved, const SavedModes& now);
-  void restore_m_codes(const SavedModes& saved, const SavedModes& now);
+  bool restore_m_codes(const SavedModes& saved, const SavedModes& now);
   bool restore_g_codes(const SavedModes& saved, const SavedModes& now);
   SavedLevel& saved_level();
   void restore_saved_level(int column);
@@ -355,7 +354,7 @@ class Interpreter::Machine {
   Block block_;
   Request request_;
   ModalState state_;
-  ModalState before_;  // the block
+  ModalState before_;              // the block
   std::vector<SavedLevel> saved_;  // by level of calls
   bool ended_ = false;
   std::vector<Move> out_;

@@ -52,9 +52,8 @@ SavedModes Interpreter::Machine::save_modal_state() const {
   return out;
 }
 
-// LinuxCNC writes blocks with what differs and runs them: G20 or G21, then F and S with the first M
-// code, one block for each further M code, and all G codes in the last. Without an M code F stands
-// in one block with the feed mode, which then cannot drop it.
+// LinuxCNC writes blocks with what differs and runs them: G20 or G21 first, so that F is read in
+// the right unit, and the feed mode before F, which it would drop.
 bool Interpreter::Machine::restore_modal_state(const SavedModes& saved) {
   if (saved.controls_tip != state_.controls_tip()) {
     fail(request().of(Group::m_spindle).column,
@@ -64,54 +63,42 @@ bool Interpreter::Machine::restore_modal_state(const SavedModes& saved) {
   if (new_unit) state_.set_unit(saved.unit);
   const SavedModes now = save_modal_state();
   const bool new_mode = saved.feed_mode != now.feed_mode;
-  const auto restore_words = [&] {
-    if (differ(saved.F, now.F)) set_feed(as_written(saved.F, 1));
-    if (!differ(saved.S, now.S)) return differ(saved.F, now.F);
+  if (new_mode) set_feed_mode(saved.feed_mode);
+  const bool new_feed = differ(saved.F, now.F);
+  if (new_feed) set_feed(as_written(saved.F, 1));
+  const bool new_speed = differ(saved.S, now.S);
+  if (new_speed) {
     state_.spindle_speed = as_written(saved.S, 0) * rpm;
     emit_spindle();
-    return true;
-  };
-  if (needs_m_codes(saved, now)) {
-    restore_words();
-    restore_m_codes(saved, now);
-    if (new_mode) set_feed_mode(saved.feed_mode);
-    restore_g_codes(saved, now);
-    return true;
   }
-  if (new_mode) set_feed_mode(saved.feed_mode);
-  const bool new_words = restore_words();
-  const bool new_codes = restore_g_codes(saved, now);
-  return new_unit || new_mode || new_words || new_codes;
+  const bool new_m_codes = restore_m_codes(saved, now);
+  const bool new_g_codes = restore_g_codes(saved, now);
+  return new_unit || new_mode || new_feed || new_speed || new_m_codes || new_g_codes;
 }
 
-bool Interpreter::Machine::needs_m_codes(const SavedModes& saved, const SavedModes& now) {
+bool Interpreter::Machine::restore_m_codes(const SavedModes& saved, const SavedModes& now) {
   const auto differs = [](int wanted, int present) { return wanted != 0 && wanted != present; };
-  return saved.spindle_direction != now.spindle_direction ||
-         differs(mist_code(saved.coolant), mist_code(now.coolant)) ||
-         differs(flood_code(saved.coolant), flood_code(now.coolant)) ||
-         saved.feed_override != now.feed_override || (saved.adaptive_feed && !now.adaptive_feed) ||
-         (saved.feed_hold && !now.feed_hold);
-}
-
-void Interpreter::Machine::restore_m_codes(const SavedModes& saved, const SavedModes& now) {
-  if (saved.spindle_direction != now.spindle_direction) {
+  const bool new_direction = saved.spindle_direction != now.spindle_direction;
+  if (new_direction) {
     state_.spindle_direction = saved.spindle_direction;
     emit_spindle();
   }
-  const int coolant_before = state_.coolant;
-  if (mist_code(saved.coolant) != mist_code(now.coolant)) {
-    if (mist_code(saved.coolant) == 7) state_.coolant |= kMist;
-    if (mist_code(saved.coolant) == 9) state_.coolant = 0;
-  }
-  if (flood_code(saved.coolant) == 8) state_.coolant |= kFlood;
-  if (state_.coolant != coolant_before) emit(MoveKind::coolant).number = state_.coolant;
+  const bool new_mist = differs(mist_code(saved.coolant), mist_code(now.coolant));
+  if (new_mist) state_.coolant = mist_code(saved.coolant) == 7 ? state_.coolant | kMist : 0;
+  const bool new_flood = differs(flood_code(saved.coolant), flood_code(now.coolant));
+  if (new_flood) state_.coolant |= kFlood;
+  if (new_mist || new_flood) emit(MoveKind::coolant).number = state_.coolant;
   // M48 for a feed override that was on, M51 for one that was off: so LinuxCNC 2.9 does
-  if (saved.feed_override != now.feed_override) {
+  const bool new_override = saved.feed_override != now.feed_override;
+  if (new_override) {
     state_.feed_override = state_.feed_override || saved.feed_override;
     state_.speed_override = true;
   }
+  const bool new_switches =
+      (saved.adaptive_feed && !now.adaptive_feed) || (saved.feed_hold && !now.feed_hold);
   state_.adaptive_feed = state_.adaptive_feed || saved.adaptive_feed;
   state_.feed_hold = state_.feed_hold || saved.feed_hold;
+  return new_direction || new_mist || new_flood || new_override || new_switches;
 }
 
 bool Interpreter::Machine::restore_g_codes(const SavedModes& saved, const SavedModes& now) {

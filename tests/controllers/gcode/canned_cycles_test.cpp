@@ -114,7 +114,7 @@ TEST(CannedCycle, FaultsNameTheWordAndTheRule) {
             "p.nc:4:1: error: G82 needs P; none is kept from a G82 before");
   EXPECT_EQ(fault("G87 X1 Z-1 R1 I1 K0"),
             "p.nc:3:1: error: G87 needs J; none is kept from a G87 before");
-  EXPECT_EQ(fault("G81 X1 Z-1 R-2"), "p.nc:3:1: error: G81: R = -2 is below Z = -1, the bottom");
+  EXPECT_EQ(fault("G81 X1 Z-1 R-2"), "p.nc:3:12: error: G81: R = -2 is below Z = -1, the bottom");
   EXPECT_EQ(fault("G83 X1 Z-1 R1 Q0"), "p.nc:3:15: error: Q0; must be > 0");
   EXPECT_EQ(fault("G73 X1 Z-1 R1 Q-2"), "p.nc:3:15: error: Q-2; must be > 0");
   EXPECT_EQ(fault("G82 X1 Z-1 R1 P-2"), "p.nc:3:15: error: P-2; must be >= 0");
@@ -136,18 +136,18 @@ TEST(CannedCycle, FaultsNameTheWordAndTheRule) {
   EXPECT_EQ(fault("M4 G84 X1 Z-1 R1"),
             "p.nc:3:4: error: G84 with the spindle turning backwards (M4); it needs M3");
   EXPECT_EQ(fault("M3 G74 X1 Z-1 R1"),
-            "p.nc:3:4: error: G74 with the spindle turning (M3); it needs M4");
+            "p.nc:3:4: error: G74 with the spindle turning forwards (M3); it needs M4");
   EXPECT_EQ(fault("G86 X1 Z-1 R1 P1"),
             "p.nc:3:1: error: G86 while the spindle stands still; start it with M3 or M4");
 }
 
 TEST(CannedCycle, OfEndlessPecksIsRefused) {
   EXPECT_EQ(fault_of("F100\nG83 X1 Z-1 R1 Q0.00001"),
-            "p.nc:2:1: error: G83 would make 600006 moves; must be <= 100000");
+            "p.nc:2:15: error: G83 would make 600006 moves; must be <= 100000");
   EXPECT_EQ(fault_of("F100\nG81 X1 Z-1 R1 L10000"),
-            "p.nc:2:1: error: G81 would make 150000 moves; must be <= 100000");
+            "p.nc:2:15: error: G81 would make 150000 moves; must be <= 100000");
   EXPECT_EQ(fault_of("F100\nG73 X1 Z-1000 R1 Q0.000000000000000001").substr(0, 21),
-            "p.nc:2:1: error: G73 ");
+            "p.nc:2:18: error: G73");
 }
 
 TEST(CannedCycle, WithAFaultChangesNothing) {

@@ -78,7 +78,7 @@ TEST(ErrorGallery, WordsAndCodes) {
       {"G0 X1 H3", "1:7: error: H word without a code that uses it (G43, G43.2, G43.4, G43.5)"},
       {"G0 X1 P3",
        "1:7: error: P word without a code that uses it (G2, G3, G4, G10, G64, G74, "
-       "G82, G84, G86, G88, G89)"},
+       "G82, G84, G86, G88, G89, M50, M51, M52, M53)"},
       {"G40 D3", "1:5: error: D word without a code that uses it (G41, G41.1, G42, G42.1)"},
       {"M0 M3 M7 M48 M6", "1:14: error: more than 4 M codes in one block"},
   });
@@ -124,9 +124,8 @@ TEST(ErrorGallery, ToolsAndOffsets) {
       {"T1.5", "1:1: error: T1.5; must be an integer"},
       {"T-1", "1:1: error: T-1; must be >= 0"},
       {"G43 H98", "1:5: error: H98: no such tool in the tool table of 2 tools"},
-      {"G10 P1 X1", "1:1: error: G10 needs an L word (L2 or L20)"},
-      {"G10 L1 P1 X1", "1:5: error: G10 L1 (tool table) is not supported yet"},
-      {"G10 L3 P1 X1", "1:5: error: G10 L3; must be L2 or L20"},
+      {"G10 P1 X1", "1:1: error: G10 needs an L word (L0 L1 L2 L10 L11 L20)"},
+      {"G10 L3 P1 X1", "1:5: error: G10 L3; must be L0, L1, L2, L10, L11 or L20"},
       {"G10 L2 X1", "1:1: error: G10 L2 needs a P word (0 ... 9)"},
       {"G10 L2 P10 X1", "1:8: error: G10 L2 P10; must be in 0 ... 9"},
       {"G10 L20 P1 X1 R5", "1:15: error: R word with G10 L20; only G10 L2 sets a rotation"},
@@ -179,8 +178,8 @@ TEST(ErrorGallery, ToolTable) {
   EXPECT_EQ(fault("P1 Z5"), "t.tbl:1:1: error: tool without a number (T word)");
   EXPECT_EQ(fault("T1 Zx\nT2 W5"),
             "t.tbl:1:4: error: Z must be followed by a number\n"
-            "t.tbl:2:4: error: unknown word 'W'; a tool has T P X Y Z A B C D I J Q");
-  EXPECT_EQ(fault("T1.5"), "t.tbl:1:1: error: T1.5; must be an integer >= 0");
+            "t.tbl:2:4: error: W5; must be 0: no axis W");
+  EXPECT_EQ(fault("T1.5"), "t.tbl:1:1: error: T1.5; must be an integer in 0 ... 1000000");
 }
 
 TEST(CheckProgram, GivesEverySyntaxFaultAndTheFirstOther) {

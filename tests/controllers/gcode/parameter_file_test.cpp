@@ -53,11 +53,12 @@ TEST(ParameterFile, IsWhatAProgramBeginsWith) {
       "100 7\n5161 40\n5181 50\n5210 1\n5211 5\n5220 2\n5241 10\n5250 90\n5400 99\n", "p.var");
   setup.work_system = work_system_of(setup.stored);
   // machine = turned by 90 degrees (X5 + 7, 0) + 10
-  const Move move = last_move("G0 X#100", setup);
+  const Move move = last_move("G0 X#100 Y0", setup);
   EXPECT_EQ(move.work_offset, 2);
   expect_axes(move.end_machine, axes(10, 12, 0));
   expect_axes(last_move("G28", setup).end_machine, axes(40, 0, 0));
-  expect_axes(last_move("G0 X[#5400]", setup).end, axes(0, 0, 0));  // no tool: set by the machine
+  expect_axes(last_move("G0 X[#5400] Y0", setup).end,
+              axes(0, 0, 0));  // no tool: set by the machine
 }
 
 TEST(ParameterFile, GivesWayToWhatIsSetForTheRun) {
