@@ -153,7 +153,7 @@ void add(MemoKey& key, const plant::ErrorModel& errors) {
 
 void add(MemoKey& key, const controllers::ProgramSetup& setup) {
   const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, start,
-               block_delete, subroutine_file, most_jumps, machine] = setup;  // files do not change
+               block_delete, subroutine_file, most_jumps, machine] = setup;
   key.add(stored.size());
   for (const auto& [number, value] : stored) {
     key.add(number);
@@ -171,7 +171,7 @@ void add(MemoKey& key, const controllers::ProgramSetup& setup) {
   key.add(tool);
   key.add(start);
   key.add(block_delete);
-  key.add(most_jumps);
+  key.add(most_jumps);  // texts of subroutines are of the program
   key.add(machine != nullptr);
   if (machine == nullptr) return;
   add(key, machine->chain());

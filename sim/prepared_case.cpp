@@ -34,7 +34,12 @@ controllers::ProgramSetup setup_of(const Scenario& scenario, const CaseSpec& spe
   setup.tools = scenario.program.tools;
   setup.start = machine_start(scenario, spec);
   setup.machine = tool_centre_point(scenario.machine_of(spec));
-  setup.subroutine_file = subroutine_files(scenario.program.file, {});
+  setup.subroutine_file = [texts = scenario.program.subroutines, file = scenario.program.file](
+                              const std::string& name) -> std::optional<controllers::ProgramText> {
+    const auto found = texts.find(name);
+    if (found == texts.end()) return std::nullopt;
+    return controllers::ProgramText::of_text(found->second, subroutine_file(file, name));
+  };
   return setup;
 }
 
@@ -286,6 +291,10 @@ class Preparation {
     const controllers::ProgramSetup setup = setup_of(scenario_, spec_);
     MemoKey key;
     key.add(scenario_.program.text);
+    for (const auto& [name, text] : scenario_.program.subroutines) {
+      key.add(name);
+      key.add(text);
+    }
     add(key, setup);
     return cache_.programs.get(key, [&] {
       std::vector<Fault> warnings;

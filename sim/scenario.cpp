@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <set>
 
+#include "controllers/gcode/called_subroutines.h"
 #include "plant/vocabulary/units.h"
 #include "sim/ball_quantities.h"
 #include "sim/comparison.h"
@@ -16,6 +18,7 @@
 #include "sim/scenario_document.h"
 #include "sim/scenario_source.h"
 #include "sim/schedule.h"
+#include "sim/subroutine_files.h"
 #include "sim/sweep/read_design.h"
 
 namespace servomill::sim {
@@ -88,14 +91,25 @@ class ScenarioReader {
  private:
   // { program = { text = "..." } }: a resolved document needs no other file.
   Value with_program_text() const {
-    Value text;
-    text.type = Value::Type::text;
-    text.key = "text";
-    text.text = out_.program.text;
-    text.written = quoted_text(text.text);
+    const auto text_value = [](const std::string& key, const std::string& text) {
+      Value value;
+      value.type = Value::Type::text;
+      value.key = key;
+      value.text = text;
+      value.written = quoted_text(text);
+      return value;
+    };
     Value program;
     program.key = "program";
-    program.children.push_back(std::move(text));
+    program.children.push_back(text_value("text", out_.program.text));
+    if (!out_.program.subroutines.empty()) {
+      Value subroutines;
+      subroutines.key = "subroutines";
+      for (const auto& [name, text] : out_.program.subroutines) {
+        subroutines.children.push_back(text_value(name, text));
+      }
+      program.children.push_back(std::move(subroutines));
+    }
     Value root;
     root.children.push_back(std::move(program));
     return root;
@@ -106,15 +120,20 @@ class ScenarioReader {
     program.file = table.text("file");
     if (table.has("text")) {
       program.text = table.text("text");
+      if (table.has("subroutines")) {
+        Reader texts = table.table("subroutines");
+        for (const std::string& name : texts.keys()) program.subroutines[name] = texts.text(name);
+      }
     } else if (!program.file.empty()) {
       const Place at = table.place("file");
       program.file = beside(at, program.file);
       program.text = *files_.text(program.file, at, "program");
+      read_subroutines(program, program.text, at);
     }
     if (table.is("file", Value::Type::text) && table.text("file").empty()) {
       table.fault("file", "must name the program");
     }
-    refuse_unwritable(program);
+    refuse_unwritable(program.file, program.text);
     program.feed_override = table.real_or("feed_override", 1.0, kNumber, {above(0.0)});
     if (table.has("parameters")) {
       Reader parameters = table.table("parameters");
@@ -136,6 +155,18 @@ class ScenarioReader {
     for (Reader& tool : table.tables_or_none("tool")) read_tool(tool);
   }
 
+  // The files of subroutines that the program may call, and those that they may call.
+  void read_subroutines(ProgramSpec& program, const std::string& text, const Place& at) {
+    for (const std::string& name :
+         controllers::called_subroutines(controllers::ProgramText::of_text(text, program.file))) {
+      const std::string file = subroutine_file(program.file, name);
+      if (program.subroutines.contains(name) || !std::filesystem::is_regular_file(file)) continue;
+      program.subroutines[name] = *files_.text(file, at, "subroutine");
+      refuse_unwritable(file, program.subroutines[name]);
+      read_subroutines(program, program.subroutines[name], at);
+    }
+  }
+
   // "#101" or "#<name>"
   static bool is_parameter_name(std::string_view key) {
     if (key.starts_with("#<")) return key.size() > 3 && key.ends_with('>');
@@ -144,17 +175,17 @@ class ScenarioReader {
   }
 
   // A program becomes a text of the result file, which is UTF-8 without NUL.
-  static void refuse_unwritable(const ProgramSpec& program) {
+  static void refuse_unwritable(const std::string& file, std::string_view text) {
     int line = 1, column = 1;
-    for (std::size_t i = 0; i < program.text.size();) {
-      const std::size_t length = utf8_length(std::string_view(program.text).substr(i));
-      const auto byte = static_cast<unsigned char>(program.text[i]);
+    for (std::size_t i = 0; i < text.size();) {
+      const std::size_t length = utf8_length(text.substr(i));
+      const auto byte = static_cast<unsigned char>(text[i]);
       if (length == 0) {
         throw InputError(
-            {program.file, line, column},
+            {file, line, column},
             fmt::format("byte 0x{:02x} is not UTF-8; save the program as UTF-8", byte));
       }
-      if (byte == 0) throw InputError({program.file, line, column}, "byte 0x00 in a program");
+      if (byte == 0) throw InputError({file, line, column}, "byte 0x00 in a program");
       i += length;
       column = byte == '\n' ? 1 : column + 1;
       if (byte == '\n') ++line;

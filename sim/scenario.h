@@ -22,7 +22,8 @@ namespace servomill::sim {
 struct ProgramSpec {
   std::string file;  // as messages name it
   std::string text;
-  std::map<std::string, double> parameters;  // "#101" -> value
+  std::map<std::string, std::string> subroutines;  // texts of NAME.ngc beside the program, by NAME
+  std::map<std::string, double> parameters;        // "#101" -> value
   double feed_override = 1.0;
   AxisWords work_offset = AxisWords::Zero();  // G54, m, rad, machine coordinates
   AxisWords start = AxisWords::Zero();        // m, rad, in work coordinates

@@ -5,6 +5,10 @@
 
 namespace servomill::sim {
 
+std::string subroutine_file(const std::string& program_file, const std::string& name) {
+  return (std::filesystem::path(program_file).parent_path() / (name + ".ngc")).string();
+}
+
 std::function<std::optional<controllers::ProgramText>(const std::string& name)> subroutine_files(
     const std::string& program_file, const std::vector<std::string>& folders) {
   std::vector<std::filesystem::path> places = {std::filesystem::path(program_file).parent_path()};

@@ -311,7 +311,7 @@ void Interpreter::Machine::find_subroutine(const std::string& name) {
   skip_to(name);
   flow_.skips_to_sub = true;
   if (!found) return;
-  texts_.push_back({std::move(*found), {}});
+  texts_.push_back({std::move(*found), {}, 0});
   text_ = texts_.size() - 1;
 }
 

@@ -230,16 +230,24 @@ std::optional<ExecutedBlock> Interpreter::Machine::next_block() {
   clear_output();
   if (ended_) return std::nullopt;
   parser_.keep_pieces(true);
+  request_.clear();
+  new_numbers_.clear();
   const std::size_t read_from = text_;
-  const int depth = static_cast<int>(flow_.calls.size());
-  read_block();
   ExecutedBlock out;
+  out.call_depth = static_cast<int>(flow_.calls.size());
+  read_block();
   out.text = line_;
-  out.block = block_.pieces.empty() ? nullptr : &block_;
   out.moves = out_;
   out.file = &texts_[read_from].lines.file();
   out.line = here_.mark.line + 1;
-  out.call_depth = depth;
+  out.is_repeated = out.line <= texts_[read_from].last_line;
+  texts_[read_from].last_line = std::max(texts_[read_from].last_line, out.line);
+  out.state = &state_;
+  if (block_.pieces.empty()) return out;
+  out.block = &block_;
+  const bool has_words = block_.o_word.flow == Flow::none && !block_.percent && !block_.deleted;
+  if (has_words) out.request = &request_;
+  out.assigned = new_numbers_;
   return out;
 }
 

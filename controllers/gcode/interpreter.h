@@ -57,14 +57,22 @@
 
 namespace servomill::controllers {
 
+struct ModalState;
+struct Request;
+
 /// A line of a program that was run: also a blank one, and one that O-words skip.
 struct ExecutedBlock {
   std::string_view text;         // as it stands in the file, without its end
   const Block* block = nullptr;  // with its pieces and values; nullptr: blank, or skipped
-  std::span<const Move> moves;
+  std::span<const Move> moves;   // may hold moves of earlier lines, which waited for this one
   const std::string* file = nullptr;
   int line = 0;
-  int call_depth = 0;  // 0: outside of subroutines
+  int call_depth = 0;                 // 0: outside of subroutines
+  bool is_repeated = false;           // the program has turned back over this line
+  const Request* request = nullptr;   // with numbers in place of expressions; nullptr: no words
+  const ModalState* state = nullptr;  // behind the block
+  /// Number (0 for a named one) and new value of the parameter of each assignment.
+  std::span<const std::pair<int, double>> assigned = {};
 };
 
 /// Reads a program block by block, so that a long one is never held: neither its text nor its

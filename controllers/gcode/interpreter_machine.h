@@ -82,7 +82,7 @@ class Interpreter::Machine {
         parameters_({[this](int number) { return system_number(number); },
                      [this](std::string_view name) { return system_name(name); }}),
         parser_(setup_.block_delete) {
-    texts_.push_back({std::move(text), {}});
+    texts_.push_back({std::move(text), {}, 0});
     load_stored_parameters();
     for (const auto& [name, value] : setup_.parameters) set_initial(name, value);
     for (int system = 1; system <= kWorkSystems; ++system) store_setup_offset(system);
@@ -121,6 +121,7 @@ class Interpreter::Machine {
   struct Text {
     ProgramText lines;
     PercentRule percent;
+    int last_line = 0;  // the farthest that was run
   };
 
   // ---- setup

@@ -215,6 +215,26 @@ TEST(Loop, FaultsSayWhatTheLabelIs) {
   for (const auto& [text, message] : faults) EXPECT_EQ(fault_of(text), message) << text;
 }
 
+TEST(ExecutedBlocks, AreTheLinesInTheOrderOfTheirRun) {
+  Interpreter interpreter(
+      "G21 (mm)\n\no1 repeat [2]\n#5=[#5+1] G0 X[#5]\no1 endrepeat\no2 if [0]\nG0 X9\n"
+      "o2 endif\nM2\n",
+      "p.nc", {});
+  std::string lines;
+  std::vector<double> ends, assigned;
+  while (const auto block = interpreter.next_block()) {
+    lines += fmt::format("{}{}{}{} ", block->line, block->block == nullptr ? "-" : "",
+                         block->is_repeated ? "r" : "", block->request == nullptr ? "" : "w");
+    for (const Move& move : block->moves) {
+      if (is_motion(move.kind)) ends.push_back(move.end[0] / mm);
+    }
+    for (const auto& [number, value] : block->assigned) assigned.push_back(value);
+  }
+  EXPECT_EQ(lines, "1w 2- 3 4w 5 3r 4rw 5r 3r 4-r 5r 6 7- 8 9w ");
+  EXPECT_EQ(ends, (std::vector<double>{0, 1}));
+  EXPECT_EQ(assigned, (std::vector<double>{1, 2}));
+}
+
 TEST(Loop, WithoutEndIsStopped) {
   ProgramSetup setup = usual_setup();
   setup.most_jumps = 1000;
