@@ -362,27 +362,18 @@ void expect_arc_length(const std::vector<Move>& moves, const std::vector<PlaneMo
 }
 
 TEST(Law, TheToolKeepsItsDistance) {
-  constexpr unsigned kPaths = 300;
-  unsigned whole = 0;
-  for (unsigned seed = 1; seed <= kPaths; ++seed) {
+  for (unsigned seed = 1; seed <= 300; ++seed) {
     const Cutter cutter = {0.001 * (1 + seed % 3), seed % 2 == 0};
     const std::vector<PlaneMove> path = RandomPath(seed).make(cutter.radius);
     const std::string text = program_of(path, cutter);
     SCOPED_TRACE(fmt::format("seed {}\n{}", seed, text));
-    std::vector<Move> moves;
-    try {
-      moves = interpret(text, "p.nc", {});
-    } catch (const InputError&) {
-      continue;  // a move too short for its two corners
-    }
+    std::vector<Move> moves = interpret(text, "p.nc", {});
     moves.pop_back();
-    ++whole;
     expect_offset(moves, path, cutter);
     expect_arcs_are_round(moves);
     expect_arc_length(moves, path);
     if (testing::Test::HasFailure()) return;
   }
-  EXPECT_GT(whole, kPaths / 2);
 }
 
 // --------------------------------------------------------------------------------------- programs
