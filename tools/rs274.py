@@ -22,7 +22,7 @@ import tempfile
 
 SUFFIXES = {".ngc", ".nc", ".tap"}
 LONGEST_LINE = 252             # characters that rs274 takes
-LINES_OF_A_FILE = 10 ** 6      # N words are FILE x this + LINE
+LINES_OF_A_FILE = 10 ** 6      # N words are FILE x this + LINE; files count from 1, programs' own N words are less
 SAID = "msg", "text", "code"    # may name lines
 N_WORD = re.compile(rb"\s*(/?)\s*(?:n\s*\d[\d\s]*(?:\.\s*\d[\d\s]*)?)?(.*)$", re.IGNORECASE | re.DOTALL)
 MOST_OUTPUT = 1 << 28          # bytes; beyond it a program is taken to be without end
@@ -263,7 +263,7 @@ class Interpreter:
         programs = {path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES and path.is_file()}
         for path in sorted(programs.union(more).difference(self.files)):
             text = path.read_bytes()
-            for kind, code in (("plain", text), ("numbered", numbered(text, len(self.files)))):
+            for kind, code in (("plain", text), ("numbered", numbered(text, len(self.files) + 1))):
                 (place / kind).mkdir(parents=True, exist_ok=True)
                 (place / kind / path.name).write_bytes(code)
             self.files.append(path)
@@ -294,12 +294,12 @@ class Interpreter:
             code = record.pop("code")
             lines = program.read_text(errors="replace").split("\n")
             like = [i for i, line in enumerate(lines, 1) if code and line.startswith(code)]
-            if "line" not in record and len(like) == 1:
+            if record.get("line", 0) < LINES_OF_A_FILE and len(like) == 1:
                 return {"t": "error", "line": like[0], "msg": record["msg"]}
-        if "line" not in record:
-            return record
-        index, line = divmod(record["line"], LINES_OF_A_FILE)
-        file = {} if self.files[index] == program else {"file": self.files[index].name}
+        index, line = divmod(record.get("line", 0), LINES_OF_A_FILE)
+        if not 0 < index <= len(self.files):
+            return without(record, "line")
+        file = {} if self.files[index - 1] == program else {"file": self.files[index - 1].name}
         return {"t": record["t"], "line": line, **file, **without(record, "t", "line")}
 
     def _run(self, name, place, kind, *, tools, parameter_file, subs, block_delete, timeout):
@@ -332,7 +332,8 @@ def numbered(text, index):
     for i, line in enumerate(lines):
         slash, code = N_WORD.match(line).groups()
         line = b"%sN%d %s" % (slash, index * LINES_OF_A_FILE + i + 1, code)
-        if code.strip() and len(line) <= LONGEST_LINE and not (marked and lines[i].strip() == b"%"):
+        joins = code.strip()[:1] in b"0123456789."    # would be part of the number; also where nothing is left
+        if not joins and len(line) <= LONGEST_LINE and not (marked and lines[i].strip() == b"%"):
             lines[i] = line
     return b"\n".join(lines)
 

@@ -224,7 +224,7 @@ class Records(unittest.TestCase):
     def test_lines_get_n_words(self):
         program = b"%\n/ g0 x1\n\nn5.5 g1 (a)\n  o1 if [1]\nn12. x1\n%\n" + b"(" + b"a" * 251 + b"\n"
         self.assertEqual(rs274.numbered(program, 3).split(b"\n")[:7],
-                         [b"%", b"/N3000002 g0 x1", b"", b"N3000004 g1 (a)", b"N3000005 o1 if [1]", b"N3000006 . x1", b"%"])
+                         [b"%", b"/N3000002 g0 x1", b"", b"N3000004 g1 (a)", b"N3000005 o1 if [1]", b"n12. x1", b"%"])
         self.assertEqual(rs274.numbered(program, 3).split(b"\n")[7], b"(" + b"a" * 251)
 
 
