@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "controllers/gcode/modal_state.h"
+#include "controllers/gcode/number_text.h"
 #include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
@@ -16,31 +17,14 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr int kSignificant = 12;           // digits of F, S and P
 constexpr std::size_t kLongestText = 200;  // of a message; a line holds at most 252 characters
-
-std::string trim_zeros(std::string text) {
-  if (text.find('.') != std::string::npos) {
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-  }
-  return text == "-0" ? "0" : text;
-}
-
-// Fixed point with so many significant digits; programs know no exponents.
-std::string significant(double x) {
-  const int magnitude = x == 0.0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(x))));
-  return trim_zeros(fmt::format("{:.{}f}", x, std::clamp(kSignificant - 1 - magnitude, 0, 30)));
-}
 
 // A coordinate on the grid of the printed decimals, counted in its smallest step.
 class Grid {
  public:
   explicit Grid(int decimals) : decimals_(decimals), scale_(std::pow(10.0, decimals)) {}
   double step_count(double x) const { return std::round(x * scale_); }
-  std::string text(double steps) const {
-    return trim_zeros(fmt::format("{:.{}f}", steps / scale_, decimals_));
-  }
+  std::string text(double steps) const { return fixed_text(steps / scale_, decimals_); }
 
  private:
   int decimals_;
@@ -55,7 +39,7 @@ std::string path_code(const Move& move) {
   if (move.path_mode == PathMode::exact_path) return "G61";
   if (move.path_mode == PathMode::exact_stop) return "G61.1";
   if (move.path_tolerance == 0.0) return "G64";
-  return fmt::format("G64 P{}", significant(move.path_tolerance / mm));
+  return fmt::format("G64 P{}", significant_text(move.path_tolerance / mm));
 }
 
 std::string one_line(std::string_view text) {
@@ -110,7 +94,7 @@ class Printer {
         return print_motion(move);
       case MoveKind::dwell:
         print_modes(move);
-        return line(fmt::format("G4 P{}", significant(move.value)));
+        return line(fmt::format("G4 P{}", significant_text(move.value)));
       case MoveKind::tool:
         return line(fmt::format("T{} M6", move.number));
       case MoveKind::spindle:
@@ -128,7 +112,7 @@ class Printer {
   }
 
   void print_spindle(const Move& move) {
-    const std::string S = significant(move.value / rpm);
+    const std::string S = significant_text(move.value / rpm);
     const bool new_speed = S != S_;
     if (new_speed) line("S" + S);
     S_ = S;
@@ -248,7 +232,7 @@ class Printer {
   }
 
   std::string feed_word(const Move& move) {
-    const std::string F = significant(feed_value(move));
+    const std::string F = significant_text(feed_value(move));
     if (move.feed_mode != FeedMode::inverse_time && F == F_) return {};
     F_ = F;
     return " F" + F;

@@ -1,0 +1,32 @@
+#include "controllers/gcode/number_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace servomill::controllers {
+namespace {
+
+constexpr int kSignificant = 12;  // digits
+
+std::string trim_zeros(std::string text) {
+  if (text.find('.') != std::string::npos) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+  }
+  return text == "-0" ? "0" : text;
+}
+
+}  // namespace
+
+std::string fixed_text(double x, int decimals) {
+  return trim_zeros(fmt::format("{:.{}f}", x, decimals));
+}
+
+std::string significant_text(double x) {
+  const int magnitude = x == 0.0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(x))));
+  return fixed_text(x, std::clamp(kSignificant - 1 - magnitude, 0, 30));
+}
+
+}  // namespace servomill::controllers
