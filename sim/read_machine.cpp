@@ -6,12 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "plant/drives/exact_step.h"
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
 #include "sim/read_drive.h"
 #include "sim/read_encoder.h"
+#include "sim/read_errors.h"
 #include "sim/read_servo.h"
 
 namespace servomill::sim {
@@ -214,7 +216,7 @@ AxisWords read_words(Reader& table, const JointLayout& layout) {
   return words;
 }
 
-MachineSettings read_machine(Reader& table) {
+MachineSettings read_machine(Reader& table, std::map<std::string, plant::ErrorModel>* errors) {
   MachineSettings machine;
   machine.name = table.text_or("name", "unnamed machine");
   table.text_or("source", "");
@@ -247,6 +249,7 @@ MachineSettings read_machine(Reader& table) {
 
   if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
     table.raw("axis");
+    table.raw("errors");
     return machine;
   }
   Reader axes = table.table("axis");
@@ -254,6 +257,11 @@ MachineSettings read_machine(Reader& table) {
     if (!machine.chain.layout.has(j)) continue;
     Reader axis = axes.table(std::string(1, machine.chain.layout.letter_of(j)));
     read_axis(axis, common, j, machine);
+  }
+  if (table.has("errors")) {
+    Reader models = table.table("errors");
+    auto read = read_error_models(models, machine.chain.layout);
+    if (errors != nullptr) *errors = std::move(read);
   }
   return machine;
 }

@@ -1,6 +1,10 @@
 /// Reads a machine description (TOML).
 #pragma once
 
+#include <map>
+#include <string>
+
+#include "plant/geometry/error_model.h"
 #include "sim/config/reader.h"
 #include "sim/machine.h"
 
@@ -8,7 +12,9 @@ namespace servomill::sim {
 
 /// Machine of a table; faults are collected in the reader.
 /// @param machine  table as documented in scenarios/machines/hsm600u.toml
-MachineSettings read_machine(Reader& machine);
+/// @param errors   receives the error models that it holds, by name; nullptr: they are but checked
+MachineSettings read_machine(Reader& machine,
+                             std::map<std::string, plant::ErrorModel>* errors = nullptr);
 
 /// "X", "Y", ...: the table of an axis and what its quantities are called.
 struct AxisQuantities {

@@ -66,7 +66,7 @@ class ScenarioReader {
     out_.title = root.text_or("title", out_.name);
     out_.source = root.text_or("source", "");
     Reader machine = root.table("machine");
-    out_.machine = read_machine(machine);
+    out_.machine = read_machine(machine, &out_.errors);
     Reader program = root.table("program");
     read_program(program);
     read_error_models(root);
@@ -239,10 +239,15 @@ class ScenarioReader {
       Reader models = root.table("errors");
       names = models.keys();
       if (out_.machine.chain.layout != JointLayout{}) {
-        out_.errors = sim::read_error_models(models, out_.machine.chain.layout);
+        for (auto& [name, model] : sim::read_error_models(models, out_.machine.chain.layout)) {
+          out_.errors[name] = std::move(model);
+        }
       } else {  // their errors have no axes
         for (const std::string& name : names) models.raw(name);
       }
+    }
+    for (const auto& [name, model] : out_.errors) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
     for (auto [key, to] : {std::pair{"truth", &out_.truth}, std::pair{"imposed", &out_.imposed}}) {
       *to = root.text_or(key, "");
@@ -367,6 +372,9 @@ class ScenarioReader {
     }
     if (override->find("structure") != nullptr) {
       table.fault("machine_override", "has the key structure, which is common to all cases");
+    }
+    if (override->find("errors") != nullptr) {
+      table.fault("machine_override", "has the key errors; error models are common to all cases");
     }
     case_overrides_.emplace(out_.cases.size(), *override);
   }
