@@ -16,6 +16,8 @@
 namespace servomill::sim {
 namespace {
 
+constexpr std::size_t kWrittenAtOnce = 1U << 16;  // bytes
+
 void check_toml(const std::string& path, const std::vector<std::string>& changes) {
   const Document document = Document::from_file(path);
   if (document.root().find("structure") != nullptr) {
@@ -31,7 +33,10 @@ bool holds_cutter_locations(std::string_view path) {
   return path.ends_with(".cls") || path.ends_with(".apt") || path.ends_with(".csv");
 }
 
-controllers::ProgramSetup setup_of(const ProgramInputs& inputs, const std::string& program_file) {
+}  // namespace
+
+controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
+                                        const std::string& program_file) {
   controllers::ProgramSetup setup;
   if (!inputs.tool_table.empty()) {
     setup.tools = controllers::ToolTable::parse(read_file(inputs.tool_table, {}, "tool table"),
@@ -60,14 +65,10 @@ controllers::ProgramSetup setup_of(const ProgramInputs& inputs, const std::strin
   return setup;
 }
 
-constexpr std::size_t kWrittenAtOnce = 1U << 16;  // bytes
-
-}  // namespace
-
 std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& inputs,
                          const std::function<void(std::string_view)>& write) {
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(program_file),
-                                       setup_of(inputs, program_file));
+                                       program_setup(inputs, program_file));
   std::string lines;
   const auto flush = [&] {
     write(lines);
@@ -100,7 +101,7 @@ std::vector<Fault> check_file(const std::string& path, const std::vector<std::st
       return {};
     }
     return controllers::check_program(controllers::ProgramText::of_file(path),
-                                      setup_of(inputs, path));
+                                      program_setup(inputs, path));
   } catch (const InputError& error) {
     return error.faults();
   }

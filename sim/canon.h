@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "controllers/gcode/program_setup.h"
 #include "plant/vocabulary/input_error.h"
 
 namespace servomill::sim {
@@ -20,6 +21,11 @@ struct ProgramInputs {
   bool block_delete = false;                         // leave out lines that start with '/'
   long most_jumps = 10'000'000;                      // loops turned and subroutines called
 };
+
+/// What the control knows before the program runs.
+/// @throws InputError
+controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
+                                        const std::string& program_file);
 
 /// Hands the canonical moves of a program to `write`, as one JSON object a line, many lines at a
 /// time. Neither the program nor its moves are held.

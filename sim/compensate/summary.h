@@ -1,0 +1,45 @@
+/// What compensating a program changed.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plant/vocabulary/axes.h"
+#include "strategies/strategy.h"
+
+namespace servomill::sim {
+
+struct Summary {
+  struct At {
+    int line = 0;
+    AxisWords machine = AxisWords::Zero();     // programmed (6; m, rad)
+    AxisWords correction = AxisWords::Zero();  // 6; m, rad
+  };
+
+  std::size_t blocks_before = 0, blocks_after = 0;  // of motion, as executed
+  std::size_t points_added = 0;
+  std::size_t arcs_before = 0, arcs_kept = 0, arcs_split = 0, arcs_to_lines = 0;
+  At largest;                                   // of all block ends, by the length of X Y Z
+  double largest_turn = 0.0;                    // rad
+  double length = 0.0, corrected_length = 0.0;  // m, of feed motion
+  double time = 0.0, corrected_time = 0.0;      // s, of it at the programmed feed
+  std::optional<At> outside;                    // the first end outside the travel, and how many
+  std::size_t outside_count = 0;
+  std::optional<At> most_left;  // the place where correcting leaves most
+  strategies::Leftover left;
+  bool unrolled = false;         // loops, subroutines
+  bool has_expressions = false;  // became numbers
+  bool has_cycles = false, has_cutter_compensation = false;
+  bool takes_blocks_with_slash = false;
+  std::map<int, double> tools;       // m, length of each tool that worked
+  std::vector<std::string> assumed;  // one sentence each
+
+  /// What a reader wants to know, one line each.
+  std::vector<std::string> report(const JointLayout& layout) const;
+  /// The same as one JSON object.
+  std::string json(const JointLayout& layout) const;
+};
+
+}  // namespace servomill::sim
