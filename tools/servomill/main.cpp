@@ -20,7 +20,7 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 12> kCommands = {{
+constexpr std::array<Command, 13> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
@@ -33,6 +33,8 @@ constexpr std::array<Command, 12> kCommands = {{
     {"tune", "SCENARIO.toml --axis Y|all", "gains of an axis for given margins", tune_command},
     {"table", "SCENARIO.toml --format FORMAT -o FOLDER", "writes compensation tables for a real NC",
      table_command},
+    {"compensate", "PROGRAM --machine M.toml [-o OUT]",
+     "writes a program corrected for the errors of a machine", compensate_command},
     {"check", "FILE...", "checks scenarios, machines, cutter locations and programs",
      check_command},
     {"canon", "PROGRAM", "prints the canonical moves of a program, one JSON object a line",
@@ -48,7 +50,7 @@ void print_usage(std::FILE* to) {
              "Usage: servomill COMMAND [...]\n\n",
              sim::kVersion);
   for (const Command& command : kCommands) {
-    fmt::print(to, "  {:<8} {:<50} {}\n", command.name, command.synopsis, command.summary);
+    fmt::print(to, "  {:<10} {:<50} {}\n", command.name, command.synopsis, command.summary);
   }
   fmt::print(to,
              "\n`servomill COMMAND --help` explains a command.\n"

@@ -23,6 +23,37 @@ def program(title, old, new, commands=None):
     return line(title, old, new, "part.ngc", commands)
 
 
+ERRORS = "[errors.measured]\nEC0Y = { um_per_m = 120.0 }\n"
+COMPENSATE_IT = "servomill compensate cut.ngc --machine machine.toml --errors errors.toml -o out.ngc"
+CUT = "G21 G90\nG0 X0 Y0 Z5\nG1 X10 F100\nM2\n"
+
+
+def compensated(title, cut, *commands, **more):
+    """A program that cannot be compensated."""
+    return typed(title, *(commands or [COMPENSATE_IT]), write={"cut.ngc": cut, "errors.toml": ERRORS, **more})
+
+
+COMPENSATE = [
+    compensated("compensate without its inputs", CUT, "servomill compensate", "servomill compensate cut.ngc",
+                "servomill compensate cut.ngc --machine machin.toml", "servomill compensate cut.ngc --machine machine.toml",
+                COMPENSATE_IT + " --model mesured", COMPENSATE_IT.replace("errors.toml", "cut.ngc")),
+    compensated("options of compensate that cannot be", CUT, COMPENSATE_IT + " --tolerance 1", COMPENSATE_IT + " --tolerance '0 um'",
+                COMPENSATE_IT + " --max-block '1 s'", COMPENSATE_IT + " --dialect fanuk", COMPENSATE_IT + " --axes rotary",
+                COMPENSATE_IT + " --work-offset X10", COMPENSATE_IT + " --work-offset G60:X=10",
+                COMPENSATE_IT + " --work-offset A=10", COMPENSATE_IT + " --start X=one", COMPENSATE_IT + " --parameter '#101'"),
+    compensated("a program that is there", CUT, "servomill compensate cut.ngc --machine machine.toml --errors errors.toml -o cut.ngc"),
+    compensated("a feed from nobody knows where", CUT.replace(" Y0", "")),
+    compensated("an axis that the machine lacks", CUT.replace("X10", "A10")),
+    compensated("a work system that nobody said the place of", CUT.replace("G1", "G55 G1"), COMPENSATE_IT,
+                COMPENSATE_IT + " --work-offset X=10"),
+    compensated("moves under tool-centre-point control", CUT.replace("G1", "G43.4 H1\nG1"),
+                COMPENSATE_IT + " --tools tools.tbl", **{"tools.tbl": "T1 P1 Z+40\n"}),
+    compensated("parameter files of compensate", CUT, COMPENSATE_IT + " --parameter-file none.var",
+                COMPENSATE_IT + " --parameter-file wrong.var",
+                **{"wrong.var": "5221 1.5\n5222\n12 1\n5220 10\n5210 1\n"}),
+    compensated("what a dialect cannot say", CUT.replace("G1", "G64 P0.01\nG1"), COMPENSATE_IT + " --dialect fanuc"),
+]
+
 COMMAND_LINE = [
     typed("an unknown command", "servomill rnu scenario.toml", "servomill frobnicate"),
     typed("an unknown option", "servomill run scenario.toml --forse", "servomill --quiet", "servomill check -x",
@@ -412,4 +443,5 @@ TABLES = [
           write={"out/NC_CEC.INI": "precious"}, about="a file"),
 ]
 
-WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO + POST + TABLES)
+WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO + POST + TABLES
+                + COMPENSATE)
