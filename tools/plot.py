@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Draws figures from the result files (HDF5) of `servomill run`, `sweep`, `bode` and
-`step`.
+`step`, and the records of `compensate`.
 
 Figures are named after those of Guevel et al. 2025 that they answer to; `--list` prints all.
 What a file does not hold is told and the rest drawn. Exit status: 0 drawn, 2 a file cannot be read or
@@ -118,7 +118,7 @@ def main(arguments):
 
     if options.list:
         for figure in FIGURES:
-            print(f"{figure.name:<12}{figure.kind:<7}{figure.help}")
+            print(f"{figure.name:<12}{figure.kind:<11}{figure.help}")
         return 0
     if not options.files:
         raise InputError("plot.py: error: no result file is named; see plot.py --help")

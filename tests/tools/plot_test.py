@@ -434,7 +434,7 @@ class Drawing(WithFiles):
                           "figure15", "lag", "curves", "maps", "samples", "circular", "reversals", "nest", "ball_bar",
                           "li_3_2", "li_3_3", "li_4_1",
                           "five_axis", "deviations", "position", "velocity",
-                          "compliance", "step"])
+                          "compliance", "compensated", "step"])
 
 
 class Balls(WithFiles):

@@ -2,7 +2,7 @@
 import dataclasses
 from typing import Callable
 
-from figures import (balls, bode, circular, deviations, error_functions, five_axis, lag, nonlinear, notches, step, straightness,
+from figures import (balls, bode, circular, compensated, deviations, error_functions, five_axis, lag, nonlinear, notches, step, straightness,
                      sweeps, volumetric)
 
 
@@ -52,5 +52,7 @@ FIGURES = (
            lambda responses: bode.draw(responses, "velocity")),
     Figure("compliance", "bode", "slide per force over frequency",
            lambda responses: bode.draw(responses, "compliance")),
+    Figure("compensated", "compensate", "compensated program: path and correction magnified, correction along it",
+           compensated.draw),
     Figure("step", "step", "step responses of position, velocity and load", step.draw),
 )

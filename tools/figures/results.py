@@ -266,7 +266,18 @@ class Responses(ResultFile):
         return float(self.axes[letter].attrs["travel_per_radian"])
 
 
-KINDS = {"run": Run, "sweep": Sweep, "bode": Responses, "step": Responses}
+class CompensatedProgram(ResultFile):
+    """A file that `servomill compensate --record` wrote: arrays of its path by name."""
+
+    def __init__(self, path):
+        super().__init__(path)
+        group = self.h5["compensate"]
+        self.compensate = {name: group[name][:] for name in ("s", "line", "block_end", "rapid")}
+        for name in ("position", "correction"):
+            self.compensate[name] = np.stack([group[f"{name}_{axis}"][:] for axis in "xyz"], axis=1)
+
+
+KINDS = {"run": Run, "sweep": Sweep, "bode": Responses, "step": Responses, "compensate": CompensatedProgram}
 
 
 def open_result(path):
