@@ -136,6 +136,7 @@ enum class PieceKind : std::uint8_t {
   assignment,
   comment,
   percent,
+  blank,  // only where a line is cut into pieces without gaps
 };
 
 /// The bytes [begin, end) of a line. What lies between pieces are blanks.

@@ -15,7 +15,6 @@
 #include "sim/canon.h"
 #include "sim/compensate/dialect_writer.h"
 #include "sim/compensate/linuxcnc_writer.h"
-#include "sim/compensate/parameter_file.h"
 #include "sim/compensate/walk.h"
 #include "sim/read_errors.h"
 #include "sim/read_file.h"
@@ -111,11 +110,8 @@ struct Known {
 
 Known read_known(const CompensateRequest& request, const JointLayout& layout) {
   Known known;
-  known.setup = program_setup({request.tool_table, request.parameters, ""});
-  known.setup.block_delete = request.block_delete;
-  if (!request.parameter_file.empty()) {
-    take_parameter_file(read_file(request.parameter_file, {}, "parameter file"),
-                        request.parameter_file, known.setup);
+  known.setup = program_setup(request.inputs, request.program_file);
+  if (!request.inputs.parameter_file.empty()) {
     for (int system = 1; system <= controllers::kWorkSystems; ++system) {
       known.work_systems.insert(system);
     }
@@ -301,8 +297,8 @@ Compensated compensate(const CompensateRequest& request) {
   Walk walk(options, known.setup.tools, correction, out.summary,
             request.records ? &out.record : nullptr);
   const auto writer = writer_of(request, walk, out.summary);
-  controllers::Interpreter interpreter(read_file(request.program_file, {}, "program"),
-                                       request.program_file, known.setup);
+  controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
+                                       known.setup);
   while (const auto block = interpreter.next_block()) {
     refuse_unknown_system(*block, request, known.work_systems);
     writer->write(*block);

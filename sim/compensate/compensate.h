@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/canon.h"
 #include "sim/compensate/path_record.h"
 #include "sim/compensate/summary.h"
 #include "strategies/compensation.h"
@@ -28,13 +29,10 @@ struct CompensateRequest {
   bool splits_rapids = false;
   strategies::DisplacedAxes axes = strategies::DisplacedAxes::linear;
   Dialect dialect = Dialect::linuxcnc;
-  std::string tool_table;                 // file in LinuxCNC's format, or empty
-  std::string parameter_file;             // LinuxCNC's, or empty
-  std::vector<std::string> parameters;    // "#101=1394"
+  ProgramInputs inputs;                   // of the program; `machine` is the one above
   std::vector<std::string> work_offsets;  // "X=10,Y=-5" (G54) or "G55:X=10,R=30"; mm, deg
   std::string start;                      // "X=0,Y=0": machine coordinates; or empty
-  bool block_delete = false;
-  bool records = false;  // the path
+  bool records = false;                   // the path
 };
 
 struct Compensated {

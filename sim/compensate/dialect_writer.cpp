@@ -101,7 +101,7 @@ void DialectWriter::check_codes(const Block& block) const {
 }
 
 void DialectWriter::note_what_became_numbers(const Block& block) {
-  for (const LinePiece& piece : line_pieces(block.text)) {
+  for (const LinePiece& piece : line_pieces(block)) {
     if (piece.kind == PieceKind::o_word) summary_.unrolled = true;
     if (piece.kind == PieceKind::block_delete) summary_.takes_blocks_with_slash = true;
     if (!piece.is_constant) summary_.has_expressions = true;
@@ -109,7 +109,7 @@ void DialectWriter::note_what_became_numbers(const Block& block) {
     const std::string text = comment_text(piece.of(block.text));
     if (!text.empty() && !is_spoken(text)) printer_->comment(text);
   }
-  if (block.repeated_or_called) summary_.unrolled = true;
+  if (block.is_repeated || block.call_depth > 0) summary_.unrolled = true;
   if (block.request == nullptr) return;
   const int motion = block.request->motion_code();
   summary_.has_cycles |= motion == 730 || (motion > 800 && motion <= 890);
@@ -117,10 +117,8 @@ void DialectWriter::note_what_became_numbers(const Block& block) {
 }
 
 void DialectWriter::write(const Block& block) {
-  const bool is_left_out = block.block == nullptr &&
-                           block.text.find('/') != std::string_view::npos &&
-                           block.text.find_first_not_of(" \t") == block.text.find('/');
-  if (is_left_out) return printer_->comment(block.text);
+  if (block.block != nullptr && block.block->deleted) return printer_->comment(block.text);
+  if (is_skipped(block)) summary_.unrolled = true;
   note_what_became_numbers(block);
   check_codes(block);
   try {

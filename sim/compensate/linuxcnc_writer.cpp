@@ -131,7 +131,7 @@ WovenLine line_of(const ExecutedBlock& block, Summary& summary) {
   WovenLine line;
   line.number = block.line;
   line.text = block.text;
-  line.pieces = line_pieces(line.text);
+  line.pieces = line_pieces(block);
   line.codes.assign(line.pieces.size(), nullptr);
   for (const LinePiece& piece : line.pieces) line.words.emplace_back(piece.of(line.text));
   const controllers::ModalState& state = *block.state;
@@ -176,7 +176,8 @@ void drop_slash(WovenLine& line, Summary& summary) {
 
 void drop_o_words(WovenLine& line) {
   for (std::size_t i = 0; i < line.pieces.size(); ++i) {
-    if (line.pieces[i].kind == PieceKind::o_word) drop(line, i);
+    const PieceKind kind = line.pieces[i].kind;
+    if (kind != PieceKind::comment && kind != PieceKind::blank) drop(line, i);
   }
 }
 
@@ -405,11 +406,7 @@ void LinuxCncWriter::put(const WovenLine& line) {
 
 // A '%' opens the program if it is its first line.
 bool LinuxCncWriter::take_percent(const Block& block) {
-  const auto pieces = line_pieces(block.text);
-  const bool is_percent = std::any_of(pieces.begin(), pieces.end(), [](const LinePiece& one) {
-    return one.kind == PieceKind::percent;
-  });
-  if (!is_percent || block.block != nullptr) return false;
+  if (block.block == nullptr || !block.block->percent) return false;
   put(block.text);
   if (is_first_) header_at_ = text_.size();
   is_open_ = is_first_;
@@ -425,12 +422,16 @@ void LinuxCncWriter::write(const Block& given) {
   }
   if (take_percent(block)) return;
   if (block.text.find_first_not_of(" \t") != std::string_view::npos) is_first_ = false;
+  if (is_skipped(block)) {
+    summary_.unrolled = true;
+    return;
+  }
   WovenLine line = line_of(block, summary_);
-  if (has_o_word(line) || block.repeated_or_called) summary_.unrolled = true;
+  if (has_o_word(line) || block.is_repeated || block.call_depth > 0) summary_.unrolled = true;
   if (has_o_word(line)) {
     drop_o_words(line);
     if (is_empty(line)) return;
-  } else if (block.block == nullptr && !is_empty(line)) {  // left out
+  } else if (block.block != nullptr && block.block->deleted) {
     return put(fmt::format("; {}", block.text));
   }
   drop_slash(line, summary_);

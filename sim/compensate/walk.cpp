@@ -44,6 +44,10 @@ bool is_worse(const strategies::Leftover& a, const strategies::Leftover& b) {
 
 }  // namespace
 
+bool is_skipped(const controllers::ExecutedBlock& block) {
+  return block.block == nullptr && !controllers::is_blank(block.text);
+}
+
 bool is_place_of_machine(const ExecutedBlock& block) {
   const int code = non_modal(block);
   return code == 530 || code == 280 || code == 300;

@@ -71,6 +71,9 @@ class Walk {
   std::array<bool, kAxisWords> known_{};
 };
 
+/// Whether O-words skip the line.
+bool is_skipped(const controllers::ExecutedBlock& block);
+
 /// Whether the block goes to a place of the machine.
 bool is_place_of_machine(const controllers::ExecutedBlock& block);
 

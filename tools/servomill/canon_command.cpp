@@ -18,6 +18,7 @@ int canon_command(const Arguments& arguments) {
                   "and G68.2 (\"control\") the latter are the tip in the workpiece.",
                   "PROGRAM");
   add_program_options(options);
+  add_machine_option(options);
   if (!options.parse(arguments)) return kDone;
   const auto warnings = sim::canon(
       options.word(), program_inputs(options),

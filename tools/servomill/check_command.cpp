@@ -19,6 +19,7 @@ int check_command(const Arguments& arguments) {
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenarios, as for servomill run");
   add_program_options(options);
+  add_machine_option(options);
   options.add()("quiet,q", "prints nothing but faults");
   if (!options.parse(arguments)) return kDone;
   if (options.words().empty()) throw InputError({"servomill check"}, "needs a FILE; see --help");

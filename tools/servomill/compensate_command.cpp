@@ -7,6 +7,7 @@
 #include "sim/compensate/compensate.h"
 #include "sim/write_file.h"
 #include "tools/servomill/axis_options.h"
+#include "tools/servomill/program_options.h"
 
 namespace servomill::tools {
 namespace {
@@ -40,12 +41,10 @@ sim::CompensateRequest request_of(const Options& options) {
   request.splits_rapids = options.has("split-rapids");
   request.axes = static_cast<strategies::DisplacedAxes>(choice_option(options, "axes", kAxes));
   request.dialect = static_cast<sim::Dialect>(choice_option(options, "dialect", sim::kDialects));
-  request.tool_table = text_of(options, "tools");
-  request.parameter_file = text_of(options, "parameter-file");
-  request.parameters = options.list("parameter");
+  request.inputs = program_inputs(options);
+  request.inputs.machine.clear();  // tool-centre-point control is not corrected
   request.work_offsets = options.list("work-offset");
   request.start = text_of(options, "start");
-  request.block_delete = options.has("block-delete");
   request.records = options.has("record");
   return request;
 }
@@ -87,18 +86,13 @@ int compensate_command(const Arguments& arguments) {
                 "axes that correct: X, Y, Z, or rotary axes, too");
   options.add()("dialect", text()->default_value("linuxcnc")->value_name("NAME"),
                 "linuxcnc, or lines for heidenhain, fanuc, siemens");
-  options.add()("tools", text()->value_name("TABLE"), "tool table in LinuxCNC's format, mm");
+  add_program_options(options);
   options.add()("work-offset", texts()->value_name("X=10,Y=-5"),
                 "where G54 lies in the machine, mm and deg; G55:X=10,R=30 for another one and with "
                 "a rotation");
-  options.add()("parameter-file", text()->value_name("FILE.var"),
-                "LinuxCNC's parameter file: all work offsets");
-  options.add()("parameter", texts()->value_name("#N=NUMBER"),
-                "sets a parameter before the program runs");
   options.add()("start", text()->value_name("X=0,Y=0"),
                 "where the machine stands before the program, in machine coordinates: for programs "
                 "that feed before every axis was named");
-  options.add()("block-delete", "leaves out the lines that start with '/'");
   options.add()("record", text()->value_name("OUT.h5"), "path and correction, for tools/plot.py");
   options.add()("json", "prints what it changed as JSON");
   options.add()("force,f", "replaces OUT if it exists");

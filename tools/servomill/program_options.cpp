@@ -20,7 +20,11 @@ void add_program_options(Options& options) {
   options.add()("max-jumps", po::value<long>()->value_name("N"),
                 "loops turned and subroutines called before a program counts as endless "
                 "(10000000)");
-  options.add()("machine", text("M.toml"),
+}
+
+void add_machine_option(Options& options) {
+  namespace po = boost::program_options;
+  options.add()("machine", po::value<std::string>()->value_name("M.toml"),
                 "machine that runs it: G43.5, G53.1, and G43.4 or G68.2 with turned axes need it");
 }
 

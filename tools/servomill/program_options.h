@@ -6,7 +6,9 @@
 
 namespace servomill::tools {
 
+/// --machine, which some commands have in a form of their own, is left to them.
 void add_program_options(Options& options);
+void add_machine_option(Options& options);
 
 /// What they said.
 sim::ProgramInputs program_inputs(const Options& options);

@@ -156,10 +156,11 @@ TEST(Compensate, InverseTimeIsSharedAmongTheBlocks) {
 TEST(Compensate, RotaryAxesAloneKeepTheirTime) {
   Trial trial("G21 G90\nT1 M6 G43 H1\nG0 X50 Y0 Z5 B0 C0\nG1 C90 F1800\nX60\nM2\n");
   trial.request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml";
-  trial.request.parameter_file.clear();
-  trial.request.error_file = written("errors.toml", "[errors.of_test]\nEX0C = { constant_um = 20.0 }\n");
+  trial.request.inputs.parameter_file.clear();
+  trial.request.error_file =
+      written("errors.toml", "[errors.of_test]\nEX0C = { constant_um = 20.0 }\n");
   const Compensated done = trial.run();
-  controllers::ProgramSetup setup = program_setup({trial.request.tool_table, {}, ""});
+  controllers::ProgramSetup setup = program_setup(trial.request.inputs, trial.request.program_file);
   double minutes = 0.0;
   AxisWords at = AxisWords::Zero();
   for (const Move& move : controllers::interpret(done.program, "text", setup)) {
@@ -198,7 +199,7 @@ TEST(Compensate, RefusesToFeedFromNobodyKnowsWhere) {
 
 TEST(Compensate, RefusesWorkSystemsThatNobodySaidThePlaceOf) {
   Trial trial("G21 G90\nG0 X0 Y0 Z0\nG55 G1 X1 F100\nM2\n");
-  trial.request.parameter_file.clear();
+  trial.request.inputs.parameter_file.clear();
   EXPECT_EQ(refusal(trial),
             "part.ngc:3:1: error: where G55 lies in the machine is not known, and with it the "
             "errors; --work-offset G55:X=...,Y=... or --parameter-file say it");

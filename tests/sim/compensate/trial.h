@@ -16,7 +16,6 @@
 #include "sim/canon.h"
 #include "sim/compensate/compensate.h"
 #include "sim/compensate/correction.h"
-#include "sim/compensate/parameter_file.h"
 #include "sim/read_errors.h"
 #include "sim/scenario.h"
 
@@ -39,8 +38,8 @@ struct Trial {
   explicit Trial(const std::string& program, const std::string& name = "part.ngc") {
     request.program_file = written(name, program);
     request.machine_file = kRouter;
-    request.tool_table = written("tools.tbl", kTools);
-    request.parameter_file = written("offsets.var", kOffsets);
+    request.inputs.tool_table = written("tools.tbl", kTools);
+    request.inputs.parameter_file = written("offsets.var", kOffsets);
   }
   Compensated run() const { return compensate(request); }
 };
@@ -66,8 +65,7 @@ inline std::string without_header(const std::string& text) {
 
 /// The moves of a program on the machine of a request.
 inline std::vector<Move> moves_of(const std::string& text, const CompensateRequest& request) {
-  controllers::ProgramSetup setup = program_setup({request.tool_table, request.parameters, ""});
-  take_parameter_file(kOffsets, "offsets.var", setup);
+  controllers::ProgramSetup setup = program_setup(request.inputs, request.program_file);
   return controllers::interpret(text, "text", setup);
 }
 
