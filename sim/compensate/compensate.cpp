@@ -10,6 +10,7 @@
 #include <set>
 
 #include "controllers/gcode/modal_state.h"
+#include "controllers/gcode/parameters.h"
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/units.h"
 #include "sim/canon.h"
@@ -167,6 +168,31 @@ std::string words_text(const AxisWords& words, const JointLayout& layout) {
   return out;
 }
 
+// Where a work system lies: what the request says, else the parameter file. m, rad
+struct WorkSystemPlace {
+  AxisWords offset = AxisWords::Zero();
+  double rotation = 0.0;
+};
+
+WorkSystemPlace place_of(const controllers::ProgramSetup& setup, int system) {
+  const auto k = static_cast<std::size_t>(system - 1);
+  const auto stored = [&](int number) {
+    const auto found = setup.stored.find(number);
+    return found == setup.stored.end() ? 0.0 : found->second;
+  };
+  WorkSystemPlace place{setup.work_offset[k], setup.work_rotation[k]};
+  for (const Axis axis : kAllAxes) {
+    const int i = index_of(axis);
+    if (place.offset[i] != 0.0) continue;
+    place.offset[i] =
+        stored(controllers::parameter::work_offset(system) + i) * (is_linear(axis) ? mm : deg);
+  }
+  if (place.rotation == 0.0) {
+    place.rotation = stored(controllers::parameter::work_rotation(system)) * deg;
+  }
+  return place;
+}
+
 // What the result relies on.
 std::vector<std::string> assumptions(const CompensateRequest& request, const Known& known,
                                      const Summary& summary, const JointLayout& layout) {
@@ -175,15 +201,13 @@ std::vector<std::string> assumptions(const CompensateRequest& request, const Kno
     out.emplace_back("G54 lies at machine zero: no --work-offset and no --parameter-file say more");
   }
   for (const int system : known.work_systems) {
-    const auto k = static_cast<std::size_t>(system - 1);
-    const bool is_there =
-        !known.setup.work_offset[k].isZero(0.0) || known.setup.work_rotation[k] != 0.0;
+    const WorkSystemPlace place = place_of(known.setup, system);
+    const bool is_there = !place.offset.isZero(0.0) || place.rotation != 0.0;
     if (known.is_assumed || (!is_there && system != 1)) continue;
     out.push_back(fmt::format(
-        "{} lies at {}{}", kWorkSystems[k], words_text(known.setup.work_offset[k], layout),
-        known.setup.work_rotation[k] == 0.0
-            ? ""
-            : fmt::format(", turned by {:g} deg", known.setup.work_rotation[k] / deg)));
+        "{} lies at {}{}", kWorkSystems[static_cast<std::size_t>(system - 1)],
+        words_text(place.offset, layout),
+        place.rotation == 0.0 ? "" : fmt::format(", turned by {:g} deg", place.rotation / deg)));
   }
   for (const auto& [number, length] : summary.tools) {
     out.push_back(number == 0  ? fmt::format("no tool is known: length {:g} mm", length / mm)

@@ -13,7 +13,8 @@ using Eigen::Vector3d;
 // Shares of the tolerance: what may be missed between two looks, and what is left for blocks when
 // printed digits have theirs, too.
 constexpr double kMissed = 0.1, kForBlocks = 0.85;
-constexpr double kVaries = 0.1;  // of the tolerance: from then on a correction is not constant
+constexpr double kVaries = 0.1;   // of the tolerance: from then on a correction is not constant
+constexpr double kStill = 1e-12;  // m, rad: what rounding leaves of positions
 constexpr int kMostHalvings = 20;
 constexpr double kWidestArc = 3.0;        // rad, where an arc falls into several
 constexpr double kShortestChord = 10e-6;  // m, of an arc: shorter ones are lines
@@ -299,8 +300,11 @@ AxisWords ProgrammedMove::at(double t) const {
 }
 
 double ProgrammedMove::length() const {
-  return arc ? arc->length() : (end - begin).head<3>().norm();
+  const double length = arc ? arc->length() : (end - begin).head<3>().norm();
+  return length > kStill ? length : 0.0;
 }
+
+bool ProgrammedMove::turns_axes() const { return (end - begin).tail<3>().norm() > kStill; }
 
 AxisWords corrected(const ProgrammedMove& move, const Correction& correction, double t) {
   const AxisWords work = move.at(t);

@@ -37,8 +37,8 @@ struct ProgrammedMove {
   WorkFrame frame;
 
   AxisWords at(double t) const;
-  double length() const;  // of X Y Z, m
-  bool turns_axes() const { return begin.tail<3>() != end.tail<3>(); }
+  double length() const;  // of X Y Z, m; 0 where rounding alone moves them
+  bool turns_axes() const;
 };
 
 struct FitOptions {

@@ -210,7 +210,9 @@ void DialectWriter::say_step(const Block& block, const Step& step) {
   // work coordinates without rotation and shift
   AxisWords origin = AxisWords::Zero();
   if (!motion.is_place) origin = state.work_offset + state.tool_offset;
-  const double turned = (step.programmed.end - step.programmed.begin).tail<3>().norm();
+  const double turned = step.programmed.turns_axes()
+                            ? (step.programmed.end - step.programmed.begin).tail<3>().norm()
+                            : 0.0;
   const double length = step.programmed.length();
   AxisWords at = walk_.out() - origin;
   const double grid = std::pow(10.0, -printer_->decimals());

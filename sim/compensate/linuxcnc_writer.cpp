@@ -42,6 +42,8 @@ struct WovenLine {
 
 namespace {
 
+constexpr double kStanding = 1e-12;  // m, rounding of offsets
+
 constexpr double kHalf = 0.5 + 1e-6;  // of a grid step
 
 std::size_t index(char letter) { return static_cast<std::size_t>(letter - 'A'); }
@@ -553,7 +555,7 @@ void LinuxCncWriter::write_step(const Step& step, WovenLine& line, bool is_woven
   const Move& one = *step.move;
   const bool is_rapid = one.kind == MoveKind::rapid;
   const bool is_inverse = line.feed_mode == FeedMode::inverse_time;
-  const bool only_turns = !is_rapid && !is_inverse && step.programmed.length() == 0.0 &&
+  const bool only_turns = !is_rapid && !is_inverse && step.programmed.length() < kStanding &&
                           line.feed_mode == FeedMode::units_per_minute &&
                           step.programmed.turns_axes();
   const double angle = (step.programmed.end - step.programmed.begin).tail<3>().norm();
