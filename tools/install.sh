@@ -7,6 +7,8 @@ BUILD_PACKAGES=(g++ cmake ninja-build libeigen3-dev libfmt-dev libhdf5-dev libde
 FIGURE_PACKAGES=(python3 python3-numpy python3-h5py python3-matplotlib python3-pil python3-xarray
   python3-h5netcdf)
 TEST_PACKAGES=(git libgtest-dev libbenchmark-dev clang-format clang-tidy hdf5-tools shellcheck)
+# Fuzz targets with libFuzzer (tools/fuzz); clang-tidy brings most of it along.
+FUZZ_PACKAGES=(clang-14 libclang-rt-14-dev)
 # A Slurm cluster of one machine (tools/slurm/local_cluster) and GNU parallel (tools/parallel).
 CLUSTER_PACKAGES=(slurmctld slurmd slurm-client munge)
 PARALLEL_PACKAGES=(parallel)

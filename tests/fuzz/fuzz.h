@@ -1,0 +1,37 @@
+/// What all fuzz targets have in common. A target is a function of bytes that must neither crash
+/// nor hang nor break one of the laws that it checks; whatever is wrong with the bytes ends as an
+/// `InputError` with a place inside them.
+///
+/// A target is built twice: with clang and libFuzzer, which looks for such bytes (`tools/fuzz`),
+/// and as an ordinary test that runs the bytes known so far (replay.cpp): its seeds and everything
+/// that was ever found, in tests/fuzz/corpus.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "plant/vocabulary/input_error.h"
+
+/// What libFuzzer calls. @return 0
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+namespace servomill::fuzz {
+
+/// Longest input; what comes behind it is left out, as libFuzzer does.
+inline constexpr std::size_t kMostBytes = 65536;
+
+/// The bytes as text.
+std::string_view text_of(const std::uint8_t* data, std::size_t size);
+
+/// Prints the law and the details and aborts if the law does not hold.
+void require(bool holds, std::string_view law, std::string_view details = {});
+
+/// Law: every fault has a message and names the file; line and column, where it has them, are in
+/// the text. (What is missing in a file has neither.)
+/// @param file  what the reader was told the text is called
+void require_places(std::span<const Fault> faults, std::string_view text, std::string_view file);
+
+}  // namespace servomill::fuzz
