@@ -1,8 +1,11 @@
 #include "tests/fuzz/fuzz.h"
 
 #include <fmt/format.h>
+#include <sys/time.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 
@@ -26,10 +29,32 @@ bool lies_inside(const Place& place, std::string_view text) {
   return place.column <= length_of_line(text, place.line) + 1;
 }
 
+// A timer of the processor's time, not of the wall: others may use the machine as well.
+void set_timer(int seconds) {
+  itimerval timer{};
+  timer.it_value.tv_sec = seconds;
+  setitimer(ITIMER_PROF, &timer, nullptr);
+}
+
+void out_of_time(int) {
+  constexpr std::string_view kLaw = "law broken: no input takes that long\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kLaw.data(), kLaw.size());
+  std::abort();
+}
+
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION  // as -fsanitize=fuzzer has it
+constexpr int kAllowed = kMostSeconds * kInstrumentedFactor;
+#else
+constexpr int kAllowed = kMostSeconds;
+#endif
+
 }  // namespace
 
-std::string_view text_of(const std::uint8_t* data, std::size_t size) {
-  return {reinterpret_cast<const char*>(data), std::min(size, kMostBytes)};
+void run_in_time(std::string_view input) {
+  std::signal(SIGPROF, out_of_time);
+  set_timer(kAllowed);
+  run(input.substr(0, kMostBytes));
+  set_timer(0);
 }
 
 void require(bool holds, std::string_view law, std::string_view details) {

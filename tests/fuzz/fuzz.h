@@ -8,23 +8,27 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "plant/vocabulary/input_error.h"
 
-/// What libFuzzer calls. @return 0
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-
 namespace servomill::fuzz {
 
 /// Longest input; what comes behind it is left out, as libFuzzer does.
 inline constexpr std::size_t kMostBytes = 65536;
 
-/// The bytes as text.
-std::string_view text_of(const std::uint8_t* data, std::size_t size);
+/// Law of all targets: no input takes more time of the processor than this.
+inline constexpr int kMostSeconds = 1;
+/// Instrumented programs take so many times longer.
+inline constexpr int kInstrumentedFactor = 10;
+
+/// A target: each of fuzz_*.cpp defines it.
+void run(std::string_view input);
+
+/// run() within the time allowed; what takes longer is aborted.
+void run_in_time(std::string_view input);
 
 /// Prints the law and the details and aborts if the law does not hold.
 void require(bool holds, std::string_view law, std::string_view details = {});

@@ -5,38 +5,38 @@
 #include "controllers/gcode/cl_data.h"
 #include "tests/fuzz/fuzz.h"
 
+namespace servomill::fuzz {
 namespace {
 
 constexpr double kUnitTol = 1e-12;  // rounding of a vector divided by its length
 
 void read(std::string_view text, const std::string& file) {
-  using namespace servomill;
   std::vector<controllers::Warning> warnings;
   try {
     const auto data = controllers::read_cl_data(text, file, &warnings);
     for (const auto& record : data.records) {
-      fuzz::require(
+      require(
           std::isfinite(record.feed) && std::isfinite(record.value) && record.P.p_WT.allFinite(),
           "records are finite");
-      fuzz::require(std::abs(record.P.k_W.norm() - 1.0) < kUnitTol, "tool axes are unit vectors");
+      require(std::abs(record.P.k_W.norm() - 1.0) < kUnitTol, "tool axes are unit vectors");
     }
-    fuzz::require(data.locations() > 0, "a file holds a location");
+    require(data.locations() > 0, "a file holds a location");
     warnings = data.warnings;
   } catch (const InputError& error) {
-    fuzz::require_places(error.faults(), text, file);
+    require_places(error.faults(), text, file);
   }
   for (const auto& warning : warnings) {
     const Fault as_fault{warning.place, warning.message};
-    fuzz::require_places(std::span(&as_fault, 1), text, file);
+    require_places(std::span(&as_fault, 1), text, file);
   }
 }
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text = servomill::fuzz::text_of(data, size);
+void run(std::string_view text) {
   // APT knows no line that begins with a letter of the header of CSV
   const bool is_csv = !text.empty() && (text[0] == '#' || text[0] == 'x' || text[0] == '\n');
   read(text, is_csv ? "part.csv" : "part.cls");
-  return 0;
 }
+
+}  // namespace servomill::fuzz

@@ -44,18 +44,15 @@ std::size_t run(std::string_view text, const controllers::ProgramSetup& setup) {
 }
 
 }  // namespace
-}  // namespace servomill::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace servomill::fuzz;
-  const std::string_view text = text_of(data, size);
+void run(std::string_view text) {
   const auto setup = setup_for(text);
   const std::size_t faults = run(text, setup);
-  if (text.size() > 4096) return 0;  // long ones once: the time allowed is that of one reading
-  const auto found =
-      servomill::controllers::check_program(std::string(text), std::string(kProgram), setup);
+  if (text.size() > 4096) return;  // long ones once: the time allowed is that of one reading
+  const auto found = controllers::check_program(std::string(text), std::string(kProgram), setup);
   if (!found.empty()) require_places(found, text, kProgram);
   // not the other way round: it goes on behind an end that only a run can see, M[1 + 1]
   require(!found.empty() || faults == 0, "check finds a fault where running does");
-  return 0;
 }
+
+}  // namespace servomill::fuzz

@@ -50,33 +50,31 @@ void require_same(const Move& a, const Move& b, std::string_view printed) {
 }
 
 }  // namespace
-}  // namespace servomill::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace servomill;
-  const std::string_view text = fuzz::text_of(data, size);
-  const auto setup = fuzz::setup_for(text);
-  const auto moves = fuzz::moves_until_fault(text, setup).moves;
+void run(std::string_view text) {
+  const auto setup = setup_for(text);
+  const auto moves = moves_until_fault(text, setup).moves;
   for (const Move& move : moves) {
-    if (!fuzz::has_size_of_a_machine(move)) return 0;
+    if (!has_size_of_a_machine(move)) return;
   }
   std::string printed;
   try {
     printed = controllers::print_program(moves, {}, text.substr(0, 300)).text;
   } catch (const InputError& error) {
-    fuzz::require(error.faults().front().place.line > 0, "a refusal names the line");
-    return 0;
+    require(error.faults().front().place.line > 0, "a refusal names the line");
+    return;
   }
   std::vector<Move> again;
   try {
     again = controllers::interpret(printed, "printed.ngc", setup);
   } catch (const InputError& error) {
-    fuzz::require(false, "a printed program is accepted", error.what() + ("\n" + printed));
+    require(false, "a printed program is accepted", error.what() + ("\n" + printed));
   }
   // where a fault cut the moves off, the end that is added also turns spindle and coolant off
   const bool has_end = !moves.empty() && moves.back().kind == MoveKind::end;
-  fuzz::require(has_end ? again.size() == moves.size() : again.size() > moves.size(),
-                "no printed move is missing or added", printed);
-  for (std::size_t i = 0; i < moves.size(); ++i) fuzz::require_same(moves[i], again[i], printed);
-  return 0;
+  require(has_end ? again.size() == moves.size() : again.size() > moves.size(),
+          "no printed move is missing or added", printed);
+  for (std::size_t i = 0; i < moves.size(); ++i) require_same(moves[i], again[i], printed);
 }
+
+}  // namespace servomill::fuzz

@@ -9,7 +9,9 @@
 #include <iterator>
 #include <map>
 
+#include "sim/config/reader.h"
 #include "sim/read_file.h"
+#include "sim/read_machine.h"
 #include "sim/scenario.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -58,8 +60,10 @@ void require_own_places(const InputError& error, std::string_view text) {
 }
 
 void read_machine(std::string_view text) {
-  sim::read_machine_file(std::string(kDocument));
   const auto parsed = sim::Document::from_text(text, std::string(kDocument));
+  sim::Reader root(parsed);
+  sim::read_machine(root);
+  root.finish();
   const std::string written = parsed.to_toml();
   require(sim::Document::from_text(written, "written.toml").to_toml() == written,
           "what was written reads to the same", written);
@@ -82,6 +86,16 @@ bool is_machine(std::string_view text) {
 }
 
 }  // namespace
+
+void run(std::string_view text) {
+  document = text;
+  try {
+    is_machine(text) ? read_machine(text) : read_scenario(text);
+  } catch (const InputError& error) {
+    require_own_places(error, text);
+  }
+}
+
 }  // namespace servomill::fuzz
 
 namespace servomill::sim {
@@ -96,15 +110,3 @@ std::string read_file(const std::string& path, const Place& at, std::string_view
 }
 
 }  // namespace servomill::sim
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace servomill;
-  fuzz::document = fuzz::text_of(data, size);
-  try {
-    fuzz::is_machine(fuzz::document) ? fuzz::read_machine(fuzz::document)
-                                     : fuzz::read_scenario(fuzz::document);
-  } catch (const InputError& error) {
-    fuzz::require_own_places(error, fuzz::document);
-  }
-  return 0;
-}

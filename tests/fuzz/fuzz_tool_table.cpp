@@ -4,18 +4,19 @@
 #include "controllers/gcode/tool_table.h"
 #include "tests/fuzz/fuzz.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace servomill;
-  const std::string_view text = fuzz::text_of(data, size);
+namespace servomill::fuzz {
+
+void run(std::string_view text) {
   try {
     const auto table = controllers::ToolTable::parse(text, "tools.tbl");
     for (const auto& [number, tool] : table.entries()) {
-      fuzz::require(tool.offset.allFinite() && std::isfinite(tool.diameter), "tools are finite");
-      fuzz::require(table.find(number) != nullptr && table.find(number)->number == number,
-                    "a tool is found by its number");
+      require(tool.offset.allFinite() && std::isfinite(tool.diameter), "tools are finite");
+      require(table.find(number) != nullptr && table.find(number)->number == number,
+              "a tool is found by its number");
     }
   } catch (const InputError& error) {
-    fuzz::require_places(error.faults(), text, "tools.tbl");
+    require_places(error.faults(), text, "tools.tbl");
   }
-  return 0;
 }
+
+}  // namespace servomill::fuzz
