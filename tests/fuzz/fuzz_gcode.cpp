@@ -11,6 +11,9 @@
 namespace servomill::fuzz {
 namespace {
 
+// It runs to the end, however many lines a loop goes through.
+constexpr std::size_t kMostChecked = 4096;
+
 bool is_finite(const Move& move) {
   const double sum = move.end.sum() + move.end_machine.sum() + move.arc.centre.sum() +
                      move.centre_machine.sum() + move.tool_axis.sum();
@@ -19,27 +22,28 @@ bool is_finite(const Move& move) {
          std::isfinite(move.s_end);
 }
 
-// All moves, over all faults; the number of faults.
-std::size_t run(std::string_view text, const controllers::ProgramSetup& setup) {
+// All lines, over all faults; the number of faults.
+std::size_t faults_of(std::string_view text, const controllers::ProgramSetup& setup) {
   controllers::Interpreter interpreter(std::string(text), std::string(kProgram), setup);
-  std::size_t moves = 0, faults = 0;
+  std::size_t faults = 0;
   double s = 0.0;
-  while (moves < kMostMoves) {
+  for (std::size_t lines = 0; lines < kMostLines; ++lines) {
     try {
-      const auto move = interpreter.next();
-      if (!move) break;
-      require(is_finite(*move), "moves are finite", fmt::format("line {}", move->line));
-      require(
-          move->s_begin == s && move->s_end >= s, "path lengths follow on each other",
-          fmt::format("line {}: {} to {} behind {}", move->line, move->s_begin, move->s_end, s));
-      s = move->s_end;
-      ++moves;
+      const auto block = interpreter.next_block();
+      if (!block) break;
+      for (const Move& move : block->moves) {
+        require(is_finite(move), "moves are finite", fmt::format("line {}", move.line));
+        require(move.s_begin == s && move.s_end >= s, "path lengths follow on each other",
+                fmt::format("line {}: {} to {} behind {}", move.line, move.s_begin, move.s_end, s));
+        s = move.s_end;
+      }
     } catch (const InputError& error) {
-      require_places(error.faults(), text, kProgram);
+      require(!error.faults().empty(), "an InputError has a fault");
+      require_program_places(error.faults(), text);
       ++faults;
     }
   }
-  if (!interpreter.warnings().empty()) require_places(interpreter.warnings(), text, kProgram);
+  require_program_places(interpreter.warnings(), text);
   return faults;
 }
 
@@ -47,10 +51,10 @@ std::size_t run(std::string_view text, const controllers::ProgramSetup& setup) {
 
 void run(std::string_view text) {
   const auto setup = setup_for(text);
-  const std::size_t faults = run(text, setup);
-  if (text.size() > 4096) return;  // long ones once: the time allowed is that of one reading
+  const std::size_t faults = faults_of(text, setup);
+  if (text.size() > kMostChecked) return;
   const auto found = controllers::check_program(std::string(text), std::string(kProgram), setup);
-  if (!found.empty()) require_places(found, text, kProgram);
+  require_program_places(found, text);
   // not the other way round: it goes on behind an end that only a run can see, M[1 + 1]
   require(!found.empty() || faults == 0, "check finds a fault where running does");
 }

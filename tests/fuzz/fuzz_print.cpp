@@ -53,7 +53,7 @@ void require_same(const Move& a, const Move& b, std::string_view printed) {
 
 void run(std::string_view text) {
   const auto setup = setup_for(text);
-  const auto moves = moves_until_fault(text, setup).moves;
+  const auto moves = moves_until_fault(text, setup);
   for (const Move& move : moves) {
     if (!has_size_of_a_machine(move)) return;
   }
