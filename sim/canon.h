@@ -19,7 +19,7 @@ struct ProgramInputs {
   std::string parameter_file = {};                   // LinuxCNC's "var" file, or empty
   std::vector<std::string> subroutine_folders = {};  // beside that of the program
   bool block_delete = false;                         // leave out lines that start with '/'
-  long most_jumps = 10'000'000;                      // loops turned and subroutines called
+  long most_jumps = 1'000'000;                       // loops turned and subroutines called
 };
 
 /// What the control knows before the program runs.

@@ -931,6 +931,8 @@ Move& Interpreter::Machine::emit(MoveKind kind) {
   const bool waits = !queue.empty() && kind != MoveKind::message;
   Move& move = waits ? queue.emplace_back().move : out_.emplace_back();
   describe(move, kind);
+  // a message comes before what waits
+  if (!waits && !queue.empty()) move.s_begin = move.s_end = queue.front().move.s_begin;
   return move;
 }
 

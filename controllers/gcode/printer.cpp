@@ -243,6 +243,10 @@ class Printer {
       throw InputError({{}, move.line, 0},
                        "tool-centre-point control and tilted work planes cannot be printed");
     }
+    if (move.feed_mode == FeedMode::units_per_revolution && S_ == "0") {
+      throw InputError({{}, move.line, 0},
+                       "a feed per revolution while the spindle speed is zero cannot be printed");
+    }
     print_modes(move);
     const Steps steps = steps_of(move.end);
     const bool is_arc = move.kind == MoveKind::arc && !vanishes(move, steps);

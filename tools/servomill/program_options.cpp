@@ -19,7 +19,7 @@ void add_program_options(Options& options) {
   options.add()("block-delete", "leaves out the lines that start with '/'");
   options.add()("max-jumps", po::value<long>()->value_name("N"),
                 "loops turned and subroutines called before a program counts as endless "
-                "(10000000)");
+                "(1000000)");
 }
 
 void add_machine_option(Options& options) {

@@ -1,10 +1,13 @@
 /// Programs compensated and run on a machine that has just the errors that were believed.
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <string>
@@ -22,7 +25,10 @@
 namespace servomill::sim {
 
 inline std::string written(const std::string& name, const std::string& text) {
-  const std::string path = testing::TempDir() + "compensate_" + name;
+  // a folder for each test program: they may run beside each other
+  const std::string folder = fmt::format("{}trial_{}", testing::TempDir(), getpid());
+  std::filesystem::create_directories(folder);
+  const std::string path = folder + "/compensate_" + name;
   std::ofstream(path, std::ios::binary) << text;
   return path;
 }
