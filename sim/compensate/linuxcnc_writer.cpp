@@ -24,11 +24,11 @@ struct WovenLine {
   int number = 0;
   std::string text;
   std::vector<LinePiece> pieces;
-  std::vector<const Code*> codes;   // of each piece, where it is a G or M code
-  std::vector<std::string> words;   // of each piece; empty: it goes
-  std::string behind;               // codes that act behind the motion, where they do not fit in
-  std::array<double, 26> values{};  // of words, in program units
-  std::array<bool, 26> has{}, is_constant{};
+  std::vector<const Code*> codes;  // of each piece, where it is a G or M code
+  std::vector<std::string> words;  // of each piece; empty: it goes
+  std::string behind;              // codes that act behind the motion, where they do not fit in
+  std::array<double, controllers::kWordLetters> values{};  // of words, in program units
+  std::array<bool, controllers::kWordLetters> has{}, is_constant{};
   bool is_motion = false;  // has words that its moves take
   bool is_cycle = false;
   std::string letters;  // of such words
@@ -46,7 +46,8 @@ constexpr double kStanding = 1e-12;  // m, rounding of offsets
 
 constexpr double kHalf = 0.5 + 1e-6;  // of a grid step
 
-std::size_t index(char letter) { return static_cast<std::size_t>(letter - 'A'); }
+constexpr std::string_view kAllLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ@^";
+std::size_t index(char letter) { return controllers::word_index(letter); }
 char axis_letter(int i) { return letter(kAllAxes[static_cast<std::size_t>(i)]); }
 double unit_of(int axis, double unit) { return axis < kLinearJoints ? unit : deg; }
 
@@ -148,7 +149,7 @@ WovenLine line_of(const ExecutedBlock& block, Summary& summary) {
     line.codes[i] = code_of(piece, *block.request);
     if (piece.kind == PieceKind::word) line.is_constant[index(piece.letter)] = piece.is_constant;
   }
-  for (char letter = 'A'; letter <= 'Z'; ++letter) {
+  for (const char letter : kAllLetters) {
     line.has[index(letter)] = block.request->has(letter);
     line.values[index(letter)] = (*block.request)[letter];
   }
@@ -196,7 +197,7 @@ bool is_empty(const WovenLine& line) {
 
 // Letters that belong to motion: those of its axes, and what arcs and cycles take.
 std::string motion_letters(const ExecutedBlock& block) {
-  std::string letters = "XYZABC";
+  std::string letters = "XYZABC@^";
   const int code = block.request->motion_code();
   if (code == 20 || code == 30) letters += "IJKRP";
   if (is_cycle(code)) letters += "IJKRPQL";
@@ -456,6 +457,7 @@ void LinuxCncWriter::write(const Block& given) {
     line.is_motion = block.request->motion.code != nullptr && !is_place &&
                      std::any_of(kAllAxes.begin(), kAllAxes.end(),
                                  [&](Axis axis) { return block.request->has(letter(axis)); });
+    line.is_motion = line.is_motion || block.request->has_polar();
     shift_position(block, line);
   }
   waiting_.push_back(std::move(line));

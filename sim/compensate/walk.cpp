@@ -79,7 +79,8 @@ void Walk::learn(const Move& move, const ExecutedBlock& block) {
   const bool is_absolute = !block.state->is_incremental || is_place_of_machine(block);
   const bool goes_home = (non_modal(block) == 280 || non_modal(block) == 300) && !names_any(block);
   for (int i = 0; i < kAxisWords; ++i) {
-    if (goes_home || (is_absolute && is_named(block, i))) {
+    const bool is_polar = i < 2 && block.request != nullptr && block.request->has_polar();
+    if (goes_home || (is_absolute && (is_named(block, i) || is_polar))) {
       known_[static_cast<std::size_t>(i)] = true;
     }
     const Axis axis = kAllAxes[static_cast<std::size_t>(i)];

@@ -139,6 +139,19 @@ TEST(Compensate, ShiftsOfThePositionAreToldWhereItStands) {
             "M2\n");
 }
 
+TEST(Compensate, LoopsSubroutinesAndPolarWordsBecomeTheirMoves) {
+  const Compensated done =
+      with_errors(kStart +
+                      "o<row> sub\no1 repeat [#1]\nG91 G1 X[10 * 2] F100 (step)\nG90\no1 "
+                      "endrepeat\no<row> endsub\n"
+                      "o<row> call [2]\no2 if [0]\nG1 X999\no2 endif\nG1 @50 ^90\nM2\n",
+                  "EXX = { constant_um = 30.0 }\n");
+  EXPECT_EQ(without_header(done.program),
+            "G21 G90 G17\nT1 M6 G43 H1\nG0 X-0.03 Y0 Z5\nG91 G1 X20 F100 (step)\nG90\n"
+            "G91 G1 X20 F100 (step)\nG90\nG1 X-0.03 Y50\nM2\n");
+  EXPECT_TRUE(done.summary.unrolled);
+}
+
 TEST(Compensate, InverseTimeIsSharedAmongTheBlocks) {
   const Compensated done = with_errors(kStart + "G93 G1 X200 F2\nG94\nM2\n",
                                        "EYX = { polynomial_um = [0.0, 0.0, 0.01] }\n");
