@@ -1,6 +1,7 @@
 #include "sim/canon.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include "controllers/gcode/canon_json.h"
 #include "controllers/gcode/cl_data.h"
@@ -61,6 +62,10 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
   }
   setup.block_delete = inputs.block_delete;
   setup.most_jumps = inputs.most_jumps;
+  for (const std::string& folder : inputs.subroutine_folders) {
+    if (!std::filesystem::is_directory(folder))
+      throw InputError({"--subs " + folder}, "is no folder");
+  }
   setup.subroutine_file = subroutine_files(program_file, inputs.subroutine_folders);
   return setup;
 }

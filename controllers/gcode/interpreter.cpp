@@ -180,8 +180,11 @@ void Interpreter::Machine::fail_at_end() {
   ended_ = true;
   std::string message(kNoEnd);
   if (flow_.skips_to_sub) {
-    message = fmt::format("no subroutine O<{}> up to here; line {} calls it", *flow_.skip_to,
-                          flow_.skip_from);
+    message = fmt::format("no subroutine O<{0}> up to here, which line {1} calls{2}",
+                          *flow_.skip_to, flow_.skip_from,
+                          text_ == flow_.calls.back().return_to.text
+                              ? fmt::format(", and no file {}.ngc", *flow_.skip_to)
+                              : "");
   } else if (flow_.skip_to) {
     const std::string label = flow_.skip_to->substr(flow_.skip_to->find('#') + 1);
     message =
@@ -352,8 +355,11 @@ const ToolEntry& Interpreter::Machine::tool_named(char letter, int number) const
   if (number == 0) return no_tool;
   const ToolEntry* tool = setup_.tools.find(number);
   if (tool == nullptr) {
-    fail_at(letter, fmt::format("{}{}: no such tool in the tool table of {} tools", letter, number,
-                                setup_.tools.size()));
+    fail_at(letter,
+            setup_.tools.empty()
+                ? fmt::format("{}{}: no tool is known; a tool table says them", letter, number)
+                : fmt::format("{}{}: no such tool in the tool table of {} tools", letter, number,
+                              setup_.tools.size()));
   }
   return *tool;
 }

@@ -101,12 +101,17 @@ class ParameterLines {
 
 std::map<int, double> parse_parameter_file(std::string_view text, const std::string& file) {
   ParameterLines lines(file);
+  const bool is_empty = text.find_first_not_of(" \t\r\n") == std::string_view::npos;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     lines.read_line(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
-  return lines.result();
+  std::map<int, double> stored = lines.result();
+  if (stored.empty() && !is_empty) {
+    throw InputError({file}, "holds no parameter, a number and its value in a line");
+  }
+  return stored;
 }
 
 int work_system_of(const std::map<int, double>& stored) {

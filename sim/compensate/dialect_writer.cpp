@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <span>
 
+#include "controllers/gcode/canned_cycles.h"
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/input_error.h"
@@ -112,13 +113,15 @@ void DialectWriter::note_what_became_numbers(const Block& block) {
   if (block.is_repeated || block.call_depth > 0) summary_.unrolled = true;
   if (block.request == nullptr) return;
   const int motion = block.request->motion_code();
-  summary_.has_cycles |= motion == 730 || (motion > 800 && motion <= 890);
+  summary_.has_cycles |= controllers::is_canned_cycle(motion);
   summary_.has_cutter_compensation |= block.request->code(Group::g_cutter_compensation) > 400;
 }
 
 void DialectWriter::write(const Block& block) {
   if (block.block != nullptr && block.block->deleted) return printer_->comment(block.text);
   if (is_skipped(block)) summary_.unrolled = true;
+  says_path_ =
+      says_path_ || (block.request != nullptr && block.request->code(Group::g_path_control) >= 0);
   note_what_became_numbers(block);
   check_codes(block);
   try {
@@ -183,11 +186,13 @@ void DialectWriter::say_modes(const Block& block, const Step& step) {
   work_system_ = move.work_offset;
   const std::string path =
       fmt::format("{} {}", static_cast<int>(move.path_mode), move.path_tolerance);
-  const bool is_told = block.request != nullptr && block.request->code(Group::g_path_control) >= 0;
-  if (path != path_ && (is_told || !path_.empty())) {
+  // a canned cycle follows its path exactly, whatever is in force
+  const bool is_of_cycle =
+      block.request != nullptr && controllers::is_canned_cycle(block.request->motion_code());
+  if (path != path_ && says_path_ && !is_of_cycle) {
     printer_->path_mode(move.path_mode, move.path_tolerance);
+    path_ = path;
   }
-  path_ = path;
   const bool minds_length =
       move.kind != MoveKind::rapid || step.programmed.begin[2] != step.programmed.end[2];
   if (is_place_of_machine(block) || !minds_length) return;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "controllers/gcode/canned_cycles.h"
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/number_text.h"
 #include "controllers/gcode/request.h"
@@ -54,8 +55,6 @@ double unit_of(int axis, double unit) { return axis < kLinearJoints ? unit : deg
 bool acts_behind_motion(const Code* code) {
   return code != nullptr && code->group == Group::m_stop;
 }
-
-bool is_cycle(int tenths) { return tenths == 730 || (tenths > 800 && tenths <= 890); }
 
 // Code of a piece: the one that stands in its column.
 const Code* code_of(const LinePiece& piece, const controllers::Request& request) {
@@ -195,12 +194,39 @@ bool is_empty(const WovenLine& line) {
   });
 }
 
+// What means something else in a program without subroutines, or where the axes stand elsewhere.
+void refuse_what_changes_its_meaning(const ExecutedBlock& block) {
+  const controllers::Request& request = *block.request;
+  const auto fail = [&](Group group, std::string message) {
+    throw InputError({*block.file, block.line, request.of(group).column}, std::move(message));
+  };
+  if (request.code(Group::m_spindle) == 730 && block.call_depth > 0) {
+    fail(
+        Group::m_spindle,
+        "M73 restores at the end of its subroutine, and subroutines are unrolled; use M70 and M72");
+  }
+  const controllers::ModalState& state = *block.state;
+  if (state.compensation.acts() && state.feed_mode == FeedMode::inverse_time &&
+      request.motion_code() > 0) {
+    throw InputError({*block.file, block.line, request.motion.column},
+                     "inverse time (G93) under cutter compensation cannot be unrolled: its moves "
+                     "are of other lengths; use G94");
+  }
+  const int L = static_cast<int>(std::lround(request['L']));
+  const bool sets_position = request.code(Group::g_non_modal) == 100 && L == 20;
+  const auto P = static_cast<int>(std::lround(request['P']));
+  if (sets_position && P != 0 && P != block.state->work_system) {
+    fail(Group::g_non_modal,
+         fmt::format("G10 L20 P{} of a work system that is not in force cannot be corrected", P));
+  }
+}
+
 // Letters that belong to motion: those of its axes, and what arcs and cycles take.
 std::string motion_letters(const ExecutedBlock& block) {
   std::string letters = "XYZABC@^";
   const int code = block.request->motion_code();
   if (code == 20 || code == 30) letters += "IJKRP";
-  if (is_cycle(code)) letters += "IJKRPQL";
+  if (controllers::is_canned_cycle(code)) letters += "IJKRPQL";
   return letters;
 }
 
@@ -439,6 +465,7 @@ void LinuxCncWriter::write(const Block& given) {
   }
   drop_slash(line, summary_);
   if (block.request != nullptr) {
+    refuse_what_changes_its_meaning(block);
     const int cutter = block.request->code(Group::g_cutter_compensation);
     if (cutter > 400) {
       summary_.has_cutter_compensation = compensates_cutter_ = true;
@@ -453,7 +480,7 @@ void LinuxCncWriter::write(const Block& given) {
     }
     const bool is_place = is_place_of_machine(block);
     line.letters = motion_letters(block);
-    line.is_cycle = is_cycle(block.request->motion_code());
+    line.is_cycle = controllers::is_canned_cycle(block.request->motion_code());
     line.is_motion = block.request->motion.code != nullptr && !is_place &&
                      std::any_of(kAllAxes.begin(), kAllAxes.end(),
                                  [&](Axis axis) { return block.request->has(letter(axis)); });
@@ -475,7 +502,7 @@ void LinuxCncWriter::shift_position(const Block& block, WovenLine& line) const {
   const bool sets = code == 920 || (code == 100 && (L == 20 || L == 10 || L == 11));
   if (!sets) return;
   const controllers::ModalState& state = *block.state;
-  const AxisWords off = state.unrotated(walk_.displacement());
+  const AxisWords off = state.unrotated(walk_.out() - state.to_machine(state.position));
   for (std::size_t i = 0; i < line.pieces.size(); ++i) {
     if (line.pieces[i].kind != PieceKind::word) continue;
     const auto axis = axis_of(line.pieces[i].letter);

@@ -48,8 +48,7 @@ class Walk {
   /// @param machine  (6; m, rad), as printed
   void arrive(const Step& step, const AxisWords& machine);
 
-  /// Where the output stands minus where the program does (6; machine coordinates).
-  AxisWords displacement() const { return out_ - programmed_; }
+  /// Where the output stands (6; machine coordinates).
   const AxisWords& out() const { return out_; }
   bool is_known(Axis axis) const { return known_[static_cast<std::size_t>(index_of(axis))]; }
 

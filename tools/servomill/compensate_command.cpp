@@ -100,6 +100,10 @@ int compensate_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
 
   const std::string name = program_name(options);
+  std::error_code ignored;
+  if (fs::equivalent(name, options.word(), ignored)) {
+    throw InputError({"--output " + name}, "is the program itself; name another file");
+  }
   const sim::Compensated done = sim::compensate(request_of(options));
   const bool to_stdout = name == "-";
   if (!to_stdout) sim::write_text_file(name, done.program, options.has("force"));

@@ -200,6 +200,15 @@ std::string refusal(const Trial& trial) {
   return "taken";
 }
 
+TEST(Compensate, RefusesWhatUnrollingOrCorrectingWouldChange) {
+  EXPECT_EQ(refusal(Trial("o1 sub\nM73\nG91\no1 endsub\no1 call\nM2\n")),
+            "part.ngc:2:1: error: M73 restores at the end of its subroutine, and subroutines are "
+            "unrolled; use M70 and M72");
+  EXPECT_EQ(refusal(Trial("G0 X0 Y0 Z0\nG10 L20 P2 X0\nM2\n")),
+            "part.ngc:2:1: error: G10 L20 P2 of a work system that is not in force cannot be "
+            "corrected");
+}
+
 TEST(Compensate, RefusesToFeedFromNobodyKnowsWhere) {
   Trial trial("G21 G90\nG0 X0 Z5\nG1 Z-1 F100\nM2\n");
   EXPECT_EQ(
