@@ -8,7 +8,8 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr int kSignificant = 12;  // digits
+constexpr int kSignificant = 12;           // digits
+constexpr std::size_t kLongestText = 200;  // of a message; a line holds at most 252 characters
 
 std::string trim_zeros(std::string text) {
   if (text.find('.') != std::string::npos) {
@@ -27,6 +28,14 @@ std::string fixed_text(double x, int decimals) {
 std::string significant_text(double x) {
   const int magnitude = x == 0.0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(x))));
   return fixed_text(x, std::clamp(kSignificant - 1 - magnitude, 0, 30));
+}
+
+std::string comment_text(std::string_view text) {
+  std::string out;
+  for (const char c : text.substr(0, kLongestText)) {
+    out += c == '(' ? '[' : c == ')' ? ']' : c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return out;
 }
 
 }  // namespace servomill::controllers

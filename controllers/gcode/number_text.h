@@ -1,7 +1,9 @@
-/// Numbers as programs hold them: fixed point, without exponents and trailing zeros.
+/// Numbers and comments as programs hold them: numbers in fixed point, without exponents and
+/// trailing zeros.
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace servomill::controllers {
 
@@ -10,5 +12,9 @@ std::string fixed_text(double x, int decimals);
 
 /// With twelve significant digits at most.
 std::string significant_text(double x);
+
+/// What may stand between '(' and ')': one line of at most 200 characters, brackets in place of
+/// parentheses.
+std::string comment_text(std::string_view text);
 
 }  // namespace servomill::controllers

@@ -17,8 +17,6 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr std::size_t kLongestText = 200;  // of a message; a line holds at most 252 characters
-
 // A coordinate on the grid of the printed decimals, counted in its smallest step.
 class Grid {
  public:
@@ -40,14 +38,6 @@ std::string path_code(const Move& move) {
   if (move.path_mode == PathMode::exact_stop) return "G61.1";
   if (move.path_tolerance == 0.0) return "G64";
   return fmt::format("G64 P{}", significant_text(move.path_tolerance / mm));
-}
-
-std::string one_line(std::string_view text) {
-  std::string out;
-  for (const char c : text.substr(0, kLongestText)) {
-    out += c == '(' ? '[' : c == ')' ? ']' : c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return out;
 }
 
 class Printer {
@@ -80,7 +70,7 @@ class Printer {
   void print_header(std::string_view header) {
     while (!header.empty()) {
       const std::size_t end = std::min(header.find('\n'), header.size());
-      line(fmt::format("({})", one_line(header.substr(0, end))));
+      line(fmt::format("({})", comment_text(header.substr(0, end))));
       header.remove_prefix(std::min(end + 1, header.size()));
     }
     line("G21 G90 G91.1 G94 G17 G40 G80");
@@ -107,7 +97,7 @@ class Printer {
         return line("M30");
       case MoveKind::message:
         return line(fmt::format("({},{})", move.number == kPrintMessage ? "PRINT" : "MSG",
-                                one_line(move.text)));
+                                comment_text(move.text)));
     }
   }
 

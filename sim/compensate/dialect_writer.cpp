@@ -52,7 +52,7 @@ bool is_in_the_moves(const Code& code) {
       return code.tenths == 40 || code.tenths == 280 || code.tenths == 300 || code.tenths == 530 ||
              code.tenths == 520 || (code.tenths >= 920 && code.tenths <= 923);
     case Group::m_stop:
-      return code.tenths <= 20 || code.tenths == 300;
+      return code.tenths <= 20 || code.tenths == 300 || code.tenths == 990;
     case Group::m_tool:
       return code.tenths == 60;
     case Group::m_spindle:

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "controllers/gcode/canned_cycles.h"
+#include "controllers/gcode/lexer.h"
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/number_text.h"
 #include "controllers/gcode/request.h"
@@ -22,6 +23,7 @@ using controllers::Group;
 
 // A line with its pieces as they will be written, and the modes that its motion is written in.
 struct WovenLine {
+  std::string file;
   int number = 0;
   std::string text;
   std::vector<LinePiece> pieces;
@@ -131,6 +133,7 @@ void put_messages(const ExecutedBlock& block, WovenLine& line) {
 
 WovenLine line_of(const ExecutedBlock& block, Summary& summary) {
   WovenLine line;
+  line.file = *block.file;
   line.number = block.line;
   line.text = block.text;
   line.pieces = line_pieces(block);
@@ -179,7 +182,9 @@ void drop_slash(WovenLine& line, Summary& summary) {
 void drop_o_words(WovenLine& line) {
   for (std::size_t i = 0; i < line.pieces.size(); ++i) {
     const PieceKind kind = line.pieces[i].kind;
-    if (kind != PieceKind::comment && kind != PieceKind::blank) drop(line, i);
+    const bool stays = kind == PieceKind::blank ||
+                       (kind == PieceKind::comment && !is_spoken(line.pieces[i].of(line.text)));
+    if (!stays) drop(line, i);
   }
 }
 
@@ -194,16 +199,30 @@ bool is_empty(const WovenLine& line) {
   });
 }
 
+// Whether a feed of the block moves rotary axes and no linear one.
+bool turns_alone(const ExecutedBlock& block) {
+  return std::any_of(block.moves.begin(), block.moves.end(), [](const Move& move) {
+    return move.kind == MoveKind::feed && !(move.s_end > move.s_begin);
+  });
+}
+
 // What means something else in a program without subroutines, or where the axes stand elsewhere.
 void refuse_what_changes_its_meaning(const ExecutedBlock& block) {
   const controllers::Request& request = *block.request;
   const auto fail = [&](Group group, std::string message) {
     throw InputError({*block.file, block.line, request.of(group).column}, std::move(message));
   };
-  if (request.code(Group::m_spindle) == 730 && block.call_depth > 0) {
-    fail(
-        Group::m_spindle,
-        "M73 restores at the end of its subroutine, and subroutines are unrolled; use M70 and M72");
+  if (request.code(Group::m_spindle) >= 700 && block.call_depth > 0) {
+    fail(Group::m_spindle,
+         fmt::format("M{} in a subroutine: what it saves belongs to the call, and subroutines are "
+                     "unrolled",
+                     request.code(Group::m_spindle) / 10));
+  }
+  const int code = request.code(Group::g_non_modal);
+  if (code == 281 || code == 301) {
+    fail(Group::g_non_modal,
+         fmt::format("{} would store the corrected place as that of the machine",
+                     controllers::code_name('G', code)));
   }
   const controllers::ModalState& state = *block.state;
   if (state.compensation.acts() && state.feed_mode == FeedMode::inverse_time &&
@@ -212,8 +231,14 @@ void refuse_what_changes_its_meaning(const ExecutedBlock& block) {
                      "inverse time (G93) under cutter compensation cannot be unrolled: its moves "
                      "are of other lengths; use G94");
   }
+  if (state.feed_mode == FeedMode::units_per_revolution && request.motion_code() > 0 &&
+      turns_alone(block)) {
+    throw InputError({*block.file, block.line, request.motion.column},
+                     "rotary axes alone at a feed per revolution (G95) cannot keep their time; use "
+                     "G94");
+  }
   const int L = static_cast<int>(std::lround(request['L']));
-  const bool sets_position = request.code(Group::g_non_modal) == 100 && L == 20;
+  const bool sets_position = code == 100 && L == 20;
   const auto P = static_cast<int>(std::lround(request['P']));
   if (sets_position && P != 0 && P != block.state->work_system) {
     fail(Group::g_non_modal,
@@ -430,6 +455,11 @@ void LinuxCncWriter::put(std::string_view text) {
 void LinuxCncWriter::put(const WovenLine& line) {
   std::string text;
   for (const std::string& word : line.words) text += word;
+  if (text.size() > controllers::kLongestLine) {
+    throw InputError({line.file, line.number},
+                     fmt::format("becomes a line of {} characters; at most {} are allowed",
+                                 text.size(), controllers::kLongestLine));
+  }
   if (!text.empty() || line.text.empty()) put(text);
 }
 
@@ -445,10 +475,9 @@ bool LinuxCncWriter::take_percent(const Block& block) {
 
 void LinuxCncWriter::write(const Block& given) {
   Block block = given;
-  if (!block.text.empty() && block.text.back() == '\r') {
-    end_of_line_ = "\r\n";
-    block.text.remove_suffix(1);
-  }
+  const bool has_return = !block.text.empty() && block.text.back() == '\r';
+  if (has_return) block.text.remove_suffix(1);
+  if (has_return && text_.empty() && waiting_.empty()) end_of_line_ = "\r\n";  // the first line
   if (take_percent(block)) return;
   if (block.text.find_first_not_of(" \t") != std::string_view::npos) is_first_ = false;
   if (is_skipped(block)) {
@@ -459,6 +488,7 @@ void LinuxCncWriter::write(const Block& given) {
   if (has_o_word(line) || block.is_repeated || block.call_depth > 0) summary_.unrolled = true;
   if (has_o_word(line)) {
     drop_o_words(line);
+    if (!block.moves.empty() && block.moves.back().kind == MoveKind::end) put("M2");  // M99
     if (is_empty(line)) return;
   } else if (block.block != nullptr && block.block->deleted) {
     return put(fmt::format("; {}", block.text));
@@ -562,6 +592,8 @@ void LinuxCncWriter::put_cycle_step(const Move& one) {
     put(fmt::format("G4 P{}", controllers::significant_text(one.value)));
   } else if (one.kind == MoveKind::spindle) {
     put(one.direction > 0 ? "M3" : one.direction < 0 ? "M4" : "M5");
+  } else if (one.kind == MoveKind::stop) {
+    put(fmt::format("M{}", one.number));
   }
 }
 
@@ -631,7 +663,9 @@ void LinuxCncWriter::write_step(const Step& step, WovenLine& line, bool is_woven
 std::string LinuxCncWriter::finish(const std::vector<std::string>& header) {
   release_until(0);
   std::string comment;
-  for (const std::string& one : header) comment += fmt::format("({}){}", one, end_of_line_);
+  for (const std::string& one : header) {
+    comment += fmt::format("({}){}", controllers::comment_text(one), end_of_line_);
+  }
   text_.insert(header_at_, comment);
   if (is_open_) put("%");
   return std::move(text_);

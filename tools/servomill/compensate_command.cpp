@@ -114,7 +114,7 @@ int compensate_command(const Arguments& arguments) {
   for (const Fault& warning : done.warnings) {
     fmt::print(stderr, "{}: warning: {}\n", to_string(warning.place), warning.message);
   }
-  if (to_stdout) std::fputs(done.program.c_str(), stdout);
+  if (to_stdout) std::fwrite(done.program.data(), 1, done.program.size(), stdout);
   if (options.has("quiet")) return kDone;
   std::FILE* to = to_stdout ? stderr : stdout;
   if (options.has("json")) {

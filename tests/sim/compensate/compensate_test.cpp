@@ -202,8 +202,10 @@ std::string refusal(const Trial& trial) {
 
 TEST(Compensate, RefusesWhatUnrollingOrCorrectingWouldChange) {
   EXPECT_EQ(refusal(Trial("o1 sub\nM73\nG91\no1 endsub\no1 call\nM2\n")),
-            "part.ngc:2:1: error: M73 restores at the end of its subroutine, and subroutines are "
-            "unrolled; use M70 and M72");
+            "part.ngc:2:1: error: M73 in a subroutine: what it saves belongs to the call, and "
+            "subroutines are unrolled");
+  EXPECT_EQ(refusal(Trial("G0 X0 Y0 Z0\nG28.1\nM2\n")),
+            "part.ngc:2:1: error: G28.1 would store the corrected place as that of the machine");
   EXPECT_EQ(refusal(Trial("G0 X0 Y0 Z0\nG10 L20 P2 X0\nM2\n")),
             "part.ngc:2:1: error: G10 L20 P2 of a work system that is not in force cannot be "
             "corrected");
