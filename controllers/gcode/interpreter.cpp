@@ -185,6 +185,7 @@ void Interpreter::Machine::fail_at_end() {
                           text_ == flow_.calls.back().return_to.text
                               ? fmt::format(", and no file {}.ngc", *flow_.skip_to)
                               : "");
+    flow_.calls.pop_back();  // it has not begun
   } else if (flow_.skip_to) {
     const std::string label = flow_.skip_to->substr(flow_.skip_to->find('#') + 1);
     message =

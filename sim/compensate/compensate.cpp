@@ -26,6 +26,8 @@
 namespace servomill::sim {
 namespace {
 
+constexpr std::string_view kHeader = "(servomill compensate:";  // of corrected programs
+
 namespace fs = std::filesystem;
 using strategies::DisplacedAxes;
 
@@ -232,9 +234,14 @@ std::vector<std::string> unrolled(const Summary& summary) {
   return out;
 }
 
-std::vector<Fault> warnings_of(const CompensateRequest& request, const Summary& summary,
-                               const JointLayout& layout) {
+std::vector<Fault> warnings_of(const CompensateRequest& request, const Known& known,
+                               const Summary& summary, const JointLayout& layout) {
   std::vector<Fault> out;
+  if (known.is_assumed) {
+    out.push_back({{request.program_file},
+                   "nothing says where G54 lies, and errors depend on it: taken at machine zero; "
+                   "--work-offset or --parameter-file say it"});
+  }
   if (summary.outside) {
     out.push_back(
         {{request.program_file, summary.outside->line},
@@ -325,6 +332,10 @@ Compensated compensate(const CompensateRequest& request) {
                                        known.setup);
   while (const auto block = interpreter.next_block()) {
     refuse_unknown_system(*block, request, known.work_systems);
+    if (block->text.starts_with(kHeader)) {
+      out.warnings.push_back({{request.program_file, block->line},
+                              "this program has been corrected before; it is corrected again"});
+    }
     writer->write(*block);
   }
 
@@ -339,8 +350,9 @@ Compensated compensate(const CompensateRequest& request) {
   out.report = summary.report(layout);
   for (const std::string& one : unrolled(summary)) out.report.push_back(one);
   for (const std::string& one : summary.assumed) out.report.push_back("assumed: " + one);
-  out.warnings = interpreter.warnings();
-  const auto more = warnings_of(request, summary, layout);
+  out.warnings.insert(out.warnings.end(), interpreter.warnings().begin(),
+                      interpreter.warnings().end());
+  const auto more = warnings_of(request, known, summary, layout);
   out.warnings.insert(out.warnings.end(), more.begin(), more.end());
   out.json = summary.json(layout);
   out.machine = machine.name;

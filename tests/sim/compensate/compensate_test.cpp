@@ -200,6 +200,18 @@ std::string refusal(const Trial& trial) {
   return "taken";
 }
 
+TEST(Compensate, WarnsOfWhatItTakesForGranted) {
+  Trial trial("(servomill compensate: part.ngc)\nG21 G90\nG0 X0 Y0 Z0\nM2\n");
+  trial.request.inputs.parameter_file.clear();
+  const Compensated done = trial.run();
+  ASSERT_GE(done.warnings.size(), 2U);
+  EXPECT_EQ(done.warnings[0].message,
+            "this program has been corrected before; it is corrected again");
+  EXPECT_EQ(done.warnings[1].message,
+            "nothing says where G54 lies, and errors depend on it: taken at machine zero; "
+            "--work-offset or --parameter-file say it");
+}
+
 TEST(Compensate, RefusesWhatUnrollingOrCorrectingWouldChange) {
   EXPECT_EQ(refusal(Trial("o1 sub\nM73\nG91\no1 endsub\no1 call\nM2\n")),
             "part.ngc:2:1: error: M73 in a subroutine: what it saves belongs to the call, and "
