@@ -138,7 +138,7 @@ void Interpreter::Machine::read_executed_line() {
 void Interpreter::Machine::read_skipped_line() {
   parser_.parse(line_, file(), line(), block_, Parser::Extent::flow_only);
   if (block_.percent) {
-    if (!texts_[text_].percent.is_framed()) return;
+    if (!texts_[text_].percent.is_framed()) return block_.clear();
     return saw_percent();
   }
   texts_[text_].percent.saw_line();

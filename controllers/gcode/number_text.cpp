@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controllers/gcode/lexer.h"
+
 namespace servomill::controllers {
 namespace {
 
@@ -36,6 +38,12 @@ std::string comment_text(std::string_view text) {
     out += c == '(' ? '[' : c == ')' ? ']' : c == '\n' || c == '\r' ? ' ' : c;
   }
   return out;
+}
+
+std::string remark(std::string_view text) {
+  const std::string inside = comment_text(text);
+  const bool speaks = classify_comment(inside, 0).kind != CommentKind::plain;
+  return fmt::format("({}{})", speaks ? "- " : "", inside);
 }
 
 }  // namespace servomill::controllers

@@ -17,4 +17,8 @@ std::string significant_text(double x);
 /// parentheses.
 std::string comment_text(std::string_view text);
 
+/// A comment with its parentheses that says nothing, whatever the text: one that would read as a
+/// message gets a dash before it.
+std::string remark(std::string_view text);
+
 }  // namespace servomill::controllers

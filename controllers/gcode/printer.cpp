@@ -70,7 +70,7 @@ class Printer {
   void print_header(std::string_view header) {
     while (!header.empty()) {
       const std::size_t end = std::min(header.find('\n'), header.size());
-      line(fmt::format("({})", comment_text(header.substr(0, end))));
+      line(remark(header.substr(0, end)));
       header.remove_prefix(std::min(end + 1, header.size()));
     }
     line("G21 G90 G91.1 G94 G17 G40 G80");

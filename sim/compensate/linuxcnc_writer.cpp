@@ -224,6 +224,9 @@ void refuse_what_changes_its_meaning(const ExecutedBlock& block) {
          fmt::format("{} would store the corrected place as that of the machine",
                      controllers::code_name('G', code)));
   }
+  if (request.code(Group::g_tool_length) == 431 && request.motion.code != nullptr) {
+    fail(Group::g_tool_length, "G43.1 beside a motion: both take the axis words");
+  }
   const controllers::ModalState& state = *block.state;
   if (state.compensation.acts() && state.feed_mode == FeedMode::inverse_time &&
       request.motion_code() > 0) {
@@ -236,6 +239,11 @@ void refuse_what_changes_its_meaning(const ExecutedBlock& block) {
     throw InputError({*block.file, block.line, request.motion.column},
                      "rotary axes alone at a feed per revolution (G95) cannot keep their time; use "
                      "G94");
+  }
+  if (state.feed_mode == FeedMode::units_per_revolution && state.spindle_speed == 0.0 &&
+      controllers::is_canned_cycle(request.motion_code())) {
+    throw InputError({*block.file, block.line, request.motion.column},
+                     "a cycle under G95 while the spindle speed is zero has no feed");
   }
   const int L = static_cast<int>(std::lround(request['L']));
   const bool sets_position = code == 100 && L == 20;
@@ -581,18 +589,18 @@ void LinuxCncWriter::move(const Block& block) {
       has_moved = true;
       move(one, block, is_place);
     } else if (has_moved && cycles) {  // everything else the line says
-      put_cycle_step(one);
+      put_cycle_step(one, block);
     }
   }
   if (!has_moved && !waiting_.back().is_motion) note_motion_code(waiting_.back());
 }
 
-void LinuxCncWriter::put_cycle_step(const Move& one) {
+void LinuxCncWriter::put_cycle_step(const Move& one, const Block& block) {
   if (one.kind == MoveKind::dwell) {
     put(fmt::format("G4 P{}", controllers::significant_text(one.value)));
   } else if (one.kind == MoveKind::spindle) {
     put(one.direction > 0 ? "M3" : one.direction < 0 ? "M4" : "M5");
-  } else if (one.kind == MoveKind::stop) {
+  } else if (one.kind == MoveKind::stop && block.request->code(Group::m_stop) < 0) {  // of G88
     put(fmt::format("M{}", one.number));
   }
 }
@@ -664,7 +672,7 @@ std::string LinuxCncWriter::finish(const std::vector<std::string>& header) {
   release_until(0);
   std::string comment;
   for (const std::string& one : header) {
-    comment += fmt::format("({}){}", controllers::comment_text(one), end_of_line_);
+    comment += controllers::remark(one) + end_of_line_;
   }
   text_.insert(header_at_, comment);
   if (is_open_) put("%");

@@ -42,7 +42,7 @@ class LinuxCncWriter final : public ProgramWriter {
   bool take_percent(const Block& block);
   void move(const Block& block);
   void move(const Move& one, const Block& block, bool is_place);
-  void put_cycle_step(const Move& one);
+  void put_cycle_step(const Move& one, const Block& block);
   void release_until(int line);
   void release(WovenLine& line);
   void write_step(const Step& step, WovenLine& line, bool is_woven_in);
