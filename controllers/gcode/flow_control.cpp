@@ -96,13 +96,17 @@ void Interpreter::Machine::go_to(const LinePlace& place) {
   text().go_to(place.mark);
 }
 
-// Called where the program turns back or into a subroutine.
+// Called where the program turns back or into a subroutine. Long bodies count for more, so that an
+// endless program is stopped in seconds, whatever it does.
 void Interpreter::Machine::count_jump() {
-  if (++flow_.jumps <= setup_.most_jumps) return;
+  constexpr long kLinesOfATurn = 10;
+  const bool is_endless =
+      ++flow_.jumps > setup_.most_jumps || flow_.lines > kLinesOfATurn * setup_.most_jumps;
+  if (!is_endless) return;
   fail(
       block_.o_word.column,
-      fmt::format("more than {} turns of loops and calls of subroutines; the program seems endless",
-                  setup_.most_jumps));
+      fmt::format("{} turns of loops and calls of subroutines, {} lines; the program seems endless",
+                  flow_.jumps, flow_.lines));
 }
 
 Label& Interpreter::Machine::new_label(const std::string& name, Flow flow) {

@@ -116,6 +116,7 @@ bool Interpreter::Machine::read_block() {
   if (!text().next(line_)) fail_at_end();
   block_.clear();
   if (is_blank(line_)) return true;
+  if (flow_.jumps > 0) ++flow_.lines;
   try {
     flow_.skip_to ? read_skipped_line() : read_executed_line();
   } catch (const InputError& error) {

@@ -72,6 +72,7 @@ struct FlowState {
   double value = 0.0;  // of the last return or endsub
   bool has_value = false;
   long jumps = 0;
+  long lines = 0;  // run since the first jump
 };
 
 class Interpreter::Machine {

@@ -30,7 +30,8 @@ struct ProgramSetup {
   /// The file of a subroutine that the program calls and does not define: `o<name> call` asks for
   /// "name", `o100 call` and `M98 P100` for "100". Empty: there are no such files.
   std::function<std::optional<ProgramText>(const std::string& name)> subroutine_file;
-  /// Loops turned and subroutines called before a program counts as endless.
+  /// Loops turned and subroutines called before a program counts as endless, or ten times as many
+  /// lines in them.
   long most_jumps = 1'000'000;
   /// The machine, for tool-centre-point control and tilted planes. Without it a program may use
   /// G43.4 and G68.2 as long as its rotary axes are at zero where they are switched on and off.

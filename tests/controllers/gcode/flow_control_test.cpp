@@ -240,9 +240,15 @@ TEST(ExecutedBlocks, AreTheLinesInTheOrderOfTheirRun) {
 TEST(Loop, WithoutEndIsStopped) {
   ProgramSetup setup = usual_setup();
   setup.most_jumps = 1000;
-  EXPECT_EQ(fault_of("o1 while [1]\no1 endwhile", setup),
-            "p.nc:2:1: error: more than 1000 turns of loops and calls of subroutines; the program "
-            "seems endless");
+  EXPECT_EQ(
+      fault_of("o1 while [1]\no1 endwhile", setup),
+      "p.nc:2:1: error: 1001 turns of loops and calls of subroutines, 2000 lines; the program "
+      "seems endless");
+  std::string body;
+  for (int i = 0; i < 98; ++i) body += "G1 X1 F1\n";
+  EXPECT_EQ(fault_of("o1 while [1]\n" + body + "o1 endwhile", setup),
+            "p.nc:100:1: error: 102 turns of loops and calls of subroutines, 10100 lines; the "
+            "program seems endless");
 }
 
 }  // namespace
