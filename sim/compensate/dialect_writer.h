@@ -40,7 +40,7 @@ class DialectWriter final : public ProgramWriter {
   std::unique_ptr<DialectPrinter> printer_;
   int work_system_ = 0, tool_offset_ = 0, tool_ = 0, coolant_ = 0;
   double rpm_ = 0.0;
-  std::string path_;  // code in force
+  std::string path_;        // code in force
   bool says_path_ = false;  // the program has said how it is to be followed
   bool must_name_Z_ = false;
 };
