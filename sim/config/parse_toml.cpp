@@ -23,8 +23,12 @@ class Source {
     }
   }
 
-  Place place(const toml::source_region& region) const {
-    return {name_, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+  Place place(const toml::source_region& region) const { return place(region.begin); }
+  // Where the text breaks off, the library's position lies beyond the end of its line.
+  Place place(const toml::source_position& position) const {
+    if (position.line == 0 || position.line > lines_.size()) return {name_};
+    const auto column = std::min<std::size_t>(position.column, characters(position.line) + 1);
+    return {name_, static_cast<int>(position.line), static_cast<int>(column)};
   }
   std::string written(const toml::source_region& region) const {
     const std::size_t begin = offset(region.begin);
@@ -32,6 +36,14 @@ class Source {
   }
 
  private:
+  // of a line (counted from 1), without its end
+  std::size_t characters(std::size_t line) const {
+    const std::string_view rest = text_.substr(lines_[line - 1]);
+    const std::string_view text = rest.substr(0, rest.find('\n'));
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return !continues_a_character(c); }));
+  }
+
   std::size_t offset(const toml::source_position& position) const {
     std::size_t at = lines_[position.line - 1];
     for (toml::source_index column = 1; column < position.column; ++column) {

@@ -13,6 +13,8 @@ namespace {
 
 // It runs to the end, however many lines a loop goes through.
 constexpr std::size_t kMostChecked = 4096;
+// A loop may fail at every turn: a thrown fault costs a sanitizer more than a block does.
+constexpr std::size_t kMostFaults = 500;
 
 bool is_finite(const Move& move) {
   const double sum = move.end.sum() + move.end_machine.sum() + move.arc.centre.sum() +
@@ -27,7 +29,7 @@ std::size_t faults_of(std::string_view text, const controllers::ProgramSetup& se
   controllers::Interpreter interpreter(std::string(text), std::string(kProgram), setup);
   std::size_t faults = 0;
   double s = 0.0;
-  for (std::size_t lines = 0; lines < kMostLines; ++lines) {
+  for (std::size_t lines = 0; lines < kMostLines && faults < kMostFaults; ++lines) {
     try {
       const auto block = interpreter.next_block();
       if (!block) break;
