@@ -1,0 +1,23 @@
+#include "plant/cutting/cutter.h"
+
+#include <cmath>
+
+namespace servomill::plant {
+
+double Cutter::radius_at(double h) const {
+  if (h >= corner_radius) return radius;
+  return radius - corner_radius + std::sqrt(h * (2.0 * corner_radius - h));
+}
+
+std::vector<std::string> implausible(const Cutter& cutter) {
+  std::vector<std::string> faults;
+  if (!(cutter.radius > 0.0)) faults.emplace_back("radius must be > 0");
+  if (cutter.corner_radius < 0.0) faults.emplace_back("corner_radius must be >= 0");
+  if (cutter.corner_radius > cutter.radius) faults.emplace_back("corner_radius must be <= radius");
+  if (!(cutter.length > cutter.corner_radius)) faults.emplace_back("length must be > corner_radius");
+  if (cutter.teeth < 1) faults.emplace_back("teeth must be >= 1");
+  if (std::abs(cutter.helix) >= 1.5) faults.emplace_back("helix must be below 86 deg");
+  return faults;
+}
+
+}  // namespace servomill::plant

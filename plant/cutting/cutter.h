@@ -1,0 +1,44 @@
+/// Milling cutters: the body that their teeth sweep as they turn.
+///
+///      |       |        axis k, from the tip to the spindle
+///      |       |        height h above the tip (m)
+///      |       |        flank: radius R
+///       \_____/         corner radius r: 0 flat, R ball, between them bull nose
+///          tip
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace servomill::plant {
+
+/// An end mill. The body is convex: all points at height h in [0, length] no farther than
+/// radius_at(h) from the axis.
+struct Cutter {
+  double radius = 0.0;         // R, m
+  double corner_radius = 0.0;  // r, m, 0 <= r <= R
+  double length = 0.0;         // m, of the flutes; nothing above them cuts
+  int teeth = 2;
+  double helix = 0.0;  // rad
+
+  bool is_flat() const { return corner_radius == 0.0; }
+  bool is_ball() const { return corner_radius == radius; }
+
+  /// Distance of the envelope from the axis (m) at height h (m): R - r + sqrt(r^2 - (r - h)^2) for
+  /// h < r, else R.
+  /// @pre 0 <= h <= length
+  double radius_at(double h) const;
+};
+
+/// What is wrong with the values, each as "KEY RULE" ("corner_radius must be <= radius"). Empty for
+/// a cutter that can be.
+std::vector<std::string> implausible(const Cutter& cutter);
+
+/// Where a cutter stands, seen from the workpiece.
+struct CutterPosition {
+  Eigen::Vector3d tip = Eigen::Vector3d::Zero();    // m
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // k, from the tip to the spindle
+};
+
+}  // namespace servomill::plant
