@@ -13,6 +13,7 @@
 #include "sim/comparison.h"
 #include "sim/config/reader.h"
 #include "sim/read_ball.h"
+#include "sim/read_cutter.h"
 #include "sim/read_errors.h"
 #include "sim/read_machine.h"
 #include "sim/scenario_document.h"
@@ -226,11 +227,13 @@ class ScenarioReader {
     tool.pocket = tool.number;
     tool.offset[index_of(Axis::Z)] = table.real("length_mm", kLength, {at_least(0.0)});
     tool.diameter = table.real_or("diameter_mm", 0.0, kLength, {at_least(0.0)});
+    const auto cutter = read_cutter(table, tool.diameter);
     if (out_.program.tools.find(tool.number) != nullptr) {
       table.fault("number", "is the number of an earlier tool");
-    } else {
-      out_.program.tools.add(tool);
+      return;
     }
+    out_.program.tools.add(tool);
+    if (cutter) out_.program.cutters[tool.number] = *cutter;
   }
 
   void read_error_models(Reader& root) {

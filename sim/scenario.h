@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "controllers/gcode/tool_table.h"
+#include "plant/cutting/cutter.h"
 #include "plant/geometry/error_model.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/parameters.h"
@@ -29,6 +30,7 @@ struct ProgramSpec {
   AxisWords start = AxisWords::Zero();        // m, rad, in work coordinates
   Place start_place;                          // for a start outside the travel
   controllers::ToolTable tools;
+  std::map<int, plant::Cutter> cutters;  // of the tools with a diameter, by number
 };
 
 struct StrategySpec {

@@ -14,7 +14,8 @@ std::vector<std::string> implausible(const Cutter& cutter) {
   if (!(cutter.radius > 0.0)) faults.emplace_back("radius must be > 0");
   if (cutter.corner_radius < 0.0) faults.emplace_back("corner_radius must be >= 0");
   if (cutter.corner_radius > cutter.radius) faults.emplace_back("corner_radius must be <= radius");
-  if (!(cutter.length > cutter.corner_radius)) faults.emplace_back("length must be > corner_radius");
+  if (!(cutter.length > cutter.corner_radius))
+    faults.emplace_back("length must be > corner_radius");
   if (cutter.teeth < 1) faults.emplace_back("teeth must be >= 1");
   if (std::abs(cutter.helix) >= 1.5) faults.emplace_back("helix must be below 86 deg");
   return faults;
