@@ -1,5 +1,5 @@
 /// The machine that the interpreter runs a program on: what it remembers, and the steps of a block.
-/// Private to the interpreter (interpreter.cpp, compensated_motion.cpp, tip_control.cpp).
+/// Private to the interpreter: interpreter.cpp, motion.cpp, offsets.cpp, flow_control.cpp, ...
 #pragma once
 
 #include <array>
@@ -21,10 +21,16 @@
 #include "controllers/gcode/program_text.h"
 #include "controllers/gcode/request.h"
 #include "controllers/gcode/saved_state.h"
+#include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
 
 inline constexpr double kIntegerTol = 1e-4;  // as LinuxCNC, for words that must be integers
+
+/// An axis word as it stands in a parameter, in mm or degrees, and back.
+/// @param axis  0 ... 5, X to C
+inline double in_parameter_unit(int axis, double value) { return value / (axis < 3 ? mm : deg); }
+inline double from_parameter_unit(int axis, double value) { return value * (axis < 3 ? mm : deg); }
 
 // ---- flow control
 

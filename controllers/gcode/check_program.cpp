@@ -1,0 +1,82 @@
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "controllers/gcode/interpreter.h"
+#include "controllers/gcode/parser.h"
+#include "controllers/gcode/program_text.h"
+#include "controllers/gcode/request.h"
+
+namespace servomill::controllers {
+namespace {
+
+bool ends_program(const Block& block) {
+  return std::any_of(block.words.begin(), block.words.end(), [](const Word& word) {
+    return word.letter == 'M' && word.value.is_constant() &&
+           (word.value.number == 2.0 || word.value.number == 30.0);
+  });
+}
+
+void append(std::vector<Fault>& faults, const InputError& error) {
+  for (const Fault& fault : error.faults()) {
+    const bool known = std::any_of(faults.begin(), faults.end(), [&](const Fault& other) {
+      return other.place == fault.place && fault.message.starts_with(other.message);
+    });
+    if (!known) faults.push_back(fault);
+  }
+}
+
+// Subroutines may stand behind M2: where the program has O-words it is read to its last line.
+std::vector<Fault> syntax_faults(ProgramText& text, bool block_delete) {
+  std::vector<Fault> faults;
+  Parser parser(block_delete);
+  Block block;
+  PercentRule percent;
+  bool has_o_words = false;
+  for (std::string_view line; text.next(line);) {
+    if (is_blank(line)) continue;
+    try {
+      parser.parse(line, text.file(), text.number(), block);
+      if (block.percent) {
+        if (percent.saw_percent() == Percent::end) break;
+        continue;
+      }
+      percent.saw_line();
+      has_o_words = has_o_words || block.o_word.flow != Flow::none;
+      check_codes(block, text.file());
+      if (ends_program(block) && !has_o_words) break;
+    } catch (const InputError& error) {
+      percent.saw_line();
+      append(faults, error);
+    }
+  }
+  text.rewind();
+  return faults;
+}
+
+}  // namespace
+
+std::vector<Fault> check_program(ProgramText text, ProgramSetup setup) {
+  std::vector<Fault> faults = syntax_faults(text, setup.block_delete);
+  const std::string file = text.file();
+  try {
+    Interpreter interpreter(std::move(text), std::move(setup));
+    while (interpreter.next() != nullptr) {
+    }
+  } catch (const InputError& error) {
+    append(faults, error);
+  }
+  std::stable_sort(faults.begin(), faults.end(), [&](const Fault& a, const Fault& b) {
+    if (a.place.file != b.place.file) return a.place.file == file;
+    return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+  });
+  return faults;
+}
+
+std::vector<Fault> check_program(std::string text, std::string file, ProgramSetup setup) {
+  return check_program(ProgramText::of_text(std::move(text), std::move(file)), std::move(setup));
+}
+
+}  // namespace servomill::controllers

@@ -1,0 +1,284 @@
+// G0, G1, G2, G3 and what becomes of them: moves.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "controllers/gcode/interpreter_machine.h"
+#include "controllers/gcode/message_text.h"
+#include "plant/vocabulary/arc_sweep.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr double kTurnsTol = 1e-3;       // as LinuxCNC, for P of an arc
+constexpr double kSlowestInverse = 0.1;  // mm, inch or deg per minute; as LinuxCNC
+
+}  // namespace
+
+void Interpreter::Machine::motion() {
+  const int motion_before = state_.motion;
+  const int explicit_code = request().code(Group::g_motion);
+  if (explicit_code >= 0) state_.motion = explicit_code;
+  const int code = request().motion_code();
+  if (std::max(code, explicit_code) >= 0 && !is_canned_cycle(code)) state_.cycle.has_level = false;
+  if (request().code(Group::g_non_modal) == 530) {
+    const int column = request().of(Group::g_non_modal).column;
+    if (code != 0 && code != 10) fail(column, "G53 needs G0 or G1");
+    if (state_.is_incremental) fail(column, "G53 with G91; machine coordinates are absolute");
+  }
+  if (code >= 0 && state_.controls_tip()) refuse_rotary_words();
+  if (code == 0 || code == 10) straight();
+  if (code == 20 || code == 30) arc();
+  if (is_canned_cycle(code)) canned_cycle(motion_before);
+}
+
+AxisWords Interpreter::Machine::programmed_end() const {
+  if (request().code(Group::g_non_modal) == 530) {
+    if (request().has_polar()) {
+      fail(request().of(Group::g_non_modal).column, "G53 with polar coordinates");
+    }
+    return machine_end();
+  }
+  AxisWords end = state_.programmed();
+  if (request().has_polar()) end.head<2>() = polar_end(end.head<2>());
+  for (int i = 0; i < kAxisWords; ++i) {
+    if (has_axis(i)) end[i] = axis_word(i) + (state_.is_incremental ? end[i] : 0.0);
+  }
+  return end;
+}
+
+// Distance @ and direction ^ from the origin; what is left out stays.
+Eigen::Vector2d Interpreter::Machine::polar_end(const Eigen::Vector2d& begin) const {
+  const char first = request().has('@') ? '@' : '^';
+  if (state_.normal_axis != 2 || state_.is_uvw_plane) {
+    fail_at(first, "polar coordinates outside of G17");
+  }
+  for (const char word : {'X', 'Y'}) {
+    if (request().has(word)) fail_at(word, fmt::format("{} word with polar coordinates", word));
+  }
+  const double kept = state_.is_incremental ? 1.0 : 0.0;
+  double radius = begin.norm();
+  double angle = std::atan2(begin.y(), begin.x());
+  if (request().has('@')) radius = kept * radius + request()['@'] * state_.unit;
+  if (request().has('^')) angle = kept * angle + request()['^'] * deg;
+  return radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+}
+
+// X and Y turn together, so a G53 with one of them keeps the other in machine coordinates.
+AxisWords Interpreter::Machine::machine_end() const {
+  AxisWords target = state_.to_account(state_.position);
+  for (int i = 0; i < kAxisWords; ++i) {
+    if (has_axis(i)) target[i] = axis_word(i);
+  }
+  AxisWords end = state_.target_to_work(target);
+  for (int i = kLinearJoints; i < kAxisWords; ++i) {
+    if (!has_axis(i)) end[i] = state_.position[i];
+  }
+  return end;
+}
+
+void Interpreter::Machine::require_feed() const {
+  const Request::Chosen& chosen = request().motion;
+  const auto name = [&] { return code_name('G', chosen.code->tenths); };
+  if (state_.feed_mode == FeedMode::inverse_time) {
+    if (!request().has('F')) {
+      fail(chosen.column, fmt::format("{} without F; G93 needs one in every block", name()));
+    }
+  } else if (state_.feed_linear == 0.0) {
+    fail(chosen.column, fmt::format("{} with zero feed; no F is in force", name()));
+  } else if (state_.feed_mode == FeedMode::units_per_revolution && state_.spindle_speed == 0.0) {
+    fail(chosen.column,
+         fmt::format("{} under G95 with zero spindle speed; no S is in force", name()));
+  }
+}
+
+// @param length  of the XYZ path, m
+// @param angle   of a rotation, rad
+double Interpreter::Machine::move_feed(double length, double angle) const {
+  const bool is_linear_move = state_.controls_tip()
+                                  ? length > kStandingTip
+                                  : state_.s + length > state_.s;  // else it moves by rounding only
+  if (state_.feed_mode != FeedMode::inverse_time) {
+    return is_linear_move ? state_.feed_linear : state_.feed_rotary;
+  }
+  const double rate = request()['F'] / minute;
+  if (is_linear_move) return std::max(rate * length, kSlowestInverse * state_.unit / minute);
+  return std::max(rate * angle, kSlowestInverse * deg / minute);
+}
+
+void Interpreter::Machine::straight() {
+  state_.compensation.refuses_arc = false;
+  const bool is_rapid = request().motion_code() == 0;
+  if (!is_rapid) require_feed();
+  const bool enters = state_.compensation.acts() && !state_.compensation.is_entered;
+  const bool stands = !has_any_axis() && !request().has_polar() && !has_vector();
+  if (stands && !enters && (state_.controls_tip() || state_.compensation.acts())) return;
+  if (!is_rapid) warn_of_leaning_tool();
+  const AxisWords begin = state_.programmed();
+  AxisWords end = programmed_end();
+  const double length = (end - begin).head<3>().norm();
+  double angle = (end - begin).tail<3>().norm();
+  const bool has_tool_axis = state_.tool_control == ToolControl::tool_axis;
+  if (has_tool_axis) {
+    const Eigen::Vector3d k = programmed_axis();
+    angle = turn_towards(k, end);
+    state_.tool_axis = k;
+  }
+  const MoveKind kind = is_rapid ? MoveKind::rapid : MoveKind::feed;
+  const double feed = is_rapid ? 0.0 : move_feed(length, angle);
+  if (state_.compensation.acts()) {
+    return compensate(kind, {state_.in_plane(begin), state_.in_plane(end)}, end, length, feed);
+  }
+  move_to(kind, end, length, feed);
+  if (has_tool_axis) out_.back().tool_axis = state_.tool_axis;
+}
+
+int Interpreter::Machine::arc_turns(bool clockwise) const {
+  int turns = 1;
+  if (request().has('P')) {
+    turns = integer('P', kTurnsTol);
+    if (turns < 1) fail_at('P', fmt::format("P{}; an arc has at least 1 turn", turns));
+  }
+  return clockwise ? -turns : turns;
+}
+
+ArcCentre Interpreter::Machine::arc_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end,
+                                           bool clockwise) {
+  const Request::Chosen& chosen = request().motion;
+  const auto name = [&] { return code_name('G', chosen.code->tenths); };
+  const int n = state_.normal_axis;
+  const int first = (n + 1) % 3, second = (n + 2) % 3;
+  const ArcTolerance& tolerance = state_.unit == mm ? kArcToleranceMm : kArcToleranceInch;
+  const char letters[] = {"IJK"[first], "IJK"[second]};
+  const char normal = "IJK"[n];
+  const bool has_centre = request().has(letters[0]) || request().has(letters[1]);
+  if (request().has('R')) {
+    for (const char c : {'I', 'J', 'K'}) {
+      if (request().has(c)) fail_at(c, fmt::format("{} and R in one {} block", c, name()));
+    }
+    if (!has_axis(first) && !has_axis(second) && !request().has_polar()) {
+      fail(chosen.column,
+           fmt::format("{} with R needs {} or {}", name(), "XYZ"[first], "XYZ"[second]));
+    }
+    return radius_format(start, end, request()['R'] * state_.unit, clockwise, tolerance);
+  }
+  if (request().has(normal)) {
+    fail_at(normal,
+            fmt::format("{} in an arc of the {}{} plane", normal, "XYZ"[first], "XYZ"[second]));
+  }
+  if (!has_centre) {
+    fail(chosen.column, fmt::format("{} needs R, {} or {}", name(), letters[0], letters[1]));
+  }
+  Eigen::Vector2d centre(request()[letters[0]] * state_.unit, request()[letters[1]] * state_.unit);
+  if (!state_.is_centre_absolute) return centre_format(start, end, start + centre, tolerance);
+  for (const char c : letters) {
+    if (!request().has(c)) {
+      fail(chosen.column, fmt::format("{} needs {}: with G90.1 the centre is absolute", name(), c));
+    }
+  }
+  return centre_format(start, end, centre, tolerance);
+}
+
+void Interpreter::Machine::arc() {
+  require_feed();
+  if (state_.compensation.refuses_arc) {
+    fail(request().motion.column, fmt::format("{} is the first move behind G40; must be G0 or G1",
+                                              code_name('G', request().motion_code())));
+  }
+  if (state_.tool_control == ToolControl::tool_axis) {
+    fail(request().motion.column,
+         fmt::format("{} under G43.5, where I J K are the tool axis; use G1 or G43.4",
+                     code_name('G', request().motion_code())));
+  }
+  if (state_.is_uvw_plane) {
+    fail(request().motion.column, fmt::format("{} in a plane of U, V and W (G17.1 G18.1 G19.1)",
+                                              code_name('G', request().motion_code())));
+  }
+  const bool clockwise = request().motion_code() == 20;
+  const int turns = arc_turns(clockwise);
+  const int n = state_.normal_axis;
+  const AxisWords begin = state_.programmed();
+  const AxisWords end = programmed_end();
+  const Eigen::Vector2d a = state_.in_plane(begin), b = state_.in_plane(end);
+  const ArcCentre found = arc_centre(a, b, clockwise);
+  if (!found.fault.empty()) {
+    fail(request().motion.column,
+         fmt::format("{}: {}", code_name('G', request().motion_code()), found.fault));
+  }
+  AxisWords centre = state_.with_plane(AxisWords::Zero(), found.centre);
+  centre[n] = end[n];
+  const ArcSweep sweep(begin.head<3>(), end.head<3>(), centre.head<3>(), n, turns);
+  const double length = sweep.length();
+  const double angle = (end - begin).tail<3>().norm();
+  warn_of_leaning_tool();
+  // as LinuxCNC: the length that G93 speaks of is that of a circle with the radius at the start
+  const double nominal = std::hypot(sweep.r_begin * sweep.sweep, end[n] - begin[n]);
+  const double feed = move_feed(nominal, angle);
+  if (state_.compensation.acts()) {
+    return compensate(MoveKind::arc, {a, b, true, found.centre, turns}, end, length, feed);
+  }
+  move_to(MoveKind::arc, end, length, feed);
+  describe_arc(out_.back(), centre, turns);
+}
+
+// ----------------------------------------------------------------------------------------- output
+
+// While moves wait for the next one, everything but messages waits behind them.
+Move& Interpreter::Machine::emit(MoveKind kind) {
+  std::vector<Compensation::Waiting>& queue = state_.compensation.queue;
+  const bool waits = !queue.empty() && kind != MoveKind::message;
+  Move& move = waits ? queue.emplace_back().move : out_.emplace_back();
+  describe(move, kind);
+  // a message comes before what waits
+  if (!waits && !queue.empty()) move.s_begin = move.s_end = queue.front().move.s_begin;
+  return move;
+}
+
+void Interpreter::Machine::describe(Move& move, MoveKind kind) const {
+  move.kind = kind;
+  move.line = line();
+  move.end = state_.position;
+  move.end_machine = state_.to_machine(state_.position);
+  move.path_mode = state_.path_mode;
+  move.path_tolerance = state_.path_tolerance;
+  move.feed_mode = state_.feed_mode;
+  move.work_offset = state_.work_system;
+  move.tool_offset = state_.tool_offset_number;
+  move.s_begin = move.s_end = state_.s;
+  move.tool_control = state_.tool_control;
+  if (state_.plane && move.tool_control == ToolControl::none) {
+    move.tool_control = ToolControl::work_plane;
+  }
+}
+
+void Interpreter::Machine::describe_arc(Move& move, const AxisWords& centre, int turns) const {
+  move.arc = {state_.normal_axis, centre.head<3>(), turns};
+  if (state_.plane) move.plane = std::make_shared<const WorkPlane>(state_.plane_in_workpiece());
+  move.centre_machine = state_.to_machine(centre).head<3>();
+}
+
+void Interpreter::Machine::move_to(MoveKind kind, const AxisWords& end, double length,
+                                   double feed) {
+  const double s_begin = state_.s;
+  state_.s += length;
+  state_.position = end;
+  Move& move = emit(kind);
+  move.feed = feed;
+  if (move.feed_mode == FeedMode::inverse_time && kind != MoveKind::rapid) {
+    const bool is_rotary = !(s_begin + length > s_begin);  // #<_feed> is what it came to
+    state_.feed_linear = is_rotary ? feed / deg * state_.unit : feed;
+  }
+  if (move.feed_mode == FeedMode::units_per_revolution && kind != MoveKind::rapid) {
+    const bool turns = state_.spindle_direction != 0;
+    move.value = feed;
+    move.feed = turns ? feed * state_.spindle_speed / (2.0 * std::numbers::pi) : 0.0;
+  }
+  move.s_begin = s_begin;
+}
+
+}  // namespace servomill::controllers
