@@ -19,12 +19,11 @@ SHIFT = (0.1, 0.05, 0.02)  # mm: minus the errors below
 ERRORS = "[errors.c]\nEXX = { constant_um = -100.0 }\nEYX = { constant_um = -50.0 }\nEZX = { constant_um = -20.0 }\n"
 OFFSETS = "5220 1\n5221 500\n5222 400\n5223 -100\n5241 600\n5242 300\n5243 -95\n5250 12.5\n"
 PRINTED = 2e-5  # mm: half of a step of the printed decimals, at both ends
-# Not for comparing: places of the machine (G28, G30) stay where they are; a feed from where the machine stands before
-# the program begins gets a block that takes the tool to where it should be.
-PLACES = re.compile(r"G\s*(28|30)", re.IGNORECASE)
-# Odd, and not yet as they should be: an arc that only rounding tells from a point; a rotation that changes under a G92
-# shift; a change of unit under a tool offset (LinuxCNC keeps its number, not its length).
-LEFT = {"comp_entry.ngc", "rotation_change_with_shift.ngc", "unit_change_with_tool_offset.ngc"}
+# Not for comparing: places of the machine (G28, G30, G53) stay where they are; a feed from where the machine stands
+# before the program begins gets a block that takes the tool to where it should be; a helix on which C turns as well
+# becomes lines.
+PLACES = re.compile(r"G\s*(28|30|53)", re.IGNORECASE)
+LEFT = {"comp_entry.ngc"}
 LEAST_COMPARED = 100
 SERVOMILL = None
 
