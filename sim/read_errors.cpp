@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -15,6 +16,8 @@ using plant::ErrorFunction;
 using plant::ErrorName;
 
 constexpr std::string_view kDiffersFrom = "differs_from";
+constexpr double kLargestShift = 0.1;  // m, of a location error
+constexpr double kLargestAngle = 0.1;  // rad
 
 // Units of one error: of its value (um or urad) and of its axis' coordinate (mm or deg).
 struct Units {
@@ -87,6 +90,9 @@ ErrorFunction read_function(Reader& table, const Units& units) {
   if (const std::string key = units.value("polynomial"); table.has(key)) {
     sum = sum + plant::polynomial(read_coefficients(table, key, units));
   }
+  if (units.value_is_length && units.travel_is_length && table.has("um_per_m")) {
+    sum = sum + plant::polynomial({0.0, table.real("um_per_m", kNumber) * um});
+  }
   if (table.has("harmonic")) {
     if (table.is("harmonic", Value::Type::list)) {
       for (Reader& one : table.tables("harmonic")) sum = sum + read_harmonic(one, units);
@@ -102,10 +108,23 @@ ErrorFunction read_function(Reader& table, const Units& units) {
   return sum;
 }
 
+// A bare number is in m or rad: one that was meant in um or um/m would pass for kilometres.
+double read_bare_location(Reader& model, std::string_view key, const Units& units) {
+  const double value = model.real(key, units.value_quantity());
+  if (std::abs(value) <= (units.value_is_length ? kLargestShift : kLargestAngle)) return value;
+  model.fault(key,
+              units.value_is_length
+                  ? "is beyond 0.1 m, more than any machine has; a number without a unit is in "
+                    "m: write \"8 um\" or { constant_um = 8.0 }"
+                  : "is beyond 0.1 rad, more than any machine has; a number without a unit is "
+                    "in rad: write \"50 urad\" or { um_per_m = 50.0 }");
+  return 0.0;
+}
+
 // A location error: a number with its unit in a text, or a table with one key.
 double read_location(Reader& model, std::string_view key, const ErrorName& name) {
   const Units units = units_of(name);
-  if (!model.is(key, Value::Type::table)) return model.real(key, units.value_quantity());
+  if (!model.is(key, Value::Type::table)) return read_bare_location(model, key, units);
   Reader table = model.table(key);
   if (!units.value_is_length && table.has("um_per_m"))
     return table.real("um_per_m", kNumber) * urad;

@@ -48,6 +48,24 @@ TEST(ErrorModels, DifferByWhatTheySay) {
   EXPECT_NEAR(machine.component("EYX"_err).value(x), 6.0 * um, kRounding);
 }
 
+TEST(ErrorModels, MayHaveAnErrorOfScale) {
+  const Scenario scenario =
+      with_errors("[errors.screw]\nEXX = { um_per_m = 40.0, constant_um = 1.0 }\n");
+  const auto& EXX = scenario.errors.at("screw").component("EXX"_err);
+  EXPECT_NEAR(EXX.value(0.25), 11.0 * um, kRounding);
+  EXPECT_NEAR(EXX.value(-0.5), -19.0 * um, kRounding);
+}
+
+// EC0Y = 250 would be 40 turns, EX0C = 8 as many metres.
+TEST(ErrorModels, RefuseALocationWhoseUnitWasForgotten) {
+  EXPECT_EQ(faults_of("[errors.skew]\nEC0Y = 0.1\n"), "");
+  EXPECT_EQ(faults_of("[errors.skew]\nEC0Y = -250.0\nEX0C = 8\n"),
+            "errors.skew.EC0Y = -250.0; is beyond 0.1 rad, more than any machine has; a number "
+            "without a unit is in rad: write \"50 urad\" or { um_per_m = 50.0 }\n"
+            "errors.skew.EX0C = 8; is beyond 0.1 m, more than any machine has; a number without a "
+            "unit is in m: write \"8 um\" or { constant_um = 8.0 }\n");
+}
+
 TEST(ErrorModels, ThatDifferByNothingAreTheSame) {
   const Scenario scenario = with_errors("[errors.belief]\ndiffers_from = \"machine\"\n" + kMachine);
   EXPECT_TRUE(scenario.errors.at("belief") == scenario.errors.at("machine"));
