@@ -10,12 +10,14 @@ import json
 import os
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(SOURCE / "tools"))
+import rs274  # noqa: E402
+
 MACHINE = SOURCE / "scenarios" / "machines" / "router_3axis.toml"
 SKIPPED = 77
 MOVE = re.compile(r"(?:STRAIGHT_FEED|STRAIGHT_TRAVERSE|ARC_FEED)\(")
@@ -56,9 +58,15 @@ M30
 """
 
 
-def find_rs274():
-    places = [os.environ.get("RS274"), shutil.which("rs274"), os.path.expanduser("~/.cache/rs274/root/usr/bin/rs274")]
-    return next((place for place in places if place and os.access(place, os.X_OK)), None)
+def check_names(servomill):
+    """Corrected programs are called as the control calls its programs."""
+    with tempfile.TemporaryDirectory() as folder:
+        pathlib.Path(folder, "part.ngc").write_text("G21 G90 G0 X1 Y2 Z3\nG1 X5 F100\nM2\n")
+        for dialect in ("linuxcnc", "heidenhain", "fanuc", "siemens"):
+            subprocess.run([servomill, "compensate", "part.ngc", "--machine", MACHINE, "--dialect", dialect, "-q"],
+                           cwd=folder, check=True)
+        names = {one.name for one in pathlib.Path(folder).iterdir()} - {"part.ngc"}
+        assert names == {f"part.compensated.{end}" for end in ("ngc", "h", "nc", "mpf")}, names
 
 
 def library_path(exe):
@@ -75,11 +83,13 @@ def run_rs274(exe, program, folder):
 
 
 def main():
-    exe = find_rs274()
-    if exe is None:
-        print("rs274 is not installed")
-        return SKIPPED
     servomill = os.path.abspath(sys.argv[1])
+    check_names(servomill)
+    try:
+        exe = rs274.find()
+    except rs274.Missing as missing:
+        print(missing)
+        return SKIPPED
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder)
         (path / "part.ngc").write_text(PROGRAM)

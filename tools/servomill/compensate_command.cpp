@@ -14,11 +14,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+sim::Dialect dialect_of(const Options& options) {
+  return static_cast<sim::Dialect>(choice_option(options, "dialect", sim::kDialects));
+}
+
+// As programs are called on each control; of LinuxCNC as the one that was read.
+constexpr std::array<std::string_view, 4> kExtensions = {"", ".h", ".nc", ".mpf"};
+
 std::string program_name(const Options& options) {
   if (options.has("output")) return options.get<std::string>("output");
   const fs::path path(options.word());
-  return (path.parent_path() / (path.stem().string() + ".compensated" + path.extension().string()))
-      .string();
+  std::string extension(kExtensions[static_cast<std::size_t>(dialect_of(options))]);
+  if (extension.empty()) extension = path.extension().string();
+  return (path.parent_path() / (path.stem().string() + ".compensated" + extension)).string();
 }
 
 std::string text_of(const Options& options, const std::string& name) {
@@ -40,7 +48,7 @@ sim::CompensateRequest request_of(const Options& options) {
   request.max_block = positive_option(options, "max-block", sim::kLength).value_or(0.0);
   request.splits_rapids = options.has("split-rapids");
   request.axes = static_cast<strategies::DisplacedAxes>(choice_option(options, "axes", kAxes));
-  request.dialect = static_cast<sim::Dialect>(choice_option(options, "dialect", sim::kDialects));
+  request.dialect = dialect_of(options);
   request.inputs = program_inputs(options);
   request.inputs.machine.clear();  // tool-centre-point control is not corrected
   request.work_offsets = options.list("work-offset");
@@ -75,7 +83,7 @@ int compensate_command(const Arguments& arguments) {
                 "changes a key of the machine, such as errors.measured.EC0Y.um_per_m=120");
   options.add()("output,o", text()->value_name("OUT"),
                 "corrected program; - for standard output. Default: PROGRAM with .compensated "
-                "before its extension");
+                "before its extension, which is .h, .nc or .mpf for heidenhain, fanuc, siemens");
   options.add()("tolerance", text()->default_value("1 um")->value_name("\"1 um\""),
                 "by which the path may leave the exactly corrected one");
   options.add()("max-block", text()->value_name("\"1 mm\""),
