@@ -1,0 +1,257 @@
+#include "plant/cutting/removed_volume.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace servomill::plant {
+namespace {
+
+using Eigen::Array3d;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kTurnTolerance = 10e-9;  // m
+constexpr std::uint32_t kRunSteps = 64;
+constexpr std::size_t kRunMargins = kRunSteps - 1;  // parts of two steps and more
+
+Matrix3d cross_matrix(const Vector3d& a) {
+  Matrix3d A;
+  A << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
+  return A;
+}
+
+// The inverse of the smallest rotation from k_a to k_b.
+Matrix3d turned_back(const Vector3d& k_a, const Vector3d& k_b) {
+  const Matrix3d A = cross_matrix(k_a.cross(k_b));
+  return Matrix3d::Identity() - A + A * A / (1.0 + k_a.dot(k_b));
+}
+
+double angle_between(const Vector3d& k_a, const Vector3d& k_b) {
+  return std::atan2(k_a.cross(k_b).norm(), k_a.dot(k_b));
+}
+
+CutterPosition between(const CutterPosition& a, const CutterPosition& b, double share) {
+  const double angle = angle_between(a.axis, b.axis);
+  return {a.tip + share * (b.tip - a.tip),
+          ((std::sin((1.0 - share) * angle) * a.axis + std::sin(share * angle) * b.axis) /
+           std::sin(angle))
+              .normalized()};
+}
+
+// Bound of the distance, seen from the cutter, between places first .. last and the straight way
+// from the first to the last, over a body that reaches so far from the tip.
+double distance_from_chord(const CutterPosition* first, const CutterPosition* last, double reach) {
+  const Vector3d V = last->tip - first->tip, K = last->axis - first->axis;
+  const double length = V.squaredNorm() + reach * reach * K.squaredNorm();
+  const bool turns = std::any_of(
+      first, last, [&](const CutterPosition& place) { return place.axis != last->axis; });
+  if (turns && first->axis.dot(last->axis) <= 0.0) return std::numeric_limits<double>::infinity();
+  const Matrix3d Q_last = turned_back(first->axis, last->axis);
+  double most = 0.0, step_turn = 0.0, turn = 0.0;
+  for (const CutterPosition* place = first + 1; place < last; ++place) {
+    const Vector3d p = place->tip - first->tip;
+    const double along = p.dot(V) + reach * reach * (place->axis - first->axis).dot(K);
+    const double t = length > 0.0 ? std::clamp(along / length, 0.0, 1.0) : 0.0;
+    if (!turns) {
+      most = std::max(most, (p - t * V).norm());
+      continue;
+    }
+    if (first->axis.dot(place->axis) <= 0.0) return std::numeric_limits<double>::infinity();
+    const Matrix3d Q = turned_back(first->axis, place->axis);
+    const Matrix3d turned = (1.0 - t) * Matrix3d::Identity() + t * Q_last - Q;
+    const Vector3d moved = (1.0 - t) * p + t * (Q_last * (p - V));
+    most = std::max(most, turned.norm() * reach + moved.norm());
+    turn = std::max(turn, angle_between(first->axis, place->axis));
+  }
+  if (!turns) return most;
+  // smallest rotations in a row are not the smallest from first to last: they differ by a spin
+  // about the axis, the solid angle between the axes
+  for (const CutterPosition* place = first; place < last; ++place) {
+    step_turn = std::max(step_turn, angle_between(place->axis, (place + 1)->axis));
+  }
+  turn = std::max(turn, angle_between(first->axis, last->axis));
+  return most + turn * step_turn * reach + 2.0 * kTurnTolerance;
+}
+
+// Not below x.
+float rounded_up(double x) {
+  return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
+}
+
+struct Halves {
+  std::uint32_t middle;
+  std::size_t left, right;
+};
+
+Halves halves(std::size_t node, std::uint32_t first, std::uint32_t last) {
+  return {first + (last - first) / 2, 2 * node + 1, 2 * node + 2};
+}
+
+}  // namespace
+
+RemovedVolume::RemovedVolume(const std::vector<CutterPass>& passes) {
+  for (const CutterPass& pass : passes) add(pass);
+  if (runs_.empty()) return;
+  margins_.resize(runs_.size() * kRunMargins);
+  for (const Run& run : runs_) add_margins(run, 0, run.first, run.last);
+  std::vector<std::uint32_t> order(runs_.size());
+  std::iota(order.begin(), order.end(), 0U);
+  nodes_.reserve(2 * runs_.size());
+  add_node(order.data(), order.data() + order.size());
+}
+
+// The first place of a pass is there twice, so that what a single position removes is a step, too.
+void RemovedVolume::add(const CutterPass& pass) {
+  if (pass.positions.empty()) return;
+  assert(implausible(pass.cutter).empty());
+  const auto first_place = static_cast<std::uint32_t>(places_.size());
+  const double reach = envelope(pass.cutter).reach();
+  cutters_.push_back(pass.cutter);
+  places_.push_back(pass.positions.front());
+  const CutterPosition* before = &pass.positions.front();
+  for (const CutterPosition& position : pass.positions) {
+    assert(position.tip.allFinite() && std::abs(position.axis.norm() - 1.0) < 1e-9);
+    assert(before->axis.dot(position.axis) > 0.0);
+    const double deviation = turn_deviation(*before, position, reach);
+    const double parts = std::ceil(std::sqrt(deviation / kTurnTolerance));
+    for (double part = 1.0; part < parts; ++part) {
+      places_.push_back(between(*before, position, part / parts));
+    }
+    assert(places_.size() < std::numeric_limits<std::uint32_t>::max());
+    place_of_.push_back(static_cast<std::uint32_t>(places_.size()));
+    places_.push_back(position);
+    before = &position;
+  }
+  add_runs(first_place);
+}
+
+void RemovedVolume::add_runs(std::uint32_t first_place) {
+  const auto last_place = static_cast<std::uint32_t>(places_.size() - 1);
+  const auto cutter = static_cast<std::uint32_t>(cutters_.size() - 1);
+  for (std::uint32_t first = first_place; first < last_place; first += kRunSteps) {
+    runs_.push_back({first, std::min(first + kRunSteps, last_place), cutter});
+  }
+}
+
+void RemovedVolume::add_margins(const Run& run, std::size_t node, std::uint32_t first,
+                                std::uint32_t last) {
+  if (last - first < 2) return;
+  const std::size_t r = static_cast<std::size_t>(&run - runs_.data());
+  margins_[r * kRunMargins + node] = rounded_up(
+      distance_from_chord(&places_[first], &places_[last], envelope(cutters_[run.cutter]).reach()));
+  const auto [middle, left, right] = halves(node, first, last);
+  add_margins(run, left, first, middle);
+  add_margins(run, right, middle, last);
+}
+
+RemovedVolume::Node RemovedVolume::box_of(const Run& run) const {
+  const Cutter& cutter = cutters_[run.cutter];
+  Node node;
+  node.low = Array3d::Constant(std::numeric_limits<double>::infinity());
+  node.high = -node.low;
+  node.first_step = run.first;
+  node.right = 0;
+  node.run = static_cast<std::uint32_t>(&run - runs_.data());
+  for (std::uint32_t place = run.first; place <= run.last; ++place) {
+    const auto& [tip, axis] = places_[place];
+    const Array3d disc = cutter.radius * (1.0 - axis.array().square()).max(0.0).sqrt();
+    const Array3d top = tip + cutter.length * axis;
+    node.low = node.low.min(tip.array() - disc).min(top - disc);
+    node.high = node.high.max(tip.array() + disc).max(top + disc);
+  }
+  node.low -= 2.0 * kTurnTolerance;
+  node.high += 2.0 * kTurnTolerance;
+  return node;
+}
+
+// Runs are halved at the middle of the longest side of the box of their centres.
+std::uint32_t RemovedVolume::add_node(std::uint32_t* begin, std::uint32_t* end) {
+  const auto number = static_cast<std::uint32_t>(nodes_.size());
+  if (end - begin == 1) {
+    nodes_.push_back(box_of(runs_[*begin]));
+    return number;
+  }
+  const auto centre = [&](std::uint32_t run) {
+    return places_[(runs_[run].first + runs_[run].last) / 2].tip.array();
+  };
+  Array3d low = centre(*begin), high = low;
+  for (const std::uint32_t* run = begin; run != end; ++run) {
+    low = low.min(centre(*run));
+    high = high.max(centre(*run));
+  }
+  Eigen::Index side = 0;
+  (high - low).maxCoeff(&side);
+  std::uint32_t* middle = begin + (end - begin) / 2;
+  std::nth_element(begin, middle, end, [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(centre(a)[side], a) < std::pair(centre(b)[side], b);
+  });
+  nodes_.emplace_back();
+  const std::uint32_t left = add_node(begin, middle), right = add_node(middle, end);
+  nodes_[number] = {nodes_[left].low.min(nodes_[right].low),
+                    nodes_[left].high.max(nodes_[right].high),
+                    std::min(nodes_[left].first_step, nodes_[right].first_step), right, 0};
+  return number;
+}
+
+SweptCutter RemovedVolume::swept(const Run& run, std::size_t run_node, std::uint32_t first,
+                                 std::uint32_t last) const {
+  const std::size_t r = static_cast<std::size_t>(&run - runs_.data());
+  const double margin =
+      last - first > 1 ? static_cast<double>(margins_[r * kRunMargins + run_node]) : 0.0;
+  return {envelope(cutters_[run.cutter], margin), places_[first], places_[last]};
+}
+
+bool RemovedVolume::contains(const Vector3d& point) const {
+  return contains(point, position_count());
+}
+
+bool RemovedVolume::contains(const Vector3d& point, std::size_t n) const {
+  assert(n <= position_count());
+  if (n == 0) return false;
+  const std::uint32_t end = place_of_[n - 1];  // steps before this one
+  const Array3d x = point.array();
+  std::uint32_t waiting[64];  // the tree is balanced: no deeper than 32
+  std::size_t count = 0;
+  waiting[count++] = 0;
+  while (count > 0) {
+    const std::uint32_t number = waiting[--count];
+    const Node& node = nodes_[number];
+    if (node.first_step >= end || (x < node.low).any() || (x > node.high).any()) continue;
+    if (node.right == 0) {
+      if (run_contains(node.run, point, end)) return true;
+    } else {
+      waiting[count++] = node.right;
+      waiting[count++] = number + 1;
+    }
+  }
+  return false;
+}
+
+bool RemovedVolume::run_contains(std::uint32_t number, const Vector3d& point,
+                                 std::uint32_t end) const {
+  const Run& run = runs_[number];
+  struct Part {
+    std::size_t node;
+    std::uint32_t first, last;
+  };
+  Part waiting[16];  // a run is halved six times
+  std::size_t count = 0;
+  waiting[count++] = {0, run.first, run.last};
+  while (count > 0) {
+    const auto [node, first, last] = waiting[--count];
+    if (first >= end) continue;
+    const bool bounded = last - first == 1 || std::isfinite(margins_[number * kRunMargins + node]);
+    if (bounded && !swept(run, node, first, last).contains(point)) continue;
+    if (last - first == 1) return true;
+    const auto [middle, left, right] = halves(node, first, last);
+    waiting[count++] = {left, first, middle};
+    waiting[count++] = {right, middle, last};
+  }
+  return false;
+}
+
+}  // namespace servomill::plant

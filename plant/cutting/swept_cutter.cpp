@@ -1,0 +1,139 @@
+#include "plant/cutting/swept_cutter.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace servomill::plant {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMaxIterations = 60;  // of a Newton that halves an interval where it would leave it
+
+// An interval; empty if from > to.
+struct Range {
+  double from = kInfinity, to = -kInfinity;
+
+  bool empty() const { return !(from <= to); }
+  Range within(const Range& other) const {
+    return {std::max(from, other.from), std::min(to, other.to)};
+  }
+};
+
+constexpr Range kEverything = {-kInfinity, kInfinity};
+constexpr Range kWay = {0.0, 1.0};
+
+// Where |A + u B| <= rho.
+Range inside_ball(const Vector3d& A, const Vector3d& B, double rho) {
+  const double a = B.squaredNorm(), b = A.dot(B), c = A.squaredNorm() - rho * rho;
+  if (a < std::numeric_limits<double>::min()) return c <= 0.0 ? kEverything : Range{};
+  const double discriminant = b * b - a * c;
+  if (discriminant < 0.0) return {};
+  const double q = -b - std::copysign(std::sqrt(discriminant), b);
+  const double u = q / a, other = q == 0.0 ? 0.0 : c / q;
+  return {std::min(u, other), std::max(u, other)};
+}
+
+// Where from <= a + u b <= to.
+Range inside_slab(double a, double b, const Range& heights) {
+  if (b == 0.0) return heights.from <= a && a <= heights.to ? kEverything : Range{};
+  const double u = (heights.from - a) / b, other = (heights.to - a) / b;
+  return {std::min(u, other), std::max(u, other)};
+}
+
+Vector3d across(const Vector3d& y, const Vector3d& k) { return y - k * k.dot(y); }
+
+// The straight way y - t w of a point past a disc of radius `disc` about the origin, normal k.
+struct WayPastDisc {
+  double disc;
+  double h_0, dh;    // height y . k and its change w . k
+  Vector3d P_0, dP;  // y and w across k
+
+  double distance(double t) const {
+    const double excess = (P_0 - t * dP).norm() - disc;
+    return std::hypot(std::max(excess, 0.0), h_0 - t * dh);
+  }
+
+  // Half the first and second derivative of distance^2, which is convex.
+  std::pair<double, double> slope(double t) const {
+    const Vector3d P = P_0 - t * dP;
+    const double rho = P.norm(), h = h_0 - t * dh;
+    if (rho <= disc) return {-h * dh, dh * dh};
+    const double drho = -P.dot(dP) / rho;
+    return {(rho - disc) * drho - h * dh,
+            drho * drho + (1.0 - disc / rho) * (dP.squaredNorm() - drho * drho) + dh * dh};
+  }
+
+  // Where on the way, 0 to 1, the disc is nearest.
+  double nearest(double t) const {
+    if (slope(0.0).first >= 0.0) return 0.0;
+    if (slope(1.0).first <= 0.0) return 1.0;
+    double before = 0.0, after = 1.0;
+    for (int i = 0; i < kMaxIterations; ++i) {
+      const auto [first, second] = slope(t);
+      (first < 0.0 ? before : after) = t;
+      double next = t - first / second;
+      if (!(before < next && next < after)) next = 0.5 * (before + after);
+      if (std::abs(next - t) < 1e-12) return next;
+      t = next;
+    }
+    return t;
+  }
+};
+
+}  // namespace
+
+double Envelope::reach() const { return std::hypot(radius(), std::max(top, corner - centre)); }
+
+Envelope envelope(const Cutter& cutter, double margin) {
+  const double r = cutter.corner_radius;
+  // a flat cutter stays flat: simpler, and larger than need be only at its edge
+  if (cutter.is_flat()) return {cutter.radius + margin, 0.0, -margin, cutter.length + margin};
+  return {cutter.radius - r, r + margin, r, cutter.length + margin};
+}
+
+double turn_deviation(const CutterPosition& a, const CutterPosition& b, double reach) {
+  const double angle = std::atan2(a.axis.cross(b.axis).norm(), a.axis.dot(b.axis));
+  return angle * (angle * reach / 8.0 + (b.tip - a.tip).norm() / 4.0);
+}
+
+SweptCutter::SweptCutter(const Envelope& body, const CutterPosition& a, const CutterPosition& b)
+    : body_(body),
+      p_a_(a.tip),
+      k_(a.axis),
+      v_(b.tip - a.tip),
+      turn_(a.axis.cross(b.axis)),
+      cosine_(a.axis.dot(b.axis)) {
+  assert(cosine_ > 0.0);
+}
+
+Vector3d SweptCutter::way_of(const Vector3d& y_a) const {
+  const Vector3d y = y_a - v_, turned = turn_.cross(y);
+  return v_ + turned - turn_.cross(turned) / (1.0 + cosine_);
+}
+
+bool SweptCutter::contains(const Vector3d& x) const {
+  const Vector3d y = x - p_a_, w = way_of(y);
+  const double h = k_.dot(y), dh = k_.dot(w);
+  const Vector3d P = across(y, k_), dP = across(w, k_);
+
+  // the cylinder
+  const Range high = kWay.within(inside_slab(h, -dh, {body_.centre, body_.top}));
+  if (!high.within(inside_ball(P, -dP, body_.radius())).empty()) return true;
+  if (body_.corner == 0.0) return false;
+
+  // the rounded disc below it; above the flutes it has only what the cylinder has, too
+  const Range below_top = kWay.within(inside_slab(h, -dh, {-kInfinity, body_.top}));
+  if (body_.disc == 0.0) {
+    return !below_top.within(inside_ball(y - body_.centre * k_, -w, body_.corner)).empty();
+  }
+  const WayPastDisc way = {body_.disc, h - body_.centre, dh, P, dP};
+  const double t = way.nearest(0.5);
+  return h - t * dh <= body_.top && way.distance(t) <= body_.corner;
+}
+
+}  // namespace servomill::plant

@@ -1,0 +1,56 @@
+/// The body that a cutter sweeps on its straight way from one position to the next.
+///
+/// A point x of the workpiece, seen from the cutter, goes from y_a = x - p_a to y_b = Q^T (x -
+/// p_b), Q the smallest rotation that takes the axis k_a to k_b. It is swept if it is inside of the
+/// cutter somewhere on the straight way between them:
+///
+///     y(t) = y_a - t w,  w = y_a - y_b,  0 <= t <= 1                                          (1)
+///
+/// Without a turn of the axis this is exact (w = p_b - p_a); with one, the way is bent by less than
+/// turn_deviation(). For a fixed axis the body is a convex one moved along a segment: convex
+/// itself, so that a straight line meets it in one stretch at most.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "plant/cutting/cutter.h"
+
+namespace servomill::plant {
+
+/// The body of revolution of a cutter: a disc of radius `disc` at height `centre`, rounded by
+/// `corner`, and the cylinder from it to `top`.
+struct Envelope {
+  double disc = 0.0;    // R - r, m
+  double corner = 0.0;  // r, m
+  double centre = 0.0;  // m above the tip
+  double top = 0.0;     // m above the tip
+
+  double radius() const { return disc + corner; }
+  /// No point is farther than this from the tip (m).
+  double reach() const;
+};
+
+/// The cutter, or a body that holds everything within `margin` (m, >= 0) of it.
+Envelope envelope(const Cutter& cutter, double margin = 0.0);
+
+/// Bound (m) of what (1) leaves out as the axis turns on the way from a to b: a^2 reach / 8 +
+/// a |p_b - p_a| / 4 for an angle a, from the second derivative of y.
+double turn_deviation(const CutterPosition& a, const CutterPosition& b, double reach);
+
+/// @pre unit axes, less than 90 deg apart
+class SweptCutter {
+ public:
+  SweptCutter(const Envelope& body, const CutterPosition& a, const CutterPosition& b);
+
+  bool contains(const Eigen::Vector3d& x) const;
+
+ private:
+  Eigen::Vector3d way_of(const Eigen::Vector3d& y_a) const;  // w of a point at y_a
+
+  Envelope body_;
+  Eigen::Vector3d p_a_, k_, v_;
+  Eigen::Vector3d turn_;  // k_a x k_b
+  double cosine_;         // k_a . k_b
+};
+
+}  // namespace servomill::plant
