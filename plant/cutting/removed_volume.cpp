@@ -15,6 +15,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kTurnTolerance = 10e-9;  // m
+constexpr double kMembrane = 1e-9;        // m
 constexpr std::uint32_t kRunSteps = 64;
 constexpr std::size_t kRunMargins = kRunSteps - 1;  // parts of two steps and more
 
@@ -80,6 +81,52 @@ double distance_from_chord(const CutterPosition* first, const CutterPosition* la
 // Not below x.
 float rounded_up(double x) {
   return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
+}
+
+// Whether a ray meets a box.
+bool meets(const Ray& ray, const Array3d& low, const Array3d& high) {
+  double from = 0.0, to = ray.length;
+  for (int i = 0; i < 3; ++i) {
+    const double o = ray.start[i], d = ray.direction[i];
+    if (d == 0.0) {
+      if (o < low[i] || o > high[i]) return false;
+      continue;
+    }
+    const double a = (low[i] - o) / d, b = (high[i] - o) / d;
+    from = std::max(from, std::min(a, b));
+    to = std::min(to, std::max(a, b));
+  }
+  return from <= to;
+}
+
+// Where a ray leaves one step. The turn of the axis is that of where it leaves: by iteration from
+// the first of some guesses at which the step is met at all.
+double leave_step(const SweptCutter& step, const Ray& ray, std::initializer_list<double> guesses) {
+  constexpr int kIterations = 20;
+  constexpr double kSame = 1e-13;  // m
+  if (step.turn() == 0.0) return step.leave(ray, 0.0);
+  double s = -std::numeric_limits<double>::infinity();
+  for (const double guess : guesses) {
+    double next = step.leave(ray, guess);
+    for (int i = 0; i < kIterations && std::isfinite(next); ++i) {
+      const double change = next - s;
+      s = next;
+      if (std::abs(change) < kSame) break;
+      next = step.leave(ray, s);
+    }
+    if (std::isfinite(s)) break;
+  }
+  return s;
+}
+
+double leave_step(const SweptCutter& step, const Ray& ray) {
+  return leave_step(step, ray, {ray.length, 0.5 * ray.length, 0.0});
+}
+
+// Where a ray that leaves it at s came in.
+double enter_step(const SweptCutter& step, const Ray& ray, double s) {
+  const Ray back = {ray.at(s), -ray.direction, ray.length};
+  return s - std::max(leave_step(step, back, {0.0}), 0.0);
 }
 
 struct Halves {
@@ -234,11 +281,11 @@ bool RemovedVolume::contains(const Vector3d& point, std::size_t n) const {
 bool RemovedVolume::run_contains(std::uint32_t number, const Vector3d& point,
                                  std::uint32_t end) const {
   const Run& run = runs_[number];
-  struct Part {
+  struct Waiting {
     std::size_t node;
     std::uint32_t first, last;
   };
-  Part waiting[16];  // a run is halved six times
+  Waiting waiting[16];  // a run is halved six times
   std::size_t count = 0;
   waiting[count++] = {0, run.first, run.last};
   while (count > 0) {
@@ -252,6 +299,125 @@ bool RemovedVolume::run_contains(std::uint32_t number, const Vector3d& point,
     waiting[count++] = {right, middle, last};
   }
   return false;
+}
+
+// On the way along a ray: everything up to `end` is removed once the start is known to be.
+struct RemovedVolume::Advance {
+  struct Stretch {
+    double from, to;
+    std::uint32_t step;
+  };
+  bool inside = false;
+  double end = 0.0;
+  std::uint32_t step = 0;
+  std::vector<Stretch> beyond;  // not connected yet
+
+  bool joins(const Stretch& stretch) {
+    if (stretch.from > end + kMembrane) return false;
+    inside = true;
+    if (stretch.to > end) end = stretch.to, step = stretch.step;
+    return true;
+  }
+};
+
+// As the axis turns, the part's body may be off by what a ray's points are away from its middle.
+RemovedVolume::Part RemovedVolume::bounded(Part part, const Ray& ray) const {
+  const Run& run = runs_[part.run];
+  const double margin = static_cast<double>(margins_[part.run * kRunMargins + part.node]);
+  part.bound = std::numeric_limits<double>::infinity();
+  if (!std::isfinite(margin)) return part;
+  const Cutter& cutter = cutters_[run.cutter];
+  const CutterPosition &a = places_[part.first], &b = places_[part.last];
+  const double half = 0.5 * ray.length;
+  const double turn = SweptCutter(envelope(cutter, margin), a, b).turn();
+  part.bound = SweptCutter(envelope(cutter, margin + turn * half), a, b).leave(ray, half);
+  return part;
+}
+
+std::vector<RemovedVolume::Part> RemovedVolume::runs_along(const Ray& ray) const {
+  std::vector<Part> parts;
+  if (nodes_.empty()) return parts;
+  std::uint32_t waiting[64];
+  std::size_t count = 0;
+  waiting[count++] = 0;
+  while (count > 0) {
+    const std::uint32_t number = waiting[--count];
+    const Node& node = nodes_[number];
+    if (!meets(ray, node.low, node.high)) continue;
+    if (node.right != 0) {
+      waiting[count++] = node.right;
+      waiting[count++] = number + 1;
+      continue;
+    }
+    const Run& run = runs_[node.run];
+    const Part part = bounded({0.0, node.run, 0, run.first, run.last}, ray);
+    if (part.bound >= 0.0) parts.push_back(part);
+  }
+  return parts;
+}
+
+void RemovedVolume::pass_step(const Part& part, const Ray& ray, Advance& state) const {
+  const SweptCutter step(envelope(cutters_[runs_[part.run].cutter]), places_[part.first],
+                         places_[part.last]);
+  const double to = leave_step(step, ray);
+  if (to < state.end || (state.inside && to == state.end)) return;
+  const double from = enter_step(step, ray, to);
+  if (from > ray.length) return;
+  const Advance::Stretch stretch = {from, to, part.first};
+  if (!state.joins(stretch)) state.beyond.push_back(stretch);
+}
+
+void RemovedVolume::advance(const Part& part, const Ray& ray, Advance& state) const {
+  Part waiting[16];
+  std::size_t count = 0;
+  waiting[count++] = part;
+  while (count > 0) {
+    const Part one = waiting[--count];
+    if (one.bound < state.end) continue;
+    if (one.last - one.first == 1) {
+      pass_step(one, ray, state);
+      continue;
+    }
+    const auto [middle, left, right] = halves(one.node, one.first, one.last);
+    Part parts[2] = {{one.bound, one.run, static_cast<std::uint32_t>(left), one.first, middle},
+                     {one.bound, one.run, static_cast<std::uint32_t>(right), middle, one.last}};
+    for (Part& half : parts) {
+      if (half.last - half.first > 1) half = bounded(half, ray);
+    }
+    // the farther one first: it may spare the other
+    const bool left_first = parts[0].bound > parts[1].bound;
+    waiting[count++] = parts[left_first ? 1 : 0];
+    waiting[count++] = parts[left_first ? 0 : 1];
+  }
+}
+
+std::size_t RemovedVolume::position_of(std::uint32_t step) const {
+  return static_cast<std::size_t>(std::lower_bound(place_of_.begin(), place_of_.end(), step + 1) -
+                                  place_of_.begin());
+}
+
+// The runs that reach farthest come first: after them, most others cannot go on.
+FreeWay RemovedVolume::free_way(const Ray& ray) const {
+  std::vector<Part> parts = runs_along(ray);
+  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
+    return a.bound != b.bound ? a.bound > b.bound : a.first < b.first;
+  });
+  Advance state;
+  for (const Part& part : parts) {
+    if (part.bound < state.end || state.end >= ray.length) break;
+    advance(part, ray, state);
+  }
+  // what was found before its connection to the start
+  std::sort(state.beyond.begin(), state.beyond.end(),
+            [](const auto& a, const auto& b) { return a.from < b.from; });
+  for (const Advance::Stretch& stretch : state.beyond) {
+    if (!state.joins(stretch)) break;
+  }
+  if (!state.inside) {
+    return {state.beyond.empty() ? FreeWay::Kind::untouched : FreeWay::Kind::blocked, 0.0, 0};
+  }
+  if (state.end >= ray.length) return {FreeWay::Kind::through, ray.length, 0};
+  return {FreeWay::Kind::ends, state.end, position_of(state.step)};
 }
 
 }  // namespace servomill::plant

@@ -19,6 +19,19 @@ struct CutterPass {
   std::vector<CutterPosition> positions;
 };
 
+/// How far a ray runs through what has been removed, from its start.
+struct FreeWay {
+  enum class Kind : std::uint8_t {
+    untouched,  // nothing has been removed anywhere on the ray
+    blocked,    // something has, but not at its start
+    ends,       // the removed stretch that holds the start ends at `end`
+    through,    // it reaches to the end of the ray
+  };
+  Kind kind = Kind::untouched;
+  double end = 0.0;          // m from the start
+  std::size_t position = 0;  // what ends there was cut by the step to this position
+};
+
 /// The volume that passes removed, indexed for queries; fixed once it is made, so that any number
 /// of threads may ask. Positions are counted on through all passes: position i of the second pass
 /// has the number `passes[0].positions.size() + i`.
@@ -42,6 +55,10 @@ class RemovedVolume {
   /// For what the cutter meets on arriving at position i: contains(point, i).
   bool contains(const Eigen::Vector3d& point, std::size_t n) const;
 
+  /// The stretch of the ray that holds its start: the union of what all steps remove, as far as it
+  /// is connected. Material of less than 1 nm between two cuts is none.
+  FreeWay free_way(const Ray& ray) const;
+
  private:
   // Up to kRunSteps consecutive steps of one cutter: step i goes from place i to place i + 1.
   struct Run {
@@ -64,6 +81,20 @@ class RemovedVolume {
   SweptCutter swept(const Run& run, std::size_t run_node, std::uint32_t first,
                     std::uint32_t last) const;
   bool run_contains(std::uint32_t run, const Eigen::Vector3d& point, std::uint32_t end) const;
+  struct Advance;
+  // A part of a run: steps first .. last - 1, `node` of its margins; no step of it is left beyond
+  // `bound` (m along the ray).
+  struct Part {
+    double bound;
+    std::uint32_t run;
+    std::uint32_t node;
+    std::uint32_t first, last;
+  };
+  Part bounded(Part part, const Ray& ray) const;
+  std::vector<Part> runs_along(const Ray& ray) const;
+  void advance(const Part& part, const Ray& ray, Advance& state) const;
+  void pass_step(const Part& part, const Ray& ray, Advance& state) const;
+  std::size_t position_of(std::uint32_t step) const;
 
   std::vector<Cutter> cutters_;
   std::vector<CutterPosition> places_;   // positions, and what is between where the axis turns

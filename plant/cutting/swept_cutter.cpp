@@ -12,6 +12,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLeaveTolerance = 1e-16;  // m
 constexpr int kMaxIterations = 60;  // of a Newton that halves an interval where it would leave it
 
 // An interval; empty if from > to.
@@ -134,6 +135,103 @@ bool SweptCutter::contains(const Vector3d& x) const {
   const WayPastDisc way = {body_.disc, h - body_.centre, dh, P, dP};
   const double t = way.nearest(0.5);
   return h - t * dh <= body_.top && way.distance(t) <= body_.corner;
+}
+
+double SweptCutter::turn() const { return turn_.norm() * std::sqrt(2.0 / (1.0 + cosine_)); }
+
+// In the plane of s and t, what is swept is convex: leaving it is the largest s.
+double SweptCutter::leave(const Ray& ray, double s_near) const {
+  const Vector3d y = ray.start - p_a_, d = ray.direction;
+  const Vector3d w = way_of(y + s_near * d);
+  const double cylinder = leave_cylinder(y, d, w);
+  if (body_.corner == 0.0) return cylinder;
+  return std::max(cylinder, body_.disc == 0.0 ? leave_ball(y, d, w) : leave_rounded_disc(y, d, w));
+}
+
+// The heights and 0 <= t <= 1 bound a parallelogram of the plane of s and t, the radius an ellipse:
+// the largest s of both is on an edge of the one or the tip of the other.
+double SweptCutter::leave_cylinder(const Vector3d& y, const Vector3d& d, const Vector3d& w) const {
+  const double h = k_.dot(y), h_s = k_.dot(d), h_t = -k_.dot(w);
+  const Vector3d P = across(y, k_), P_s = across(d, k_), P_t = -across(w, k_);
+  const Range heights = {body_.centre, body_.top};
+  const double R = body_.radius();
+  double s = -kInfinity;
+
+  // edges of the way: t = 0 and t = 1
+  for (const double t : {0.0, 1.0}) {
+    const Range range =
+        inside_slab(h + t * h_t, h_s, heights).within(inside_ball(P + t * P_t, P_s, R));
+    if (!range.empty()) s = std::max(s, range.to);
+  }
+
+  // edges of the height: s = s_0 - u h_t, t = t_0 + u h_s
+  const double squares = h_s * h_s + h_t * h_t;
+  if (squares > 0.0) {
+    for (const double height : {heights.from, heights.to}) {
+      const double s_0 = (height - h) * h_s / squares, t_0 = (height - h) * h_t / squares;
+      const Range range =
+          inside_slab(t_0, h_s, kWay)
+              .within(inside_ball(P + s_0 * P_s + t_0 * P_t, h_s * P_t - h_t * P_s, R));
+      if (!range.empty()) s = std::max(s, s_0 - h_t * (h_t > 0.0 ? range.from : range.to));
+    }
+  }
+
+  // between them: the line touches the plane, parallel to the way, in which the flank moves
+  const double way = P_t.squaredNorm();
+  if (way > 0.0) {
+    const Range range =
+        inside_ball(P - P_t * (P_t.dot(P) / way), P_s - P_t * (P_t.dot(P_s) / way), R);
+    const double t = -P_t.dot(P + range.to * P_s) / way, height = h + range.to * h_s + t * h_t;
+    if (0.0 <= t && t <= 1.0 && heights.from <= height && height <= heights.to) {
+      s = std::max(s, range.to);
+    }
+  }
+  return s;
+}
+
+// Above the top, where it does not cut, the ball is within the cylinder: what the ball itself would
+// let leave there, does so in no other place than the cylinder's top.
+double SweptCutter::leave_ball(const Vector3d& y, const Vector3d& d, const Vector3d& w) const {
+  const Vector3d P = y - body_.centre * k_;
+  double s = -kInfinity, t_of_s = 0.0;
+  const auto consider = [&](double candidate, double t) {
+    if (candidate > s) s = candidate, t_of_s = t;
+  };
+  for (const double t : {0.0, 1.0}) consider(inside_ball(P - t * w, d, body_.corner).to, t);
+  const double way = w.squaredNorm();
+  if (way > 0.0) {
+    const double side =
+        inside_ball(P - w * (w.dot(P) / way), d - w * (w.dot(d) / way), body_.corner).to;
+    const double t = w.dot(P + side * d) / way;
+    if (0.0 <= t && t <= 1.0) consider(side, t);
+  }
+  return k_.dot(y + s * d - t_of_s * w) <= body_.top ? s : -kInfinity;
+}
+
+// The distance of the line's points from the disc, wherever on the way it is nearest, is convex in
+// s: Newton's method comes down to the radius of the corner from outside, and nowhere leaps over
+// it.
+double SweptCutter::leave_rounded_disc(const Vector3d& y, const Vector3d& d,
+                                       const Vector3d& w) const {
+  const double h = k_.dot(y) - body_.centre, h_s = k_.dot(d), dh = k_.dot(w);
+  const Vector3d P = across(y, k_), P_s = across(d, k_), dP = across(w, k_);
+  const double support = body_.disc * P_s.norm() + body_.corner + std::max(0.0, w.dot(d));
+  double s = support - (d.dot(y) - body_.centre * h_s), t = 0.5;
+  for (int i = 0;; ++i) {
+    if (i == kMaxIterations) return -kInfinity;  // passes by
+    const WayPastDisc way = {body_.disc, h + s * h_s, dh, P + s * P_s, dP};
+    t = way.nearest(t);
+    const Vector3d Q = way.P_0 - t * dP;
+    const double rho = Q.norm(), height = way.h_0 - t * dh;
+    const double excess = std::max(rho - body_.disc, 0.0);
+    const double distance = std::hypot(excess, height), over = distance - body_.corner;
+    if (over <= kLeaveTolerance) break;
+    const double across_slope = excess > 0.0 ? excess * Q.dot(P_s) / rho : 0.0;
+    const double slope = (across_slope + height * h_s) / distance;
+    if (slope <= 0.0) return -kInfinity;
+    s -= over / slope;
+  }
+  return h + s * h_s - t * dh + body_.centre <= body_.top ? s : -kInfinity;
 }
 
 }  // namespace servomill::plant

@@ -37,6 +37,14 @@ Envelope envelope(const Cutter& cutter, double margin = 0.0);
 /// a |p_b - p_a| / 4 for an angle a, from the second derivative of y.
 double turn_deviation(const CutterPosition& a, const CutterPosition& b, double reach);
 
+/// The points start + s direction, 0 <= s <= length.
+struct Ray {
+  Eigen::Vector3d start, direction;  // m; unit
+  double length = 0.0;               // m
+
+  Eigen::Vector3d at(double s) const { return start + s * direction; }
+};
+
 /// @pre unit axes, less than 90 deg apart
 class SweptCutter {
  public:
@@ -44,8 +52,25 @@ class SweptCutter {
 
   bool contains(const Eigen::Vector3d& x) const;
 
+  /// Where the line of the ray leaves the body (s, m; also beyond the ray's ends); -infinity if it
+  /// misses it. Where it comes in: -leave(reversed, ...).
+  ///
+  /// As the axis turns, w of (1) changes along the line: it is taken at s_near, so that the result
+  /// s is exact for s_near = s, and wrong by no more than what a body does that is displaced by |s
+  /// - s_near| turn() across the line.
+  double leave(const Ray& ray, double s_near) const;
+
+  /// Chord of the angle between the axes, 2 sin(angle / 2).
+  double turn() const;
+
  private:
   Eigen::Vector3d way_of(const Eigen::Vector3d& y_a) const;  // w of a point at y_a
+  double leave_cylinder(const Eigen::Vector3d& y, const Eigen::Vector3d& d,
+                        const Eigen::Vector3d& w) const;
+  double leave_ball(const Eigen::Vector3d& y, const Eigen::Vector3d& d,
+                    const Eigen::Vector3d& w) const;
+  double leave_rounded_disc(const Eigen::Vector3d& y, const Eigen::Vector3d& d,
+                            const Eigen::Vector3d& w) const;
 
   Envelope body_;
   Eigen::Vector3d p_a_, k_, v_;

@@ -1,0 +1,181 @@
+#include "plant/cutting/machined_surface.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "plant/vocabulary/units.h"
+
+namespace servomill::plant {
+namespace {
+
+using Eigen::Vector3d;
+using Kind = Meeting::Kind;
+
+constexpr double kExact = 1e-12;  // m, rounding at 0.1 m, some operations
+constexpr double kClearance = 2 * mm, kDepth = 1 * mm;
+
+constexpr Cutter kFlat{.radius = 4e-3, .length = 20e-3};
+constexpr Cutter kBall{.radius = 4e-3, .corner_radius = 4e-3, .length = 20e-3};
+constexpr Cutter kBullNose{.radius = 4e-3, .corner_radius = 1e-3, .length = 20e-3};
+
+// From one tip to the other in so many steps, the axis along Z.
+CutterPass straight(const Cutter& cutter, const Vector3d& from, const Vector3d& to,
+                    int steps = 40) {
+  CutterPass pass{cutter, {}};
+  for (int i = 0; i <= steps; ++i) {
+    pass.positions.push_back({from + (to - from) * i / steps, Vector3d::UnitZ()});
+  }
+  return pass;
+}
+
+// Passes along X, so far from each other in Y.
+std::vector<CutterPass> raster(const Cutter& cutter, double apart, int count) {
+  std::vector<CutterPass> passes;
+  for (int i = 0; i < count; ++i) {
+    passes.push_back(straight(cutter, {-20e-3, i * apart, 0}, {20e-3, i * apart, 0}));
+  }
+  return passes;
+}
+
+double met(const std::vector<CutterPass>& passes, const ProbeTarget& target) {
+  const Meeting meeting = MachinedSurface(passes).meet(target, kClearance, kDepth);
+  EXPECT_EQ(meeting.kind, Kind::met);
+  return meeting.distance;
+}
+
+TEST(MachinedSurface, of_a_flat_end_mill_is_a_plane_between_walls) {
+  const std::vector<CutterPass> slot = {straight(kFlat, {-20e-3, 0, -1e-3}, {20e-3, 0, -1e-3})};
+  EXPECT_NEAR(met(slot, {{1.23e-3, 2.7e-3, -1e-3}, Vector3d::UnitZ()}), 0.0, kExact);
+  EXPECT_NEAR(met(slot, {{1.23e-3, 2.7e-3, -1.2e-3}, Vector3d::UnitZ()}), 0.2e-3, kExact);
+  EXPECT_NEAR(met(slot, {{1.23e-3, 4.1e-3, 1e-3}, -Vector3d::UnitY()}), 0.1e-3, kExact);
+  EXPECT_NEAR(met(slot, {{1.23e-3, -3.9e-3, 1e-3}, Vector3d::UnitY()}), -0.1e-3, kExact);
+  // its end is the mill
+  EXPECT_NEAR(met(slot, {{24e-3, 1e-3, 1e-3}, -Vector3d::UnitX()}),
+              24e-3 - (20e-3 + std::sqrt(15.0) * mm), kExact);
+}
+
+TEST(MachinedSurface, of_a_ramp_is_inclined_and_turns_with_the_tool) {
+  // tool tilted so that its bottom lies in the ramp: the plane through the tips
+  const Vector3d along = Vector3d(4, 0, -3) / 5, up = Vector3d(3, 0, 4) / 5;
+  CutterPass pass{kFlat, {}};
+  for (int i = 0; i < 50; ++i) pass.positions.push_back({along * (i * 0.1e-3), up});
+  EXPECT_NEAR(met({pass}, {along * 2e-3 + Vector3d(0, 1e-3, 0) + 0.3e-3 * up, up}), -0.3e-3,
+              kExact);
+}
+
+TEST(MachinedSurface, of_a_ball_end_mill_has_scallops) {
+  constexpr double kApart = 0.5e-3;
+  const auto passes = raster(kBall, kApart, 7);
+  const double height = 4e-3 - std::sqrt(16e-6 - kApart * kApart / 4);  // about a^2 / 8 R
+  EXPECT_NEAR(met(passes, {{0.17e-3, 3 * kApart, 0}, Vector3d::UnitZ()}), 0.0, kExact);
+  EXPECT_NEAR(met(passes, {{0.17e-3, 3.5 * kApart, 0}, Vector3d::UnitZ()}), height, kExact);
+  const double y = 0.2 * kApart;
+  EXPECT_NEAR(met(passes, {{0.17e-3, 3 * kApart + y, 0}, Vector3d::UnitZ()}),
+              4e-3 - std::sqrt(16e-6 - y * y), kExact);
+}
+
+TEST(MachinedSurface, of_a_bull_nose_has_cusps_between_flats) {
+  constexpr double kApart = 7e-3;  // flats of 6 mm
+  const auto passes = raster(kBullNose, kApart, 3);
+  EXPECT_NEAR(met(passes, {{0.17e-3, kApart + 2.9e-3, 0}, Vector3d::UnitZ()}), 0.0, kExact);
+  const double height = 1e-3 - std::sqrt(1e-6 - 0.25e-6);
+  EXPECT_NEAR(met(passes, {{0.17e-3, 1.5 * kApart, 0}, Vector3d::UnitZ()}), height, kExact);
+  EXPECT_NEAR(met(passes, {{0.17e-3, 1.5 * kApart - 0.2e-3, 0}, Vector3d::UnitZ()}),
+              1e-3 - std::sqrt(1e-6 - 0.09e-6), kExact);
+}
+
+TEST(MachinedSurface, of_a_circular_path_is_a_polygon_of_steps) {
+  constexpr int kSteps = 720;
+  constexpr double kPath = 30e-3;
+  CutterPass circle{kFlat, {}};
+  for (int i = 0; i <= kSteps; ++i) {
+    const double a = 2 * std::numbers::pi * i / kSteps;
+    circle.positions.push_back({{kPath * std::cos(a), kPath * std::sin(a), 0}, Vector3d::UnitZ()});
+  }
+  const MachinedSurface surface({circle});
+  const double half = std::numbers::pi / kSteps;
+  for (const int i : {0, 17, 180, 333, 719}) {
+    const double a = 2 * half * i;
+    const Vector3d corner(std::cos(a), std::sin(a), 0);
+    const Vector3d middle(std::cos(a + half), std::sin(a + half), 0);
+    const Vector3d up(0, 0, 5e-3);
+    // inner flank: the boss; the middle of a step cuts deepest
+    EXPECT_NEAR(surface.meet({26e-3 * middle + up, middle}, kClearance, kDepth).distance,
+                kPath * std::cos(half) - 4e-3 - 26e-3, kExact);
+    // outer flank: the bore; at a corner the mill's own radius
+    EXPECT_NEAR(surface.meet({34e-3 * corner + up, -corner}, kClearance, kDepth).distance, 0.0,
+                kExact);
+    EXPECT_NEAR(surface.meet({34e-3 * middle + up, -middle}, kClearance, kDepth).distance,
+                34e-3 - (kPath * std::cos(half) + 4e-3), kExact);
+  }
+}
+
+TEST(MachinedSurface, of_a_cone_milled_by_a_turning_flank) {
+  // swarf milling: the axis goes round with the part, tilted; its foot on a circle: a cone, exactly
+  // in the limit of small steps
+  constexpr int kSteps = 3600;
+  constexpr double kFoot = 30e-3, kTilt = 10 * deg;
+  CutterPass circle{kFlat, {}};
+  for (int i = 0; i <= kSteps; ++i) {
+    const double a = 2 * std::numbers::pi * i / kSteps;
+    const Vector3d e(std::cos(a), std::sin(a), 0);
+    circle.positions.push_back(
+        {kFoot * e, std::sin(kTilt) * e + std::cos(kTilt) * Vector3d::UnitZ()});
+  }
+  const MachinedSurface surface({circle});
+  for (const double a : {0.0003, 1.0, 4.0}) {
+    const Vector3d e(std::cos(a), std::sin(a), 0);
+    const Vector3d k = std::sin(kTilt) * e + std::cos(kTilt) * Vector3d::UnitZ();
+    const Vector3d inward = -std::cos(kTilt) * e + std::sin(kTilt) * Vector3d::UnitZ();
+    for (const double h : {3e-3, 11e-3, 18e-3}) {
+      const Vector3d point = kFoot * e + h * k + kFlat.radius * inward;
+      const Meeting meeting = surface.meet({point, -inward}, kClearance, kDepth);
+      ASSERT_EQ(meeting.kind, Kind::met);
+      // sagitta of a step of 52 um on a radius of 30 mm and more
+      const double sagitta = 0.5 * point.head<2>().norm() * std::pow(std::numbers::pi / kSteps, 2);
+      EXPECT_NEAR(meeting.distance, -0.5 * sagitta, 0.6 * sagitta + 10 * nm);
+    }
+  }
+}
+
+TEST(MachinedSurface, says_what_became_of_a_probe_that_met_nothing) {
+  const MachinedSurface surface({straight(kFlat, {-20e-3, 0, 0}, {20e-3, 0, 0})});
+  const auto kind = [&](const Vector3d& point, const Vector3d& normal) {
+    return surface.meet({point, normal}, kClearance, kDepth).kind;
+  };
+  EXPECT_EQ(kind({0, 0, 0}, Vector3d::UnitZ()), Kind::met);
+  EXPECT_EQ(kind({0, 6e-3, 0}, Vector3d::UnitZ()), Kind::untouched);
+  EXPECT_EQ(kind({0, 0, 19e-3}, Vector3d::UnitZ()), Kind::blocked);
+  EXPECT_EQ(kind({0, 0, 10e-3}, Vector3d::UnitZ()), Kind::through);
+  EXPECT_EQ(MachinedSurface({}).meet({{0, 0, 0}, Vector3d::UnitZ()}, kClearance, kDepth).kind,
+            Kind::untouched);
+}
+
+TEST(MachinedSurface, ends_at_material_that_was_left_before_a_deeper_cut) {
+  // a slot, and another one under it, found whichever comes first
+  const Cutter low{.radius = 4e-3, .length = 3e-3};
+  const auto upper = straight(low, {-20e-3, 0, 0}, {20e-3, 0, 0});
+  const auto apart = straight(low, {-20e-3, 0, -3.5e-3}, {20e-3, 0, -3.5e-3});
+  const auto joined = straight(low, {-20e-3, 0, -2.5e-3}, {20e-3, 0, -2.5e-3});
+  const ProbeTarget target = {{0, 0, 0}, Vector3d::UnitZ()};
+  for (const auto& passes : {std::vector{upper, apart}, std::vector{apart, upper}}) {
+    const Meeting meeting = MachinedSurface(passes).meet(target, kClearance, 10e-3);
+    EXPECT_EQ(meeting.kind, Kind::met);
+    EXPECT_NEAR(meeting.distance, 0.0, kExact);
+  }
+  for (const auto& passes : {std::vector{upper, joined}, std::vector{joined, upper}}) {
+    EXPECT_NEAR(MachinedSurface(passes).meet(target, kClearance, 10e-3).distance, -2.5e-3, kExact);
+  }
+}
+
+TEST(MachinedSurface, tells_the_position_that_left_a_point) {
+  const MachinedSurface surface(raster(kBall, 0.5e-3, 3));  // 41 positions each, 1 mm apart
+  const Meeting meeting =
+      surface.meet({{0.3e-3, 0.51e-3, 0}, Vector3d::UnitZ()}, kClearance, kDepth);
+  EXPECT_EQ(meeting.position, 41U + 21U);
+}
+
+}  // namespace
+}  // namespace servomill::plant
