@@ -9,41 +9,17 @@
 #include <vector>
 
 #include "sim/metrology/linear_program.h"
+#include "sim/metrology/round_fit.h"
 
 namespace servomill::sim {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector2d;
-using Eigen::Vector3d;
 
-constexpr int kMostSteps = 50;     // of Gauss-Newton and of the minimum zone; both need about five
-constexpr double kStill = 1e-14;   // of the radius: shorter steps are rounding
-constexpr double kNoGain = 1e-12;  // of the zone's width
+constexpr int kMostSteps = 50;        // about five are needed
+constexpr double kStill = 1e-14;      // of the radius: shorter steps are rounding
+constexpr double kNoGain = 1e-12;     // of the zone's width
 constexpr std::size_t kSectors = 16;  // that the minimum zone begins with
-
-Vector2d mean_of(Points2 points) {
-  Vector2d sum = Vector2d::Zero();
-  for (const Vector2d& p : points) sum += p;
-  return sum / static_cast<double>(points.size());
-}
-
-// Least squares of 2 a . q + c = |q|^2 with q = p - origin: centre a, radius sqrt(c + |a|^2).
-Circle algebraic_circle(Points2 points) {
-  const Vector2d origin = mean_of(points);
-  Matrix3d normal = Matrix3d::Zero();
-  Vector3d right = Vector3d::Zero();
-  double size = 0.0;
-  for (const Vector2d& p : points) size = std::max(size, (p - origin).norm());
-  for (const Vector2d& p : points) {
-    const Vector2d q = (p - origin) / size;
-    const Vector3d row(2.0 * q.x(), 2.0 * q.y(), 1.0);
-    normal += row * row.transpose();
-    right += row * q.squaredNorm();
-  }
-  const Vector3d x = normal.ldlt().solve(right);
-  return {origin + size * x.head<2>(), size * std::sqrt(x[2] + x.head<2>().squaredNorm())};
-}
 
 // Points that the zone must hold, and how to find those that stick out.
 class ZoneSearch {
@@ -136,24 +112,8 @@ class ZoneSearch {
 
 Circle least_squares_circle(Points2 points) {
   assert(points.size() >= 3);
-  Circle circle = algebraic_circle(points);
-  for (int step = 0; step < kMostSteps; ++step) {
-    // |p - centre| - radius changes by -u . d(centre) - d(radius)
-    Matrix3d normal = Matrix3d::Zero();
-    Vector3d right = Vector3d::Zero();
-    for (const Vector2d& p : points) {
-      const Vector2d d = p - circle.centre;
-      const double rho = d.norm();
-      const Vector3d row(d.x() / rho, d.y() / rho, 1.0);
-      normal += row * row.transpose();
-      right += row * (rho - circle.radius);
-    }
-    const Vector3d x = normal.ldlt().solve(right);
-    circle.centre += x.head<2>();
-    circle.radius += x[2];
-    if (x.norm() <= kStill * circle.radius) break;
-  }
-  return circle;
+  const Round<2> round = geometric_round<2>(points);
+  return {round.centre, round.radius};
 }
 
 RingZone zone_about(Points2 points, const Vector2d& centre) {

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <span>
+
+#include "sim/metrology/points.h"
 
 namespace servomill::sim {
-
-/// Points of a plane; coordinates in one unit, m where it matters.
-using Points2 = std::span<const Eigen::Vector2d>;
 
 struct Circle {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
