@@ -1,6 +1,7 @@
 #include "sim/metrology/sphere_fit.h"
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <vector>
 
 #include "sim/metrology/circle_fit.h"
@@ -9,8 +10,41 @@
 
 namespace servomill::sim {
 
+namespace {
+
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using Vector6 = Eigen::Vector<double, 6>;
+
+// Gauss-Newton over shifts of the centre, tilts of the normal and the radius, in units of the
+// radius. A point at (x, y, z) in the circle's frame is rho - r = |(x, y)| - r and z away from it.
+Circle3 refined(Points3 points, Circle3 circle) {
+  constexpr int kMostSteps = 50;    // about five are needed
+  constexpr double kStill = 1e-14;  // shorter steps are rounding
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double r = circle.radius;
+    const Vector3d n = circle.normal, u = across(n), v = n.cross(u);
+    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+    Vector6 right = Vector6::Zero();
+    for (const Vector3d& p : points) {
+      const Vector3d q = (p - circle.centre) / r;
+      const double x = u.dot(q), y = v.dot(q), z = n.dot(q), rho = std::hypot(x, y);
+      Vector6 radial, axial;
+      radial << x / rho, y / rho, 0.0, z * x / rho, z * y / rho, 1.0;
+      axial << 0.0, 0.0, 1.0, -x, -y, 0.0;
+      normal += radial * radial.transpose() + axial * axial.transpose();
+      right += radial * (rho - 1.0) + axial * z;
+    }
+    const Vector6 s = normal.ldlt().solve(right);
+    circle.centre += r * (s[0] * u + s[1] * v + s[2] * n);
+    circle.normal = (n + s[3] * u + s[4] * v).normalized();
+    circle.radius += r * s[5];
+    if (s.norm() <= kStill) break;
+  }
+  return circle;
+}
+
+}  // namespace
 
 double Sphere::distance(const Vector3d& p) const { return (p - centre).norm() - radius; }
 
@@ -35,8 +69,8 @@ std::optional<Circle3> least_squares_circle(Points3 points, const Vector3d& axis
     feet.emplace_back(u.dot(p - plane->point), v.dot(p - plane->point));
   }
   const Circle circle = least_squares_circle(feet);
-  return Circle3{plane->point + circle.centre.x() * u + circle.centre.y() * v, plane->normal,
-                 circle.radius};
+  return refined(points, {plane->point + circle.centre.x() * u + circle.centre.y() * v,
+                          plane->normal, circle.radius});
 }
 
 }  // namespace servomill::sim

@@ -30,9 +30,9 @@ struct Circle3 {
 /// nullopt: the points lie in a plane
 std::optional<Sphere> least_squares_sphere(Points3 points);
 
-/// The least-squares plane of the points, and in it the least-squares circle of their feet, as
-/// coordinate measuring machines do. It is not quite the circle with the smallest squared distances
-/// in space: those of the feet and those from the plane are made small one after the other.
+/// The circle with the smallest sum of squared distances in space, those within its plane and those
+/// from it: by Gauss-Newton from the least-squares plane and the circle of the points' feet in it,
+/// which is nearly the same.
 /// @param axis  the side to which the normal points (any length)
 /// nullopt: the points lie on a line, or in one place
 std::optional<Circle3> least_squares_circle(Points3 points, const Eigen::Vector3d& axis);
