@@ -1,0 +1,47 @@
+/// Which pieces of a cutter's edges are in material at which angles of rotation.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <functional>
+#include <vector>
+
+#include "plant/cutting/cutter.h"
+#include "plant/cutting/cutting_force.h"
+
+namespace servomill::plant {
+
+/// A cutter as it moves: where it stands, where it goes and how it turns.
+struct CutterMotion {
+  CutterPosition position;
+  Eigen::Vector3d feed = Eigen::Vector3d::UnitX();  // unit
+  bool clockwise = true;  // seen from the spindle; else the frame of cutting_force.h is mirrored,
+                          // e2 = e1 x k: a left-hand cutter
+};
+
+/// Frame of cutting_force.h (columns e1, e2, k) and the feed in it. Where the feed is along the
+/// axis, e1 is any direction across it.
+struct CutterFrame {
+  Eigen::Matrix3d axes;
+  FeedDirection feed;
+};
+CutterFrame frame_of(const CutterMotion& motion);
+
+/// Whether there is material at a point (m, where the cutter's position is given).
+using IsMaterial = std::function<bool(const Eigen::Vector3d&)>;
+
+/// Pieces of the cutter's profile from the middle of its bottom over the corner to the end of the
+/// flutes and the angles at which they are in material, as far as they remove chips there
+/// (contact_range): the bottom of a flat cutter where it plunges.
+///
+/// The profile is searched at some heights, close to each other near the tip, and directions, close
+/// to each other at the sides; where material begins or ends between two of them is found by
+/// bisection. Material thinner than the steps between them may be missed: steps of the flank grow
+/// from 5e-5 of the height that can be in material at the tip to a fifth of it at the top, those of
+/// the directions from 0.5 deg at the sides to 15 deg in the middle.
+/// @param within  no material is outside of this box
+std::vector<EngagedArc> engagement(const Cutter& cutter, const CutterMotion& motion,
+                                   const IsMaterial& is_material,
+                                   const Eigen::AlignedBox3d& within);
+
+}  // namespace servomill::plant
