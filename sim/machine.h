@@ -92,6 +92,8 @@ struct MachineSettings {
   std::array<plant::Encoder, kJoints> motor;  // rad
   std::array<std::optional<MarkSettings>, kJoints> marks;
   std::array<plant::ScrewError, kJoints> screw;
+  // m/N, of what lies between the scales of linear axes and the tip: 0: rigid
+  Eigen::Vector3d structural_compliance = Eigen::Vector3d::Zero();
   Tick scale_delay = 0;
   NcSettings nc;
 

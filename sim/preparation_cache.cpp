@@ -117,6 +117,7 @@ PreparationCache::PreparationCache()
       rewritten(kMoves, [](const RewrittenProgram& p) { return weight_of(p.moves); }),
       motions(kMoves, [](const PlannedMotion& m) { return weight_of(m); }),
       circles(kMoves, [](const SectionsOfMotion& s) { return weight_of(*s.motion); }),
+      cuttings(kRows, [](const PlannedCutting& c) { return c.table.rows().size() + 1; }),
       models(kModels),
       strategies(kModels),
       spectral_radii(kRadii) {}

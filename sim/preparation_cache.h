@@ -12,6 +12,7 @@
 #include "plant/drives/prepared_drives.h"
 #include "plant/geometry/volumetric.h"
 #include "sim/circular_sections.h"
+#include "sim/cutting.h"
 #include "sim/machine.h"
 #include "sim/memo.h"
 #include "sim/program_path.h"
@@ -62,11 +63,19 @@ struct SectionsOfMotion {
   std::map<std::string, CircularSection> sections;
 };
 
+/// The force of the cut along a program.
+struct PlannedCutting {
+  std::shared_ptr<const InterpretedProgram> program;
+  CuttingTable table;
+  std::vector<Fault> warnings;  // rapid moves through material
+};
+
 /// One for all points of a sweep, for any number of threads. What is taken from it is what would
 /// have been computed without, bit for bit: the keys hold every input of a result. Bounded: what
 /// was not used for longest is forgotten.
 struct PreparationCache {
-  static constexpr std::size_t kMoves = 200'000;  // kept in each form: some 100 MB
+  static constexpr std::size_t kMoves = 200'000;   // kept in each form: some 100 MB
+  static constexpr std::size_t kRows = 1'000'000;  // of forces along programs: some 100 MB
   static constexpr std::size_t kModels = 1'000;
   static constexpr std::size_t kRadii = 20'000;
   static constexpr std::size_t kDrives = 500;
@@ -77,6 +86,7 @@ struct PreparationCache {
   Memo<RewrittenProgram> rewritten;
   Memo<PlannedMotion> motions;
   Memo<SectionsOfMotion> circles;
+  Memo<PlannedCutting> cuttings;
   Memo<plant::VolumetricModel> models;
   Memo<strategies::Strategy> strategies;
   Memo<double> spectral_radii;

@@ -10,6 +10,7 @@
 #include "controllers/gcode/printer.h"
 #include "controllers/path/travel.h"
 #include "plant/vocabulary/units.h"
+#include "sim/plan_cutting.h"
 #include "sim/preparation_cache.h"
 #include "sim/stability_check.h"
 #include "sim/subroutine_files.h"
@@ -21,6 +22,7 @@ namespace {
 using SharedModel = std::shared_ptr<const plant::VolumetricModel>;
 using SharedProgram = std::shared_ptr<const InterpretedProgram>;
 using SharedStrategy = std::shared_ptr<const strategies::Strategy>;
+using SharedCutting = std::shared_ptr<const PlannedCutting>;
 using SharedMotion = std::shared_ptr<const PlannedMotion>;
 
 AxisWords machine_start(const Scenario& scenario, const CaseSpec& spec) {
@@ -155,6 +157,33 @@ void add(MemoKey& key, const StrategySpec& spec) {
     } else {
       key.add(spec.parameters.number(parameter.name));
     }
+  }
+}
+
+void add(MemoKey& key, const plant::Stock& stock) {
+  key.add(stock.solids().size());
+  for (const plant::StockSolid& solid : stock.solids()) {
+    key.add(solid.index());
+    if (const auto* box = std::get_if<plant::StockBox>(&solid)) {
+      const auto& [from, to, turned] = *box;
+      key.add(from);
+      key.add(to);
+      key.add(turned);
+    } else {
+      const auto& [centre, radius, from, to] = std::get<plant::StockCylinder>(solid);
+      key.add(centre);
+      for (const double value : {radius, from, to}) key.add(value);
+    }
+  }
+}
+
+void add(MemoKey& key, const std::map<int, plant::Cutter>& cutters) {
+  key.add(cutters.size());
+  for (const auto& [number, cutter] : cutters) {
+    const auto& [radius, corner_radius, length, teeth, helix] = cutter;
+    key.add(number);
+    key.add(teeth);
+    for (const double value : {radius, corner_radius, length, helix}) key.add(value);
   }
 }
 
@@ -414,6 +443,31 @@ class Preparation {
     });
   }
 
+  // The force of the cut along the original program; nullptr: this case runs in air.
+  SharedCutting cutting(const SharedProgram& program) const {
+    if (!spec_.cutting) return nullptr;
+    const CuttingPlanInputs inputs = {program,
+                                      machine_.chain,
+                                      start_,
+                                      scenario_.program.work_offset + spec_.work_offset,
+                                      scenario_.stock,
+                                      scenario_.program.cutters,
+                                      scenario_.cutting->coefficients,
+                                      scenario_.program.file,
+                                      scenario_.cutting->place};
+    MemoKey key;
+    key.add_shared(program.get());
+    add(key, machine_.chain);
+    key.add(start_);
+    key.add(inputs.work_offset);
+    add(key, inputs.stock);
+    add(key, inputs.cutters);
+    for (const plant::NamedCoefficient& K : plant::kCuttingCoefficients) {
+      key.add(inputs.coefficients.*K.member);
+    }
+    return cache_.cuttings.get(key, [&] { return plan_cutting(inputs); });
+  }
+
   const Joints& start() const { return start_; }
 
  private:
@@ -434,12 +488,13 @@ struct PreparedCase::Parts {
   std::shared_ptr<const RewrittenProgram> rewritten;  // nullptr: the original program runs
   SharedMotion motion;
   SharedModel truth, imposed;
+  SharedCutting cutting;
   const MachineSettings& machine() const { return scenario.machine_of(spec); }
   Joints machine_start;
 };
 
 PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, PreparationCache* cache)
-    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, Joints::Zero()}) {
+    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, {}, Joints::Zero()}) {
   PreparationCache own;
   const Preparation prepare(scenario, spec, cache != nullptr ? *cache : own);
   Parts& parts = *parts_;
@@ -467,6 +522,7 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   refuse_endless(scenario, parts.motion->trajectory.duration());
   parts.truth = prepare.model(spec.truth.value_or(scenario.truth));
   if (!scenario.imposed.empty()) parts.imposed = prepare.model(scenario.imposed);
+  parts.cutting = prepare.cutting(parts.program);
 }
 
 PreparedCase::~PreparedCase() = default;
@@ -490,6 +546,10 @@ CaseInputs PreparedCase::inputs() const {
                     p.scenario.settle_time,
                     p.scenario.record.format};
   inputs.pieces = p.program->path.pieces_of(*p.motion->moves);
+  if (p.cutting) {
+    inputs.cutting = &p.cutting->table;
+    inputs.wear = p.spec.wear;
+  }
   for (const auto& strategy : p.strategies) {
     if (auto part = strategy->set_point()) inputs.set_points.push_back(std::move(part));
     if (strategy->displaces_feedback()) inputs.feedback = strategy.get();
@@ -512,6 +572,9 @@ CaseOutput PreparedCase::output(CaseResult result) const {
   out.sections = sections();
   out.chain = p.machine().chain;
   for (const Fault& warning : p.program->warnings) {
+    out.notes.push_back(fmt::format("{}: warning: {}", to_string(warning.place), warning.message));
+  }
+  for (const Fault& warning : p.cutting ? p.cutting->warnings : std::vector<Fault>()) {
     out.notes.push_back(fmt::format("{}: warning: {}", to_string(warning.place), warning.message));
   }
   for (const auto& slowed : p.motion->slowed) {

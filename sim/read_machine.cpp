@@ -159,6 +159,10 @@ void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machi
       axis.fault(why + "; make it softer, shorten base_period_us or use integrator = \"cvode\"");
     }
   }
+  if (linear && axis.has("structural_stiffness")) {
+    const double stiffness = axis.real("structural_stiffness", kStiffness, {above(0.0)});
+    if (stiffness > 0.0) machine.structural_compliance[j] = 1.0 / stiffness;
+  }
   read_servo(axis, common.servo, j, machine);
   machine.nc.gain_place[lane] = {axis.has("Kv") ? axis.place("Kv") : common.Kv_place,
                                  axis.place("velocity_bandwidth"), winding_place(axis)};

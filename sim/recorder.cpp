@@ -26,7 +26,7 @@ std::string letters(const MachineSettings& machine, const std::vector<int>& join
 }
 
 std::vector<Signal> signals(const std::string& linear, const std::string& rotary, bool with_imposed,
-                            bool with_uncorrectable) {
+                            bool with_uncorrectable, bool with_cut) {
   std::vector<Signal> all = {
       {"time", "s", "time since the start of the program", "", ""},
       {"s", "mm", "arc length on the path of the original program", "", ""},
@@ -75,6 +75,14 @@ std::vector<Signal> signals(const std::string& linear, const std::string& rotary
                    "angle of the tool axis that the corrected axes cannot take away, believed", "",
                    ""});
   }
+  if (with_cut) {
+    all.push_back({"cutting_force", "N",
+                   "average force of the work on the cutter, in the workpiece", "XYZ", kXyz});
+    all.push_back({"structural_deflection", "um",
+                   "by which the cut bends the structure behind the scales, part of "
+                   "tool_position_true",
+                   linear, kLinear});
+  }
   return all;
 }
 
@@ -99,13 +107,15 @@ double per_metre(const Signal& signal) {
   const std::string& unit = signal.units;
   constexpr double kArm = 1.0;  // m
   constexpr double kTime = 10 * ms;
-  constexpr double kStrength = 0.1 / (1 * um);  // A/m and N
+  constexpr double kStrength = 0.1 / (1 * um);   // A/m and N
+  constexpr double kStiffness = 1.0 / (1 * um);  // N/m
   if (unit == "mm") return 1.0 / mm;
   if (unit == "um") return 1.0 / um;
   if (unit == "deg") return 1.0 / (kArm * deg);
   if (unit == "mm/s") return 1.0 / (mm * kTime);
   if (unit == "deg/s") return 1.0 / (kArm * deg * kTime);
   if (unit == "A" || unit == "N m") return kStrength;
+  if (unit == "N") return kStiffness;
   return signal.scale == kIjk ? 1.0 / kArm : 0.0;
 }
 
@@ -154,20 +164,21 @@ class Recorder::Rows {
   Rows(const MachineSettings& machine, const plant::VolumetricModel& truth,
        const plant::VolumetricModel* imposed, const ProgramPath& path,
        const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
-       bool rotary_displaced, std::vector<const strategies::Strategy*> correcting)
+       bool rotary_displaced, std::vector<const strategies::Strategy*> correcting, bool cuts)
       : machine_(machine),
         truth_(truth),
         imposed_(imposed),
         path_(path),
         tips_(tips),
         rotary_displaced_(rotary_displaced),
-        correcting_(std::move(correcting)) {
+        correcting_(std::move(correcting)),
+        cuts_(cuts) {
     for (int joint = 0; joint < kJoints; ++joint) {
       if (!machine.chain.layout.has(joint)) continue;
       (joint < kLinearJoints ? linear_ : rotary_).push_back(joint);
     }
     std::vector<Signal> all = signals(letters(machine, linear_), letters(machine, rotary_),
-                                      imposed != nullptr, !correcting_.empty());
+                                      imposed != nullptr, !correcting_.empty(), cuts_);
     apply(format, all);
     series_ = Series(std::move(all));
     rounding_ = Rounding(series_);
@@ -195,6 +206,7 @@ class Recorder::Rows {
   Joints ideal_joints(const Joints& Q_true, int tool_offset) const;
   void find_poses(std::span<const double> directions);
   void make_row(const Snapshot& now, std::size_t place, double* to);
+  void put_leftover(std::size_t place, RowWriter& row) const;
 
   const MachineSettings& machine_;
   const plant::VolumetricModel& truth_;
@@ -203,6 +215,7 @@ class Recorder::Rows {
   const std::map<int, Eigen::Vector3d>& tips_;
   const bool rotary_displaced_;
   const std::vector<const strategies::Strategy*> correcting_;
+  const bool cuts_;
   const plant::VolumetricModel ideal_{machine_.chain, {}};
   const plant::InverseKinematics inverse_{machine_.chain};
   std::vector<int> linear_, rotary_;  // joints that the machine has
@@ -262,6 +275,9 @@ void Recorder::Rows::find_poses(std::span<const double> directions) {
 
 void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to) {
   const ProgramPath::Piece& piece = path_.piece(pieces_[place]);
+  if (cuts_) {
+    actual_[place].p_WT += plant::linear_jacobian(machine_.chain, now.Q_true) * now.deflection;
+  }
   const ToolPose &nominal = nominal_[place], &actual = actual_[place];
   const auto place_on_path = [&]() -> std::optional<Eigen::Vector3d> {
     if (piece.is_tip) return actual.p_WT;
@@ -302,7 +318,13 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
   row.put(nominal.k_W, 1.0);
   row.put(actual.k_W, 1.0);
   row.put(contour_error / um);
-  if (correcting_.empty()) return;
+  if (!correcting_.empty()) put_leftover(place, row);
+  if (!cuts_) return;
+  row.put(now.cutting_force, 1.0);
+  for (const int joint : linear_) row.put(now.deflection[joint] / um);
+}
+
+void Recorder::Rows::put_leftover(std::size_t place, RowWriter& row) const {
   strategies::Leftover sum;
   for (const strategies::Strategy* strategy : correcting_) {
     const auto left = strategy->uncorrectable(Q_prog_[place]).value_or(strategies::Leftover{});
@@ -316,9 +338,10 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
 Recorder::Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
                    const plant::VolumetricModel* imposed, const ProgramPath& path,
                    const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
-                   bool rotary_displaced, std::vector<const strategies::Strategy*> correcting)
+                   bool rotary_displaced, std::vector<const strategies::Strategy*> correcting,
+                   bool cuts)
     : rows_(std::make_unique<Rows>(machine, truth, imposed, path, tips, format, rotary_displaced,
-                                   std::move(correcting))) {
+                                   std::move(correcting), cuts)) {
   filling_.snapshots.reserve(kBlockRows);
   filling_.directions.reserve(kBlockRows * truth.plays().size());
 }

@@ -29,6 +29,8 @@ struct Snapshot {
   Joints dQ_true = Joints::Zero();
   Joints current = Joints::Zero();
   Joints torque = Joints::Zero();
+  Eigen::Vector3d cutting_force = Eigen::Vector3d::Zero();  // N, on the cutter, in W
+  Eigen::Vector3d deflection = Eigen::Vector3d::Zero();     // m, of the structure in linear axes
 };
 
 /// Whoever records only copies a Snapshot. Rows are made from blocks of them in a thread of the
@@ -39,11 +41,13 @@ class Recorder {
   /// @param imposed  model whose displacement at the programmed position is recorded; may be null
   /// @param rotary_displaced  the program that runs turns rotary axes elsewhere than `path` does:
   ///                          where s stands, they are compared with the nearest programmed place
+  /// @param cuts  force of the cut and deflection are recorded; the deflection moves the tip
   /// @param correcting  strategies of which is recorded what they cannot correct, in all
   Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
            const plant::VolumetricModel* imposed, const ProgramPath& path,
            const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format = {},
-           bool rotary_displaced = false, std::vector<const strategies::Strategy*> correcting = {});
+           bool rotary_displaced = false, std::vector<const strategies::Strategy*> correcting = {},
+           bool cuts = false);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

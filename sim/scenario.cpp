@@ -14,6 +14,7 @@
 #include "sim/config/reader.h"
 #include "sim/read_ball.h"
 #include "sim/read_cutter.h"
+#include "sim/read_cutting.h"
 #include "sim/read_errors.h"
 #include "sim/read_machine.h"
 #include "sim/scenario_document.h"
@@ -74,6 +75,7 @@ class ScenarioReader {
     read_hardware(root);
     read_record(root);
     check_periods(root);
+    read_cut(root);
     const std::size_t before = root.faults();
     std::vector<Reader> cases = root.tables("case");
     cases_are_known_ = root.faults() == before;
@@ -304,6 +306,20 @@ class ScenarioReader {
         p.seconds(kMaxHyperperiod)));
   }
 
+  void read_cut(Reader& root) {
+    if (root.has("part")) {
+      Reader part = root.table("part");
+      out_.stock = read_stock(part);
+    }
+    if (!root.has("cutting")) return;
+    Reader cutting = root.table("cutting");
+    out_.cutting = read_cutting(cutting);
+    out_.cutting->place = root.place("cutting");
+    if (out_.stock.empty() && cutting.faults() == 0) {
+      cutting.fault("needs the raw part: [[part.stock]] with a box or a cylinder");
+    }
+  }
+
   Tick ticks(Reader& table, std::string_view key, double fallback, Tick least) {
     const Tick harmless = std::max<Tick>(least, 1);
     const std::size_t before = table.faults();
@@ -338,6 +354,7 @@ class ScenarioReader {
       spec.work_offset = read_offsets(words, out_.machine.chain.layout);
     }
     spec.feedback_hardware = table.boolean_or("feedback_hardware", out_.hardware.connected);
+    read_case_cutting(table, out_.cutting, spec);
     spec.servo = static_cast<ServoModel>(table.choice_or("servo", 0, kServos));
     if (spec.servo == ServoModel::ideal &&
         out_.record_period % out_.machine.nc.periods.position != 0) {

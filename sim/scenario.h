@@ -9,6 +9,8 @@
 
 #include "controllers/gcode/tool_table.h"
 #include "plant/cutting/cutter.h"
+#include "plant/cutting/material.h"
+#include "plant/cutting/stock.h"
 #include "plant/geometry/error_model.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/parameters.h"
@@ -49,6 +51,8 @@ struct CaseSpec {
   bool feedback_hardware = false;
   ServoModel servo = ServoModel::cascade;
   std::optional<std::string> truth;        // in place of that of the scenario; empty: no errors
+  bool cutting = false;                    // feels forces of the cut
+  CuttingWear wear;                        // then
   std::optional<MachineSettings> machine;  // where the case overrides keys of the machine
 
   bool has_feedback() const;  ///< among its strategies
@@ -83,6 +87,13 @@ struct RecordSpec {
   bool uncorrectable = false;  // what strategies cannot correct
 };
 
+/// What cutting costs.
+struct CuttingSpec {
+  plant::CuttingCoefficients coefficients;
+  CuttingWear wear;
+  Place place;
+};
+
 struct Scenario {
   std::string name;  // file name without folder and extension
   std::string title, source;
@@ -92,6 +103,8 @@ struct Scenario {
   std::string truth;    // model of the machine's true errors; empty: none
   std::string imposed;  // model whose displacement at the programmed position is recorded; or empty
   FeedbackHardware hardware;
+  plant::Stock stock;  // in work coordinates of the program
+  std::optional<CuttingSpec> cutting;
   std::vector<CaseSpec> cases;
   Tick record_period = 100;
   RecordSpec record;

@@ -29,7 +29,8 @@ struct Signal {
 struct RecordFormat {
   /// Lengths are rounded to multiples of the power of two (of their unit) next below this. Angles
   /// and directions are rounded as it is seen from 1 m, rates as it is passed in 10 ms, currents
-  /// and torques to that many times 0.1 A (N m) a micrometre. 0: every bit is kept.
+  /// and torques to that many times 0.1 A (N m) a micrometre, forces to that many times 1 N. 0:
+  /// every bit is kept.
   double resolution = 0.0;  // m
   /// Of all but time, s and counts, which stay float64.
   Storage storage = Storage::float64;

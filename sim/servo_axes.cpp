@@ -312,6 +312,13 @@ void ServoAxes::inject(int joint, const Injection& injection, std::size_t run) {
   input_.blocks[block(l)].F[place(l)] = -injection.force;
 }
 
+void ServoAxes::load(const Joints& forces, std::size_t run) {
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    const Place& p = places_[run][j];
+    if (p.present) input_.blocks[p.block].F[p.place] = -forces[static_cast<int>(j)];
+  }
+}
+
 void ServoAxes::end(std::size_t run) {
   for (const int j : joints_) {
     const std::size_t l = lane(run, j);

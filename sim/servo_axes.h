@@ -89,6 +89,8 @@ class ServoAxes {
   void follow(const AxisSetPoint& set, std::size_t run = 0);
   /// What is added to a joint from now on.
   void inject(int joint, const Injection& injection, std::size_t run = 0);
+  /// External forces on the slides from now on (5; N, N m), towards +, in place of an injected one.
+  void load(const Joints& forces, std::size_t run = 0);
   /// The run has ended: its drives stay where they are.
   void end(std::size_t run);
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "plant/vocabulary/units.h"
@@ -134,6 +135,33 @@ class Travel {
   std::vector<double> directions_;
 };
 
+// The cut along the path of a case, felt once a position period.
+class Cut {
+ public:
+  explicit Cut(const CaseInputs& in)
+      : in_(in), load_(*in.cutting, in.wear, in.machine.chain, in.machine.structural_compliance) {}
+
+  void start(const controllers::Trajectory::Sample& reference) { load_.start(reference.s); }
+  void advance(const controllers::Trajectory::Sample& reference) {
+    const NcSettings& nc = in_.machine.nc;
+    const int tool = in_.path.piece(in_.pieces[reference.move]).tool_offset;
+    if (tool != tool_) p_ST_ = in_.tips.at(tool);
+    tool_ = tool;
+    load_.advance(reference.s, nc.periods.seconds(nc.periods.position), reference.Q_ref, p_ST_);
+  }
+  const Joints& load() const { return load_.load(); }
+  void note(Snapshot& now) const {
+    now.cutting_force = load_.force();
+    now.deflection = load_.deflection();
+  }
+
+ private:
+  const CaseInputs& in_;
+  CuttingLoad load_;
+  int tool_ = 0;
+  Eigen::Vector3d p_ST_ = Eigen::Vector3d::Zero();
+};
+
 // What belongs to one case among those that run in lockstep: set point, feedback hardware,
 // recorder.
 class CaseRun {
@@ -149,7 +177,7 @@ class CaseRun {
         reference_(references.of(in.reference, 0.0)),
         recorded_(references.of(in.reference, set_point_.delay())),
         recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format,
-                  in.program_displaces_rotary, in.recorded_corrections),
+                  in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr),
         travel_(in.truth, Joints::Zero()),
         last_ticks_(in.machine.joints()) {
     end_ =
@@ -166,6 +194,7 @@ class CaseRun {
     last_ticks_.keep(nc_.periods.seconds(n), set_.Q_cmd, axes_.Q_read(run_), axes_.Q_true(run_),
                      axes_.current(run_));
     axes_.follow(set_, run_);
+    if (cut_) feel_cut(n);
   }
 
   // False if the machine stops.
@@ -199,6 +228,7 @@ class CaseRun {
     for (const int j : axes_.joints()) {
       now.torque[j] = in_.machine.drives[static_cast<std::size_t>(j)].Kt * now.current[j];
     }
+    if (cut_) cut_->note(now);
     recorder_.record(now, travel_.at(now.Q_true));
   }
 
@@ -218,6 +248,11 @@ class CaseRun {
   }
 
  private:
+  void feel_cut(Tick n) {
+    cut_->advance(recorded_.at(nc_.periods.seconds(n)));
+    axes_.load(cut_->load(), run_);
+  }
+
   // The machine has stood at the start for long: readings agree with the set point.
   void settle() {
     set_ = set_point_.settle();
@@ -231,6 +266,7 @@ class CaseRun {
       }
     }
     axes_.settle(Q, d, run_);
+    if (in_.cutting != nullptr) cut_.emplace(in_).start(recorded_.at(0.0));
     travel_ = {in_.truth, axes_.Q_true(run_)};
   }
 
@@ -244,6 +280,7 @@ class CaseRun {
   Recorder recorder_;
   Travel travel_;
   LastTicks last_ticks_;
+  std::optional<Cut> cut_;
   Tick end_ = 0;
   AxisSetPoint set_;
   CaseResult result_;
@@ -366,7 +403,7 @@ class IdealRun {
         set_point_(in.machine.nc, in.reference, std::move(in.set_points)),
         feedback_(in.feedback ? in.feedback->feedback(model_period_of(in)) : nullptr),
         recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format,
-                  in.program_displaces_rotary, in.recorded_corrections),
+                  in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr),
         travel_(in.truth, Joints::Zero()) {}
 
   CaseResult run(const StopFlag& stop, std::atomic<float>& progress) {
@@ -375,6 +412,7 @@ class IdealRun {
     Tick n = 0;
     AxisSetPoint set = set_point_.settle();
     travel_ = {in_.truth, Q_true_of(set)};
+    if (in_.cutting != nullptr) cut_.emplace(in_).start(reference_at(0));
     for (; periods_.seconds(n) <= end; n += periods_.position) {
       progress.store(static_cast<float>(periods_.seconds(n) / end), std::memory_order_relaxed);
       if (stop.load(std::memory_order_relaxed)) {
@@ -382,6 +420,7 @@ class IdealRun {
         break;
       }
       set = set_point_.advance(in_.reference.at(periods_.seconds(n), cursor_));
+      if (cut_) cut_->advance(reference_at(n));
       const bool is_recorded = n % in_.record_period == 0;
       if (!is_recorded && !travel_.matters()) continue;
       const Joints Q_true = Q_true_of(set);
@@ -394,16 +433,21 @@ class IdealRun {
   }
 
  private:
+  controllers::Trajectory::Sample reference_at(Tick n) {
+    return in_.reference.at(periods_.seconds(n) - set_point_.delay(), record_cursor_);
+  }
+
   void record(Tick n, const AxisSetPoint& set, const Joints& Q_true) {
     Snapshot now;
     now.time = periods_.seconds(n);
-    const auto reference = in_.reference.at(now.time - set_point_.delay(), record_cursor_);
+    const auto reference = reference_at(n);
     now.s = reference.s;
     now.piece = in_.pieces[reference.move];
     now.Q_ref = set.Q_ref;
     now.Q_cmd = now.Q_read = set.Q_cmd;
     now.Q_meas = now.Q_true = Q_true;
     now.dQ_true = set.dQ_ff;
+    if (cut_) cut_->note(now);
     recorder_.record(now, travel_.at(now.Q_true));
   }
 
@@ -424,6 +468,7 @@ class IdealRun {
   std::unique_ptr<strategies::FeedbackPart> feedback_;
   Recorder recorder_;
   Travel travel_;
+  std::optional<Cut> cut_;
   controllers::Trajectory::Cursor cursor_, record_cursor_;
 };
 

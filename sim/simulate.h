@@ -12,6 +12,7 @@
 #include "controllers/path/trajectory.h"
 #include "plant/drives/prepared_drives.h"
 #include "plant/geometry/volumetric.h"
+#include "sim/cutting.h"
 #include "sim/machine.h"
 #include "sim/program_path.h"
 #include "sim/series.h"
@@ -49,7 +50,9 @@ struct CaseInputs {
   bool program_displaces_rotary = false;  // the NC runs another program than `path` also there
   // of which is recorded what they cannot correct
   std::vector<const strategies::Strategy*> recorded_corrections = {};
-  std::vector<std::size_t> pieces = {};  // of `path`, for each move that the NC runs
+  std::vector<std::size_t> pieces = {};   // of `path`, for each move that the NC runs
+  const CuttingTable* cutting = nullptr;  // along `path`; nullptr: in air
+  CuttingWear wear = {};
 };
 
 /// How a case ended. A machine that stops is an outcome, not an exception.

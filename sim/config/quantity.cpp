@@ -98,6 +98,8 @@ constexpr std::array kNames = {
     Name{kAnglePerLength, "an angle per length", "rad/m", "urad/m"},
     Name{kCurrentPerAngularVelocity, "a current per angular velocity", "A s/rad", "A s/rad"},
     Name{kExpansion, "an expansion", "1/K", "um/m/K"},
+    Name{kPressure, "a force per area", "N/m^2", "N/mm^2"},
+    Name{kPerLength, "a share per length", "1/m", "1/m"},
 };
 
 const Symbol* find_symbol(std::string_view name) {

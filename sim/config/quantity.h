@@ -50,6 +50,8 @@ inline constexpr Quantity kTransmission{.m = 1, .rad = -1};                     
 inline constexpr Quantity kAnglePerLength{.m = -1, .rad = 1};                        // rad/m
 inline constexpr Quantity kCurrentPerAngularVelocity{.s = 1, .A = 1, .rad = -1};     // A s/rad
 inline constexpr Quantity kExpansion{.K = -1};                                       // 1/K
+inline constexpr Quantity kPressure{.m = -1, .kg = 1, .s = -2};                      // N/m^2
+inline constexpr Quantity kPerLength{.m = -1};                                       // 1/m
 
 /// A unit as written, with its factor to SI.
 struct Unit {

@@ -1,0 +1,84 @@
+/// The force of the cut along a programmed path, and what it does to a machine that follows it.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include "plant/kinematics/chain.h"
+
+namespace servomill::sim {
+
+/// Average force of the work on the cutter over the arc length s of the original program. Linear
+/// between rows; rows of equal s are a jump.
+class CuttingTable {
+ public:
+  struct Row {
+    double s = 0.0;     // m
+    double chip = 0.0;  // s, feed per tooth over ds/dt: |dp_WT/ds| / (spindle speed * teeth)
+    Eigen::Vector3d shear = Eigen::Vector3d::Zero();  // N per m of feed per tooth, in W
+    Eigen::Vector3d edge = Eigen::Vector3d::Zero();   // N of a new edge, in W
+    double cut = 0.0;                                 // m, cut by feed moves until here
+  };
+  /// Where the last force was; makes forward reading O(1).
+  struct Cursor {
+    std::size_t row = 0;
+  };
+
+  CuttingTable() = default;
+  /// @pre s does not fall from row to row
+  explicit CuttingTable(std::vector<Row> rows);
+
+  const std::vector<Row>& rows() const { return rows_; }
+
+  /// F = c shear + wear edge (3; N, in W) with the feed per tooth c = chip ds/dt and the wear
+  /// `wear` + `wear_per_m` times what has been cut; the term of the edge fades towards standstill
+  /// (plant/cutting/cutting_force.h). Neither allocates nor throws.
+  /// @param speed  ds/dt, m/s
+  Eigen::Vector3d force(double s, double speed, double wear, double wear_per_m,
+                        Cursor& cursor) const;
+
+ private:
+  std::vector<Row> rows_;
+};
+
+/// Factor on the terms of the edge: at the beginning, and its growth with the length of cut.
+struct CuttingWear {
+  double initial = 1.0;
+  double per_m = 0.0;  // 1/m
+};
+
+/// What one run feels of the cut, position period by position period.
+class CuttingLoad {
+ public:
+  /// All arguments must outlive this.
+  /// @param compliance  m/N, of the structure in each linear axis
+  CuttingLoad(const CuttingTable& table, const CuttingWear& wear, const plant::MachineChain& chain,
+              const Eigen::Vector3d& compliance);
+
+  /// Stands at s.
+  void start(double s) { s_ = s; }
+  /// The path has gone on to s within `dt` (s) and the joints are at Q (5; m, rad).
+  /// @param p_ST  m, tip of the tool in the spindle
+  void advance(double s, double dt, const Joints& Q, const Eigen::Vector3d& p_ST);
+
+  /// On the cutter, 3; N, in W.
+  const Eigen::Vector3d& force() const { return force_; }
+  /// On each joint (5; N, N m), towards +: J_pQ^T F by virtual work, of F acting at the tip.
+  const Joints& load() const { return load_; }
+  /// By which the structure gives way in each linear axis (3; m): compliance times load.
+  const Eigen::Vector3d& deflection() const { return deflection_; }
+
+ private:
+  const CuttingTable& table_;
+  const CuttingWear& wear_;
+  const plant::MachineChain& chain_;
+  const Eigen::Vector3d& compliance_;
+  CuttingTable::Cursor cursor_;
+  double s_ = 0.0;
+  Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), deflection_ = Eigen::Vector3d::Zero();
+  Joints load_ = Joints::Zero();
+};
+
+}  // namespace servomill::sim
