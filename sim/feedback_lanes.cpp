@@ -38,10 +38,11 @@ Joints FeedbackLanes::settle(std::size_t run, const Joints& Q_meas) {
   return of(run).part->settle(Q_meas, run - first_);
 }
 
-void FeedbackLanes::drop(std::size_t run) {
+std::vector<strategies::Saturation> FeedbackLanes::drop(std::size_t run) {
   Together& together = of(run);
+  if (together.waiting > 0) act(together);  // its own: periods that have passed
   use(together, run - first_, false);
-  together.waiting = 0;  // its own, if any
+  return together.part->saturations(run - first_);
 }
 
 void FeedbackLanes::advance() {

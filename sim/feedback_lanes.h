@@ -25,8 +25,8 @@ class FeedbackLanes {
   void add(std::size_t run, const strategies::Strategy& strategy, double model_period);
   /// Settles at standstill in Q_meas; d of all joints (5; m, rad).
   Joints settle(std::size_t run, const Joints& Q_meas);
-  /// The run goes on no longer.
-  void drop(std::size_t run);
+  /// The run goes on no longer; where it has been saturated.
+  std::vector<strategies::Saturation> drop(std::size_t run);
   /// To be called once a model period, after ServoAxes::read_scales.
   void advance();
   /// To be called before ServoAxes::take_readings: what acts now acts on the axes.

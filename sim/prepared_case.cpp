@@ -298,11 +298,29 @@ class CaseFaults {
   std::vector<Found> found_;
 };
 
+// "part.ngc:12: warning: case one: strategy feedback: virtual displacement of Y saturated ..."
+std::string saturation_note(const Scenario& scenario, const CaseSpec& spec,
+                            const controllers::Trajectory& trajectory,
+                            const strategies::Saturation& held) {
+  controllers::Trajectory::Cursor cursor{};
+  const int line = trajectory.at(held.first, cursor).line;
+  const bool linear = held.joint < kLinearJoints;
+  return fmt::format(
+      "{}:{}: warning: case {}: strategy feedback: {} of {} saturated at {:g} {}{}, first here, "
+      "{:.3g} s in all",
+      scenario.program.file, line, spec.name,
+      held.of_rate ? "rate of the virtual displacement" : "virtual displacement",
+      scenario.machine.chain.layout.letter_of(held.joint),
+      held.limit / (linear ? held.of_rate ? mm : um : 1e-3),
+      linear ? held.of_rate ? "mm" : "um" : "mrad", held.of_rate ? "/s" : "", held.time);
+}
+
 controllers::PathOptions path_options(const Scenario& scenario, const MachineSettings& machine) {
   controllers::PathOptions options;
   options.tolerance = machine.nc.path_tolerance;
   options.rotary_tolerance = machine.nc.rotary_tolerance;
   options.feed_override = scenario.program.feed_override;
+  options.block_time = machine.nc.block_time;
   return options;
 }
 
@@ -347,6 +365,7 @@ class Preparation {
     };
     Joints Kv;
     Kv << gain(0), gain(1), gain(2), gain(3), gain(4);
+    const Joints shift = machine_.chain.layout.joints(spec_.work_offset);
     MemoKey key;
     add(key, spec);
     add(key, machine_.chain);
@@ -355,6 +374,7 @@ class Preparation {
     key.add(machine_.nc.lower);
     key.add(machine_.nc.upper);
     key.add(start_);
+    key.add(shift);
     key.add(Kv);
     return cache_.strategies.get(key, [&]() -> SharedStrategy {
       const strategies::Belief belief = {machine_.chain.layout,
@@ -363,6 +383,7 @@ class Preparation {
                                          machine_.nc.lower,
                                          machine_.nc.upper,
                                          start_,
+                                         shift,
                                          Kv};
       try {
         return spec.entry->make(spec.parameters, spec.sign, belief);
@@ -581,6 +602,9 @@ CaseOutput PreparedCase::output(CaseResult result) const {
     out.notes.push_back(fmt::format("{}:{}: warning: {}", p.scenario.program.file, slowed.line,
                                     to_string(slowed, p.machine().chain.layout)));
   }
+  for (const strategies::Saturation& held : out.result.saturations) {
+    out.notes.push_back(saturation_note(p.scenario, p.spec, p.motion->trajectory, held));
+  }
   return out;
 }
 
@@ -611,10 +635,28 @@ std::vector<std::string> PreparedCase::uncorrectable() const {
   return out;
 }
 
+std::vector<std::string> PreparedCase::beyond_tables() const {
+  const Parts& p = *parts_;
+  const JointLayout& layout = p.machine().chain.layout;
+  std::vector<std::string> out;
+  for (const SharedStrategy& strategy : p.strategies) {
+    for (const LeftTable& left : left_tables(p.program->path, *strategy, layout)) {
+      const char axis = layout.letter_of(left.table.joint);
+      out.push_back(fmt::format(
+          "{}:{}: warning: case {}: strategy table: the table over {} ends at {:.4f} mm, the "
+          "program goes on to {:.4f} mm; from here on the last value stays",
+          p.scenario.program.file, left.line, p.spec.name, axis, left.table.end / mm,
+          left.farthest / mm));
+    }
+  }
+  return out;
+}
+
 CaseOutput PreparedCase::run(const StopFlag& stop, std::atomic<float>& progress) const {
   CaseInputs given = inputs();
   CaseOutput out = output(simulate(given, stop, progress));
   for (std::string& note : uncorrectable()) out.notes.push_back(std::move(note));
+  for (std::string& note : beyond_tables()) out.notes.push_back(std::move(note));
   progress = 1.0F;
   return out;
 }

@@ -60,7 +60,10 @@ class PreparedCase {
   /// What strategies of this case cannot correct, one line for each (sim/uncorrected.h).
   std::vector<std::string> uncorrectable() const;
 
-  /// output(simulate(inputs())), and what is uncorrectable among its notes
+  /// Where the program goes beyond the points of compensation tables, one line for each end.
+  std::vector<std::string> beyond_tables() const;
+
+  /// output(simulate(inputs())), and what is uncorrectable and beyond tables among its notes
   CaseOutput run(const StopFlag& stop, std::atomic<float>& progress) const;
 
  private:

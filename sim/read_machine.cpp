@@ -231,6 +231,8 @@ MachineSettings read_machine(Reader& table, std::map<std::string, plant::ErrorMo
   machine.nc.path_tolerance = nc.real_or("path_tolerance_um", 10 * um, kLength, {above(0.0)});
   machine.nc.rotary_tolerance =
       nc.real_or("rotary_tolerance_urad", 100 * urad, kAngle, {above(0.0)});
+  machine.nc.block_time =
+      nc.real_or("block_time_ms", 0.0, kTime, {at_least(0.0), at_most(kLongestPeriod)});
   machine.nc.check_stability = nc.boolean_or("check_stability", true);
   const double delay =
       nc.real_or("scale_delay_us", 0.0, kTime, {at_least(0.0), at_most(kLongestPeriod)});

@@ -238,7 +238,7 @@ class CaseRun {
   void interrupt(Tick n) { result_.outcome = interrupted(nc_.periods.seconds(n)); }
 
   CaseResult finish(Tick n) {
-    if (in_.feedback) feedback_.drop(run_);
+    if (in_.feedback) result_.saturations = feedback_.drop(run_);
     axes_.end(run_);
     result_.simulated_time = nc_.periods.seconds(n);
     result_.servo = recorder_.take();
@@ -429,12 +429,28 @@ class IdealRun {
     }
     result.simulated_time = periods_.seconds(n);
     result.servo = recorder_.take();
+    result.saturations = std::move(saturations_);
     return result;
   }
 
  private:
   controllers::Trajectory::Sample reference_at(Tick n) {
     return in_.reference.at(periods_.seconds(n) - set_point_.delay(), record_cursor_);
+  }
+
+  // Of an instant that is recorded; the sizes of displacements, which are all that settle().
+  void add_saturations(double time) {
+    if (!feedback_) return;
+    for (const strategies::Saturation& now : feedback_->saturations(0)) {
+      auto known = std::find_if(saturations_.begin(), saturations_.end(),
+                                [&](const auto& one) { return one.joint == now.joint; });
+      if (known == saturations_.end()) {
+        known = saturations_.insert(known, now);
+        known->first = time;
+        known->time = 0.0;
+      }
+      known->time += periods_.seconds(in_.record_period);
+    }
   }
 
   void record(Tick n, const AxisSetPoint& set, const Joints& Q_true) {
@@ -449,6 +465,7 @@ class IdealRun {
     now.dQ_true = set.dQ_ff;
     if (cut_) cut_->note(now);
     recorder_.record(now, travel_.at(now.Q_true));
+    add_saturations(now.time);
   }
 
   // Q_true + d(Q_true) = Q_cmd
@@ -469,6 +486,7 @@ class IdealRun {
   Recorder recorder_;
   Travel travel_;
   std::optional<Cut> cut_;
+  std::vector<strategies::Saturation> saturations_;
   controllers::Trajectory::Cursor cursor_, record_cursor_;
 };
 

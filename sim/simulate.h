@@ -69,10 +69,11 @@ using StopFlag = std::atomic<bool>;
 
 struct CaseResult {
   Outcome outcome;
-  Series servo;                 // one row a record period
-  Series last_ticks;            // when stopped: what happened in the last position periods
-  double simulated_time = 0.0;  // s
-  double wall_time = 0.0;       // s, of all that ran in lockstep
+  Series servo;       // one row a record period
+  Series last_ticks;  // when stopped: what happened in the last position periods
+  std::vector<strategies::Saturation> saturations;  // of the feedback
+  double simulated_time = 0.0;                      // s
+  double wall_time = 0.0;                           // s, of all that ran in lockstep
 };
 
 /// Whether two cases can run in lockstep: the same axes, moved at the same instants. Everything

@@ -24,18 +24,12 @@ bool is_worse(const strategies::Leftover& a, const strategies::Leftover& b) {
   return by_axis ? a.axis > b.axis : a.tip > b.tip;
 }
 
-}  // namespace
-
-std::optional<Uncorrected> uncorrected(const ProgramPath& path,
-                                       const strategies::Strategy& strategy,
-                                       const plant::InverseKinematics& inverse,
-                                       const Eigen::Vector3d& p_ST) {
-  const JointLayout& layout = inverse.chain().layout;
+// Calls visit(piece, Q) at places of the feed motion, as long as it returns true.
+template <class Visit>
+void look_along(const ProgramPath& path, const JointLayout& layout, Visit visit) {
   std::size_t total = 0;
   for (std::size_t n = 0; n < path.size(); ++n) total += looks_of(path.piece(n));
   const std::size_t stride = total / kMost + 1;
-  Uncorrected worst;
-  Joints worst_at = Joints::Zero();
   std::size_t look = 0;
   for (std::size_t n = 0; n < path.size(); ++n) {
     const ProgramPath::Piece& piece = path.piece(n);
@@ -48,19 +42,51 @@ std::optional<Uncorrected> uncorrected(const ProgramPath& path,
       const AxisWords near = piece.begin + share * (piece.end - piece.begin);
       const Joints Q = path.joints(n, piece.s_begin + share * (piece.s_end - piece.s_begin), layout,
                                    layout.joints(near));
-      const auto left = strategy.uncorrectable(Q);
-      if (!left) return std::nullopt;
-      if (!is_worse(*left, worst.left)) continue;
+      if (!visit(piece, Q)) return;
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<Uncorrected> uncorrected(const ProgramPath& path,
+                                       const strategies::Strategy& strategy,
+                                       const plant::InverseKinematics& inverse,
+                                       const Eigen::Vector3d& p_ST) {
+  Uncorrected worst;
+  Joints worst_at = Joints::Zero();
+  look_along(path, inverse.chain().layout, [&](const ProgramPath::Piece& piece, const Joints& Q) {
+    const auto left = strategy.uncorrectable(Q);
+    if (!left) return false;
+    if (is_worse(*left, worst.left)) {
       worst = {piece.line, *left, 0.0};
       worst_at = Q;
     }
-  }
+    return true;
+  });
   if (worst.left.tip <= kUncorrected.tip && worst.left.axis <= kUncorrected.axis) {
     return std::nullopt;
   }
   worst.singular_angle =
       inverse.distance_from_singular(plant::forward(inverse.chain(), worst_at, p_ST).k_W);
   return worst;
+}
+
+std::vector<LeftTable> left_tables(const ProgramPath& path, const strategies::Strategy& strategy,
+                                   const JointLayout& layout) {
+  std::vector<LeftTable> out;
+  look_along(path, layout, [&](const ProgramPath::Piece& piece, const Joints& Q) {
+    for (const strategies::BeyondTable& end : strategy.beyond_tables(Q)) {
+      const double q = Q[end.joint];
+      auto known = std::find_if(out.begin(), out.end(), [&](const LeftTable& one) {
+        return one.table.joint == end.joint && one.table.end == end.end;
+      });
+      if (known == out.end()) known = out.insert(known, {piece.line, end, q});
+      if (std::abs(q - end.end) > std::abs(known->farthest - end.end)) known->farthest = q;
+    }
+    return true;
+  });
+  return out;
 }
 
 }  // namespace servomill::sim

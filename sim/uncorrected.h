@@ -1,7 +1,8 @@
-/// What a strategy cannot correct, looked for along the program.
+/// What a strategy cannot correct, or no longer corrects, looked for along the program.
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "plant/kinematics/inverse.h"
 #include "sim/program_path.h"
@@ -28,5 +29,17 @@ std::optional<Uncorrected> uncorrected(const ProgramPath& path,
                                        const strategies::Strategy& strategy,
                                        const plant::InverseKinematics& inverse,
                                        const Eigen::Vector3d& p_ST);
+
+/// Where the program leaves a compensation table.
+struct LeftTable {
+  int line = 0;  // the first one that does
+  strategies::BeyondTable table;
+  double farthest = 0.0;  // m, of the joint
+};
+
+/// The ends of tables that feed motion leaves, looked for at the same places.
+/// @param layout  of the machine's joints
+std::vector<LeftTable> left_tables(const ProgramPath& path, const strategies::Strategy& strategy,
+                                   const JointLayout& layout);
 
 }  // namespace servomill::sim

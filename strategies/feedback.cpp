@@ -97,10 +97,54 @@ class VelocityWindow {
   std::size_t oldest_ = 0;
 };
 
+// Model periods in which displacements were limited: of each joint and run.
+template <int kDisplaced>
+class HeldPeriods {
+ public:
+  explicit HeldPeriods(double period) : period_(period) {}
+
+  void settle(std::size_t run) {
+    now_[run] = 0;
+    for (auto& joint : held_) joint[run] = {};
+  }
+  // The displacement of one joint n periods after the last that has passed.
+  void look(int joint, std::size_t run, std::size_t n, double wanted, double value, double most) {
+    if (value == wanted) return;
+    Held& held = held_[static_cast<std::size_t>(joint)][run][std::abs(wanted) > most ? 0 : 1];
+    if (held.periods++ == 0) held.first = now_[run] + n;
+  }
+  void pass(std::size_t run, std::size_t periods) { now_[run] += periods; }
+
+  std::vector<Saturation> all(std::size_t run, const Joints& most, const Joints& most_rate) const {
+    std::vector<Saturation> out;
+    for (int j = 0; j < kDisplaced; ++j) {
+      for (const bool of_rate : {false, true}) {
+        const Held& held = held_[static_cast<std::size_t>(j)][run][of_rate ? 1 : 0];
+        if (held.periods == 0) continue;
+        out.push_back({j, of_rate, of_rate ? most_rate[j] : most[j],
+                       static_cast<double>(held.first) * period_,
+                       static_cast<double>(held.periods) * period_});
+      }
+    }
+    return out;
+  }
+
+ private:
+  struct Held {
+    std::size_t first = 0, periods = 0;
+  };
+  double period_;                              // s
+  std::array<std::size_t, kLaneWidth> now_{};  // periods that have passed
+  std::array<std::array<std::array<Held, 2>, kLaneWidth>, kDisplaced> held_{};  // size, rate
+};
+
 // approached() period by period: of what was wanted, then of all but the last of `next`, which is
 // wanted from then on. Where no limit is felt on the way, that is the last but one.
+// @param held  called with the number of the period, what was wanted and what became of it, of
+//              periods that may have felt a limit
+template <class Held>
 double approach_in_turn(const LaneArray& next, std::size_t periods, double most, double most_change,
-                        double& wanted, double& value) {
+                        double& wanted, double& value, Held held) {
   double low = std::min(wanted, value), high = std::max(wanted, value);
   for (std::size_t n = 0; n + 1 < periods; ++n) {
     low = std::min(low, next[n]);
@@ -114,6 +158,7 @@ double approach_in_turn(const LaneArray& next, std::size_t periods, double most,
   }
   for (std::size_t n = 0; n < periods; ++n) {
     value = approached(wanted, most, most_change, value);
+    held(n, wanted, value);
     wanted = next[n];
   }
   return value;
@@ -132,9 +177,11 @@ class VirtualEncoder final : public FeedbackPart {
         all_(belief, params.iterations, params.sigma_0),
         leads_(!params.lead.isZero(0.0)),
         max_change_(params.max_rate * period),
+        held_(period),
         velocity_(params.window, period, kDisplaced) {}
 
   Joints settle(const Joints& Q_meas, std::size_t run) override {
+    held_.settle(run);
     if (leads_) velocity_.settle(Q_meas, run);
     Shifts wanted;
     find_displacement(Q_meas, LaneFlags{}, wanted);
@@ -142,6 +189,7 @@ class VirtualEncoder final : public FeedbackPart {
     for (int j = 0; j < kDisplaced; ++j) {
       wanted_[j][run] = wanted[j];
       d[j] = out_[j][run] = limited(wanted[j], params_.max[j]);
+      held_.look(j, run, 0, wanted[j], d[j], params_.max[j]);
     }
     return d;
   }
@@ -153,13 +201,17 @@ class VirtualEncoder final : public FeedbackPart {
     Joints d = Joints::Zero();
     for (int j = 0; j < kDisplaced; ++j) {
       d[j] = approach_in_turn(next[j], periods, params_.max[j], max_change_[j], wanted_[j][run],
-                              out_[j][run]);
+                              out_[j][run], [&](std::size_t n, double wanted, double value) {
+                                held_.look(j, run, n, wanted, value, params_.max[j]);
+                              });
     }
+    held_.pass(run, periods);
     return d;
   }
 
   const JointLanes& advance(const JointLanes& Q_meas, const LaneFlags& lanes) override {
     approach_(params_.max.data(), max_change_.data(), kDisplaced, wanted_, out_);
+    look_at_limits(lanes);
     if (leads_) {
       ShiftLanes velocity;
       for (std::size_t j = 0; j < kDisplaced; ++j) {
@@ -175,7 +227,23 @@ class VirtualEncoder final : public FeedbackPart {
     return out_;
   }
 
+  std::vector<Saturation> saturations(std::size_t run) const override {
+    return held_.all(run, params_.max, params_.max_rate);
+  }
+
  private:
+  void look_at_limits(const LaneFlags& lanes) {
+    for (int j = 0; j < kDisplaced; ++j) {
+      bool all_free = true;
+      for (std::size_t k = 0; k < kLaneWidth; ++k) all_free &= out_[j][k] == wanted_[j][k];
+      if (all_free) continue;
+      for (std::size_t k = 0; k < kLaneWidth; ++k) {
+        if (lanes[k]) held_.look(j, k, 0, wanted_[j][k], out_[j][k], params_.max[j]);
+      }
+    }
+    for (std::size_t k = 0; k < kLaneWidth; ++k) held_.pass(k, 1);
+  }
+
   // What periods of one run find that lie side by side.
   void find_in_turn(const JointLanes& Q_meas, std::size_t periods, std::size_t run,
                     ShiftLanes& next) {
@@ -240,6 +308,7 @@ class VirtualEncoder final : public FeedbackPart {
   PoseCompensation all_;
   bool leads_;
   Joints max_change_;  // m, rad per model period
+  HeldPeriods<kDisplaced> held_;
   VelocityWindow velocity_;
   Approach approach_ = approach_in_lanes();
   ShiftLanes wanted_{};  // found, acts a period later

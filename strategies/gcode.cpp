@@ -15,8 +15,10 @@
 namespace servomill::strategies {
 namespace {
 
-const std::array<ParameterSpec, 7>& specs() {
-  static const std::array<ParameterSpec, 7> kSpecs = {{
+constexpr std::array<std::string_view, 2> kOrigins = {"case", "program"};
+
+const std::array<ParameterSpec, 8>& specs() {
+  static const std::array<ParameterSpec, 8> kSpecs = {{
       {.name = "tolerance_um",
        .help = "chord tolerance of the rewritten blocks",
        .unit = "um",
@@ -37,6 +39,13 @@ const std::array<ParameterSpec, 7>& specs() {
        .unit = "deg",
        .default_text = "1",
        .min = 1e-3},
+      {.name = "rewritten_for",
+       .help =
+           "work origin that the errors are evaluated for: where the case has the part, or where "
+           "the program's work_offset has it, before the case moves it by its own",
+       .default_text = "case",
+       .is_number = false,
+       .words = kOrigins},
       kIterationsSpec,
       kAxesSpec,
       kSingularSpec,
@@ -49,10 +58,11 @@ struct RewriteParams {
   Iterations iterations = Iterations::one;
   DisplacedAxes axes = DisplacedAxes::linear;
   double sigma_0 = 0.0;
-  double tolerance = 0.0;       // m
-  double max_block = 0.0;       // m
-  double tolerance_turn = 0.0;  // rad
-  double max_block_turn = 0.0;  // rad
+  double tolerance = 0.0;         // m
+  double max_block = 0.0;         // m
+  double tolerance_turn = 0.0;    // rad
+  double max_block_turn = 0.0;    // rad
+  Joints shift = Joints::Zero();  // m, rad; of the part since the program was rewritten
 };
 
 auto rotary(const Joints& Q) { return Q.tail<kJoints - kLinearJoints>(); }
@@ -179,11 +189,12 @@ class Rewriter {
   Place place(double t, const Joints& Q_near) const {
     Place out{t, way_->at(t, Q_near), {}};
     out.words = belief_.layout.words(out.Q);
+    const Joints Q_then = out.Q - params_.shift;
     if (displaces_all()) {
-      out.words += belief_.layout.words(all_.of_set_point(params_.sign, out.Q));
+      out.words += belief_.layout.words(all_.of_set_point(params_.sign, Q_then));
     } else {
       out.words.head<3>() +=
-          set_point_displacement(belief_, params_.sign, params_.iterations, out.Q);
+          set_point_displacement(belief_, params_.sign, params_.iterations, Q_then);
     }
     return out;
   }
@@ -267,7 +278,8 @@ class RewrittenProgram final : public Strategy {
   bool rewrites_tip_moves() const override { return true; }
   bool displaces_rotary() const override { return params_.axes == DisplacedAxes::all; }
   std::optional<Leftover> uncorrectable(const Joints& Q) const override {
-    return strategies::uncorrectable(belief_, params_.sign, params_.axes, params_.sigma_0, Q);
+    return strategies::uncorrectable(belief_, params_.sign, params_.axes, params_.sigma_0,
+                                     Joints(Q - params_.shift));
   }
 
   std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
@@ -298,6 +310,7 @@ std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& bel
   params.sigma_0 = std::sin(p.number("singular_deg"));
   params.tolerance_turn = p.number("tolerance_urad");
   params.max_block_turn = p.number("max_block_deg");
+  if (p.word("rewritten_for") == "program") params.shift = belief.part_shift;
   return std::make_unique<RewrittenProgram>(belief, params);
 }
 

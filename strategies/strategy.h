@@ -28,8 +28,10 @@ struct Belief {
   Joints lower = Joints::Zero();                   // m, rad; travel of the machine
   Joints upper = Joints::Zero();
   Joints reference = Joints::Zero();  // m, rad; where the machine starts
-  Joints Kv = Joints::Zero();         // 1/s, position gains that the NC is set to;
-                                      // NaN unless the entry reads_gains
+  // m, rad; from where the program's work offset has the part to where the case has it
+  Joints part_shift = Joints::Zero();
+  Joints Kv = Joints::Zero();  // 1/s, position gains that the NC is set to;
+                               // NaN unless the entry reads_gains
 };
 
 /// Offset of the set points, added in the NC where `entry` says.
@@ -42,13 +44,23 @@ class SetPointPart {
   virtual Joints offset(const Joints& Q_ref) const = 0;
 };
 
+/// What the security blocks of a feedback did to the virtual displacement of one joint in one run.
+struct Saturation {
+  int joint = 0;
+  bool of_rate = false;  // its rate of change was held back, else its size
+  double limit = 0.0;    // m, rad or these per s
+  double first = 0.0;    // s, since it was settled: when it began to act
+  double time = 0.0;     // s, in all
+};
+
 /// Offset of the position feedback: the NC reads x_measured + d, hence moves the axis by -d.
 /// Advances once per model period of the feedback hardware. Has the state of up to eight runs,
 /// side by side in lanes; a run gives the same bits in any lane, alone and among others.
 class FeedbackPart {
  public:
   virtual ~FeedbackPart() = default;
-  /// Settles one run at standstill in Q_meas, as if the hardware had been on for long.
+  /// Settles one run at standstill in Q_meas, as if the hardware had been on for long. Where that
+  /// saturates, it counts as one model period.
   virtual Joints settle(const Joints& Q_meas, std::size_t lane = 0) = 0;
   /// One model period after the other of one run, the only one that goes on: what was evaluated a
   /// period ago acts now, and the model is evaluated for the next period. Where only linear
@@ -63,6 +75,11 @@ class FeedbackPart {
   /// @param lanes   those of the runs
   /// @return d of the runs, until the next call; of other lanes anything
   virtual const JointLanes& advance(const JointLanes& Q_meas, const LaneFlags& lanes) = 0;
+  /// Where one run has been saturated since it was settled; in the order of the joints.
+  virtual std::vector<Saturation> saturations(std::size_t lane) const {
+    (void)lane;
+    return {};
+  }
   /// One model period of one run, the only one that goes on.
   Joints advance(const Joints& Q_meas, std::size_t lane = 0) {
     JointLanes one{};
@@ -75,6 +92,12 @@ class FeedbackPart {
 struct Leftover {
   double tip = 0.0;   // m
   double axis = 0.0;  // rad, of the direction of the tool; turns about itself do not count
+};
+
+/// Where a compensation table has no points any more.
+struct BeyondTable {
+  int joint = 0;     // over which it runs
+  double end = 0.0;  // m, its first or last point
 };
 
 /// Up to three parts, each optional. A strategy is constant and may be shared by runs; the parts
@@ -90,6 +113,11 @@ class Strategy {
   virtual bool rewrites_tip_moves() const { return false; }
 
   virtual std::unique_ptr<SetPointPart> set_point() const { return nullptr; }
+  /// The ends of tables beyond which Q (5; m, rad) lies: they hold their last value there.
+  virtual std::vector<BeyondTable> beyond_tables(const Joints& Q) const {
+    (void)Q;
+    return {};
+  }
 
   /// Whether it has a part that displaces the feedback.
   virtual bool displaces_feedback() const { return false; }

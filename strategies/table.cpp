@@ -118,6 +118,7 @@ struct Line {
   std::size_t points = 2;  // at least
 
   double at(std::size_t i) const { return first + static_cast<double>(i) * spacing; }
+  double last() const { return at(points - 1); }
 };
 
 // Values at the points of one to three lines that cross; linear in each coordinate between the
@@ -184,6 +185,18 @@ class CompensationTable final : public Strategy {
   // What X, Y and Z cannot; lines, lattice and spacing left aside.
   std::optional<Leftover> uncorrectable(const Joints& Q) const override {
     return strategies::uncorrectable(belief_, sign_, DisplacedAxes::linear, kAnySigma, Q);
+  }
+  std::vector<BeyondTable> beyond_tables(const Joints& Q) const override {
+    constexpr double kRounding = 1e-9;  // m
+    std::vector<BeyondTable> out;
+    for (const Table& table : tables_) {
+      for (const Line& line : table.lines) {
+        const double q = Q[line.joint];
+        if (q < line.first - kRounding) out.push_back({line.joint, line.first});
+        if (q > line.last() + kRounding) out.push_back({line.joint, line.last()});
+      }
+    }
+    return out;
   }
 
  private:

@@ -34,6 +34,7 @@ class Planner {
     assert(options.tolerance > 0.0 && options.exact_tolerance > 0.0);
     assert(options.rotary_tolerance > 0.0 && options.rotary_radius > 0.0);
     assert(options.feed_override > 0.0 && options.rapid_override > 0.0);
+    assert(options.block_time >= 0.0);
     scale_.setOnes();
     scale_.tail<kJoints - kLinearJoints>().setConstant(options.rotary_radius);
     limits_ = {limits.v.cwiseProduct(scale_), limits.a.cwiseProduct(scale_),
@@ -163,6 +164,7 @@ class Planner {
       return;
     }
     if (last_ && must_stop(*last_, leg)) finish_chain();
+    const double time = time_of(*motion);
     double from = 0.0;
     for (const JointChord& chord : chords) {
       const bool inner = &chord != &chords.back();
@@ -172,7 +174,7 @@ class Planner {
       span.rapid = leg.rapid;
       span.from = from;
       span.to = chord.fraction;
-      span.time = motion->time * (chord.fraction - from);
+      span.time = time * (chord.fraction - from);
       add_chord(chord, span.time, inner ? static_cast<int>(index) : -1);
       if (skipped_) continue;
       span.last = vertices_.size() - 1;
@@ -216,8 +218,14 @@ class Planner {
       leg.tangent_end = step / length;
       leg.length += length;
     }
-    leg.feed = motion.time > 0.0 ? leg.length / motion.time : limits_.v.norm();
+    const double time = time_of(motion);
+    leg.feed = time > 0.0 ? leg.length / time : limits_.v.norm();
     return leg;
+  }
+
+  // s, least by feed and block time; 0: none
+  double time_of(const TipMotion& motion) const {
+    return std::max(motion.time, options_.block_time);
   }
 
   // Whether an arc goes on where another one ended, on the same circle and in the same direction.
@@ -263,7 +271,7 @@ class Planner {
     const double rotary = d.tail<kJoints - kLinearJoints>().norm();
     if (linear > 0.0) v = std::min(v, feed.linear / linear);
     if (rotary > 0.0) v = std::min(v, feed.rotary / rotary);
-    return v;
+    return std::min(v, feed.path);
   }
 
   // Does rounding a lone corner between long legs take longer than stopping in it? Compares the
@@ -291,6 +299,7 @@ class Planner {
 
   FeedLimit feed_limit(const Move& move, const Leg& leg) const {
     FeedLimit feed;
+    if (options_.block_time > 0.0) feed.path = leg.length / options_.block_time;
     if (leg.rapid) return feed;
     const double value = move.feed * options_.feed_override;
     (leg.rotary_only ? feed.rotary : feed.linear) =
@@ -437,6 +446,7 @@ class Planner {
       if (n > k && first >= end) break;
       feed.linear = std::min(feed.linear, span.feed.linear);
       feed.rotary = std::min(feed.rotary, span.feed.rotary);
+      feed.path = std::min(feed.path, span.feed.path);
       if (n > k && spans_[n - 1].move != span.move) way = time = 0.0;
       const double share = std::min(end, last) - std::max(begin, first);
       if (span.time == 0.0 || share <= 0.0) continue;

@@ -81,6 +81,8 @@ class Trajectory {
 /// programmed one; the end of the program is reached exactly, at rest.                       (1)
 /// Under tool control the feed is that of the tip in the workpiece (of the rotation where the tip
 /// stands), chord by chord.
+/// A NC that needs time for each block (options.block_time) goes through none in less: where blocks
+/// are shorter than that times the feed, the path speed is at most their length over it.
 ///
 /// @param moves   canonical moves; feed and arc moves have feed > 0
 /// @param start   joints before the first move (5; m, rad)
