@@ -228,6 +228,23 @@ struct Compared {
   BallQuantities ball;
 };
 
+// The values that belong to rows of the case; none if something was not recorded.
+std::vector<double> signed_values(const QuantitySpec& spec, const CaseData& one,
+                                  const CaseData* base, const std::vector<std::size_t>& rows) {
+  if (spec.name == "following_error") {
+    return column_of(one, "following_error_linear", spec.axis, rows);
+  }
+  if (spec.name == "tool_deviation") return column_of(one, "tool_deviation", spec.axis, rows);
+  assert(base != nullptr);
+  std::vector<double> difference = trajectory_difference(one, *base, spec.axis, rows);
+  if (spec.name == "trajectory_difference") return difference;
+  assert(spec.name == "imposed_curve_residual");
+  const std::vector<double> imposed = column_of(one, "imposed_linear", spec.axis, rows);
+  if (imposed.size() != difference.size()) return {};
+  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= imposed[i];
+  return difference;
+}
+
 double evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* base) {
   const CaseData& one = compared.data;
   if (spec.name == "cycle_time") return one.duration;
@@ -235,11 +252,8 @@ double evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* ba
   if (!one.finished || (base != nullptr && !base->finished)) return kNone;
   if (quantity_info(spec.name).circles > 0) return compared.circles.value(spec);
   const std::vector<std::size_t>& rows = compared.samples.rows(spec.sections);
-  if (spec.name == "following_error") {
-    return statistic_of(spec.statistic, column_of(one, "following_error_linear", spec.axis, rows));
-  }
-  if (spec.name == "tool_deviation") {
-    return statistic_of(spec.statistic, column_of(one, "tool_deviation", spec.axis, rows));
+  if (has_path_signal(spec.name)) {
+    return statistic_of(spec.statistic, signed_values(spec, one, base, rows));
   }
   if (spec.name == "tool_tip_deviation") {
     return statistic_of(spec.statistic, tool_tip_deviation(one, rows));
@@ -254,13 +268,12 @@ double evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* ba
   if (spec.name == "tool_difference") {
     return statistic_of(spec.statistic, tool_difference(one, *base, rows));
   }
-  std::vector<double> difference = trajectory_difference(one, *base, spec.axis, rows);
-  if (spec.name == "trajectory_difference") return statistic_of(spec.statistic, difference);
-
+  // the other two look at the imposed curve, too
+  QuantitySpec residual = spec;
+  residual.name = "imposed_curve_residual";
+  const std::vector<double> difference = signed_values(residual, one, base, rows);
   const std::vector<double> imposed = column_of(one, "imposed_linear", spec.axis, rows);
   if (imposed.size() != difference.size()) return kNone;
-  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= imposed[i];
-  if (spec.name == "imposed_curve_residual") return statistic_of(spec.statistic, difference);
   if (spec.name == "response_time") return response_time(one, spec.axis, rows, difference);
   assert(spec.name == "brought_out");
   return 100.0 * (1.0 - statistic_of("max", difference) / statistic_of("max", imposed));
@@ -315,6 +328,21 @@ const QuantityInfo& quantity_info(std::string_view name) {
                                   [&](const QuantityInfo& info) { return info.name == name; });
   assert(found != kQuantities.end());
   return *found;
+}
+
+bool has_path_signal(std::string_view quantity) {
+  return quantity == "imposed_curve_residual" || quantity == "trajectory_difference" ||
+         quantity == "tool_deviation" || quantity == "following_error";
+}
+
+PathSignal path_signal(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
+  assert(has_path_signal(spec.name));
+  CaseSamples samples(one);
+  const std::vector<std::size_t>& rows = samples.rows(spec.sections);
+  PathSignal out;
+  out.s = column_of(one, "s", '\0', rows);
+  out.value = signed_values(spec, one, base, rows);
+  return out;
 }
 
 std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,

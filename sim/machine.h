@@ -67,6 +67,7 @@ struct NcSettings {
   double path_tolerance = 10e-6;   // m, for G64 without P
   double rotary_tolerance = 1e-4;  // rad
   double block_time = 0.0;         // s, least time of a block; 0: none
+  double tolerance_share = 1.0;    // factor on tolerances of the program (G64 P)
   NominalFilter filter;
   std::array<GainPlaces, kJoints> gain_place;
   bool check_stability = true;  // refuse gains with which the linear loop diverges

@@ -190,9 +190,10 @@ void add(MemoKey& key, const controllers::JointLimits& limits) {
 
 void add(MemoKey& key, const controllers::PathOptions& options) {
   const auto& [tolerance, exact_tolerance, exact_corner, rotary_tolerance, rotary_radius,
-               feed_override, rapid_override, block_time] = options;
-  for (const double value : {tolerance, exact_tolerance, exact_corner, rotary_tolerance,
-                             rotary_radius, feed_override, rapid_override, block_time}) {
+               feed_override, rapid_override, tolerance_share, block_time] = options;
+  for (const double value :
+       {tolerance, exact_tolerance, exact_corner, rotary_tolerance, rotary_radius, feed_override,
+        rapid_override, tolerance_share, block_time}) {
     key.add(value);
   }
 }

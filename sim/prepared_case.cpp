@@ -321,6 +321,7 @@ controllers::PathOptions path_options(const Scenario& scenario, const MachineSet
   options.rotary_tolerance = machine.nc.rotary_tolerance;
   options.feed_override = scenario.program.feed_override;
   options.block_time = machine.nc.block_time;
+  options.tolerance_share = machine.nc.tolerance_share;
   return options;
 }
 

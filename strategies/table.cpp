@@ -14,7 +14,7 @@
 namespace servomill::strategies {
 namespace {
 
-constexpr std::array<std::string_view, 2> kForms = {"lines", "lattice"};
+constexpr std::array<std::string_view, 3> kForms = {"lines", "lattice", "exact"};
 constexpr std::array<std::string_view, 7> kAxes = {"X", "Y", "Z", "XY", "XZ", "YZ", "all"};
 constexpr std::array<std::string_view, 6> kOutputs = {"all", "own", "others", "X", "Y", "Z"};
 constexpr std::array<std::string_view, 2> kAtReference = {"error", "zero"};
@@ -31,7 +31,9 @@ const std::array<ParameterSpec, 15>& specs() {
       {.name = "form",
        .help =
            "lines: a table over each axis, summed; lattice: one over all of them, linear in each "
-           "axis between the corners of a cell",
+           "axis between the corners of a cell; exact: none, but the error itself, as tables of "
+           "all "
+           "axes with points everywhere would give it",
        .default_text = "lines",
        .is_number = false,
        .words = kForms},
@@ -172,6 +174,28 @@ class Tables final : public SetPointPart {
   const std::vector<Table>& tables_;
 };
 
+// What tables stand for.
+class ErrorItself final : public SetPointPart {
+ public:
+  // @param base  (3; m) taken from it
+  ErrorItself(const SetPointEntry& entry, const Belief& belief, Sign sign, Iterations iterations,
+              const Eigen::Vector3d& base)
+      : entry_(entry), belief_(belief), sign_(sign), iterations_(iterations), base_(base) {}
+  SetPointEntry entry() const override { return entry_; }
+  Joints offset(const Joints& Q_ref) const override {
+    Joints out = Joints::Zero();
+    out.head<3>() = set_point_displacement(belief_, sign_, iterations_, Q_ref) - base_;
+    return out;
+  }
+
+ private:
+  SetPointEntry entry_;
+  const Belief& belief_;
+  Sign sign_;
+  Iterations iterations_;
+  Eigen::Vector3d base_;
+};
+
 constexpr double kAnySigma = 1.0;  // of rotary axes, which stand as programmed
 
 class CompensationTable final : public Strategy {
@@ -204,6 +228,28 @@ class CompensationTable final : public Strategy {
   std::vector<Table> tables_;
   Sign sign_;
   Belief belief_;
+};
+
+class ExactTable final : public Strategy {
+ public:
+  ExactTable(const SetPointEntry& entry, Sign sign, Iterations iterations, bool from_reference,
+             const Belief& belief)
+      : entry_(entry), sign_(sign), iterations_(iterations), belief_(belief) {
+    if (from_reference) base_ = set_point_displacement(belief, sign, iterations, belief.reference);
+  }
+  std::unique_ptr<SetPointPart> set_point() const override {
+    return std::make_unique<ErrorItself>(entry_, belief_, sign_, iterations_, base_);
+  }
+  std::optional<Leftover> uncorrectable(const Joints& Q) const override {
+    return strategies::uncorrectable(belief_, sign_, DisplacedAxes::linear, kAnySigma, Q);
+  }
+
+ private:
+  SetPointEntry entry_;
+  Sign sign_;
+  Iterations iterations_;
+  Belief belief_;
+  Eigen::Vector3d base_ = Eigen::Vector3d::Zero();
 };
 
 bool is_power_of_two_spacing(double spacing) {
@@ -337,6 +383,10 @@ SetPointEntry entry_of(const Parameters& p) {
 }
 
 std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& belief) {
+  if (p.word("form") == "exact") {
+    return std::make_unique<ExactTable>(entry_of(p), sign, iterations_of(p),
+                                        p.word("at_reference") == "zero", belief);
+  }
   if (p.word("grid") == "power_of_two" && !is_power_of_two_spacing(p.number("spacing_mm"))) {
     throw InputError({}, fmt::format("spacing_mm = {:g}; must be 2^n x 0.0001 (such as 1.6384, "
                                      "3.2768, 6.5536), or set grid = \"free\"",

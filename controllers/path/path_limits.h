@@ -20,6 +20,7 @@ struct PathOptions {
   double rotary_radius = 0.1;        // m, turns rotary motion into path length
   double feed_override = 1.0;        // factor on feeds
   double rapid_override = 1.0;       // factor on the joint speeds of rapids
+  double tolerance_share = 1.0;      // factor on tolerances of the program (G64 P)
   double block_time = 0.0;           // s, least time of a block: what the NC needs to prepare it
 };
 

@@ -80,7 +80,8 @@ class Tracer {
   };
 
   void set_tolerances(const Move& move) {
-    T_ = move.path_tolerance > 0.0 ? move.path_tolerance : options_.tolerance;
+    const double programmed = options_.tolerance_share * move.path_tolerance;
+    T_ = programmed > 0.0 ? programmed : options_.tolerance;
     axis_tolerance_ = options_.rotary_tolerance;
     if (move.path_mode == PathMode::continuous) return;
     T_ = options_.exact_tolerance;

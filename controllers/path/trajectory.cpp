@@ -34,7 +34,7 @@ class Planner {
     assert(options.tolerance > 0.0 && options.exact_tolerance > 0.0);
     assert(options.rotary_tolerance > 0.0 && options.rotary_radius > 0.0);
     assert(options.feed_override > 0.0 && options.rapid_override > 0.0);
-    assert(options.block_time >= 0.0);
+    assert(options.block_time >= 0.0 && options.tolerance_share > 0.0);
     scale_.setOnes();
     scale_.tail<kJoints - kLinearJoints>().setConstant(options.rotary_radius);
     limits_ = {limits.v.cwiseProduct(scale_), limits.a.cwiseProduct(scale_),
@@ -309,7 +309,8 @@ class Planner {
 
   double tolerance_of(const Move& move) const {
     if (move.path_mode != PathMode::continuous) return options_.exact_tolerance;
-    return move.path_tolerance > 0.0 ? move.path_tolerance : options_.tolerance;
+    const double programmed = options_.tolerance_share * move.path_tolerance;
+    return programmed > 0.0 ? programmed : options_.tolerance;
   }
 
   void add_arc(const ArcSweep& arc, const Move& move, const Joints& step, int index) {

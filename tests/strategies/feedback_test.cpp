@@ -89,6 +89,80 @@ TEST(VirtualEncoder, LimitsTheRate) {
   }
 }
 
+// d = 10 um at x = 1 mm, limit 10.1 um: x runs at 1 mm a period from 0 to 20 mm and back. What is
+// found at x >= 2 mm is limited, in the period after: 37 of them.
+TEST(VirtualEncoder, TellsWhereItsSizeIsSaturated) {
+  const Belief belief = ramp_of_y_over_x();
+  const Acting limited = virtual_encoder(belief, {.max_um = 10.1});
+  const auto at = [](int n) { return at_x((n <= 20 ? n : 40 - n) * mm); };
+  constexpr double kRounding = 1e-15;  // s
+  const auto expect_found = [&](std::size_t lane) {
+    const auto found = limited.feedback->saturations(lane);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].joint, 1);
+    EXPECT_FALSE(found[0].of_rate);
+    EXPECT_EQ(found[0].limit, 10.1 * um);
+    EXPECT_NEAR(found[0].first, 3 * kModelPeriod, kRounding);  // found at n = 2, acts at n = 3
+    EXPECT_NEAR(found[0].time, 37 * kModelPeriod, kRounding);
+  };
+  // one period after the other, eight at once, and among other runs
+  limited.feedback->settle(at_x(0.0));
+  EXPECT_TRUE(limited.feedback->saturations(0).empty());
+  for (int n = 0; n <= 40; ++n) limited.feedback->advance(at(n));
+  expect_found(0);
+  limited.feedback->settle(at_x(0.0), 1);
+  for (int n = 0; n <= 40;) {
+    JointLanes Q{};
+    std::size_t count = 0;
+    for (; count < kLaneWidth && n <= 40; ++count, ++n) Q[0][count] = at(n)[0];
+    limited.feedback->advance(Q, count, 1);
+  }
+  expect_found(1);
+  limited.feedback->settle(at_x(0.0), 5);
+  LaneFlags lanes{};
+  lanes[5] = lanes[6] = true;  // run 6 stands still
+  limited.feedback->settle(at_x(0.0), 6);
+  for (int n = 0; n <= 40; ++n) {
+    JointLanes Q{};
+    Q[0].fill(90 * mm);  // of lanes without a run
+    Q[0][5] = at(n)[0];
+    Q[0][6] = 0.0;
+    limited.feedback->advance(Q, lanes);
+  }
+  expect_found(5);
+  EXPECT_TRUE(limited.feedback->saturations(6).empty());
+}
+
+// 0.6 um a period: 0.5 um pass, of 0.7 um 0.1 um are left each period.
+TEST(VirtualEncoder, TellsWhereItsRateIsSaturated) {
+  const Belief belief = ramp_of_y_over_x();
+  const Acting limited = virtual_encoder(belief, {.max_rate_mm_per_s = 10.0});
+  limited.feedback->settle(at_x(0.0));
+  for (int n = 1; n <= 100; ++n) limited.feedback->advance(at_x(-n * 50.0 * um));
+  EXPECT_TRUE(limited.feedback->saturations(0).empty());
+  for (int n = 1; n <= 12; ++n) limited.feedback->advance(at_x(-(5.0 * mm + n * 70.0 * um)));
+  // the first of these is found in the period before: 11 have acted, and 1.1 um take two more
+  for (int n = 0; n < 5; ++n) limited.feedback->advance(at_x(-(5.0 * mm + 12 * 70.0 * um)));
+  const auto found = limited.feedback->saturations(0);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(found[0].of_rate);
+  EXPECT_EQ(found[0].limit, 10.0 * mm);
+  constexpr double kRounding = 1e-15;  // s
+  EXPECT_NEAR(found[0].first, 101 * kModelPeriod, kRounding);
+  EXPECT_NEAR(found[0].time, 13 * kModelPeriod, kRounding);
+}
+
+TEST(VirtualEncoder, CountsASaturatedStandstillAsOnePeriod) {
+  const Acting limited = virtual_encoder(ramp_of_y_over_x(), {.max_um = 10.1});
+  limited.feedback->settle(at_x(-2 * mm));
+  const auto found = limited.feedback->saturations(0);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].first, 0.0);
+  EXPECT_EQ(found[0].time, kModelPeriod);
+  limited.feedback->settle(at_x(0.5 * mm));  // another run
+  EXPECT_TRUE(limited.feedback->saturations(0).empty());
+}
+
 // The model is looked up where the axis will be: with a steady velocity, exactly.
 TEST(VirtualEncoder, LeadsByItsTime) {
   const Belief belief = ramp_of_y_over_x();

@@ -206,5 +206,24 @@ TEST(Table, RefusesWhatTheNcWouldRefuse) {
   EXPECT_EQ(fault_of(plane, {.output = "Y"}), "output = \"Y\"; the machine has no such axis");
 }
 
+TEST(Table, KnowsWhereItEnds) {
+  const Belief belief = three_axes(trilinear_errors());
+  Parameters p = parameters({.form = "lines", .axis = "XZ"});
+  p.set("from_mm", -70.0 * mm);
+  p.set("to_mm", 80.0 * mm);  // three intervals of 50 mm
+  const auto strategy = table_entry().make(p, Sign::generate, belief);
+  const auto ends = [&](double x, double y, double z) {
+    Joints Q = belief.reference;
+    Q.head<3>() << x * mm, y * mm, z * mm;
+    std::vector<std::pair<int, double>> out;
+    for (const BeyondTable& end : strategy->beyond_tables(Q)) out.emplace_back(end.joint, end.end);
+    return out;
+  };
+  using Ends = std::vector<std::pair<int, double>>;
+  EXPECT_EQ(ends(-70.0, 150.0, 80.0), Ends{});  // no table runs over Y
+  const double first = -70.0 * mm, last = first + 3 * (50.0 * mm);
+  EXPECT_EQ(ends(-70.001, 0.0, 80.001), (Ends{{0, first}, {2, last}}));
+}
+
 }  // namespace
 }  // namespace servomill::strategies

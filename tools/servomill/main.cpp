@@ -20,13 +20,15 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 13> kCommands = {{
+constexpr std::array<Command, 14> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
     {"sweep", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
      "runs a scenario at the points of its [sweep] table", sweep_command},
     {"merge", "SHARD.h5... -o OUT.h5 [--partial]", "joins the shards of a sweep", merge_command},
+    {"budget", "SCENARIO.toml [--case NAME]... [-o OUT.h5]",
+     "splits residuals into what each cause has of them", budget_command},
     {"bode", "SCENARIO.toml --axis Y [--loop LOOP] [-o OUT.h5]",
      "frequency responses of an axis, exact and measured", bode_command},
     {"step", "SCENARIO.toml --axis Y [-o OUT.h5]", "step responses of an axis", step_command},

@@ -294,5 +294,60 @@ TEST(TinyBlocks, OfASmoothCurveRunAtTheProgrammedFeed) {
   }
 }
 
+// 100 mm in n blocks: once a block is shorter than feed times block time, that is the speed.
+TEST(BlockTime, LimitsTheSpeedToOneBlockInEach) {
+  const double v = 0.1, a = 2.0, j = 50.0, d = 0.1, T = 3.6 * ms;
+  const auto duration = [&](int n, double block_time) {
+    Program program;
+    for (int i = 1; i <= n; ++i) program.line(d * i / n, 0, 0, v);
+    PathOptions options;
+    options.block_time = block_time;
+    return program.plan(options, alike(1.0, a, j)).duration();
+  };
+  const auto at_speed = [&](double speed) {
+    const double ramp = speed * j > a * a ? speed / a + a / j : 2.0 * std::sqrt(speed / j);
+    return d / speed + ramp;
+  };
+  constexpr double kRelative = 1e-6;   // of the time, as where blocks take none
+  for (const int n : {1, 100, 277}) {  // 0.361 mm take 3.61 ms
+    EXPECT_NEAR(duration(n, T), at_speed(v), kRelative * at_speed(v)) << n;
+  }
+  for (const int n : {400, 1000, 2000}) {
+    const double slow = at_speed(d / n / T);
+    EXPECT_NEAR(duration(n, T), slow, kRelative * slow) << n;
+    EXPECT_NEAR(duration(n, 0.0), at_speed(v), kRelative * at_speed(v)) << n;
+  }
+}
+
+// A law: no block of any kind, rapid or turning, is over sooner.
+TEST(BlockTime, PassesInEachBlock) {
+  PathOptions options;
+  options.block_time = 20 * ms;
+  options.tolerance = 1 * um;  // corners are cut by next to nothing
+  Program program;
+  AxisWords to = AxisWords::Zero();
+  for (int i = 1; i <= 40; ++i) {
+    to << 1e-3 * i, 3e-4 * std::sin(0.5 * i), 0, 0, 0, 0;
+    program.line(to, 1.0);
+  }
+  for (int i = 1; i <= 10; ++i) {
+    to[5] += 0.2 * deg;
+    program.line(to, 1.0);
+  }
+  to[0] += 1e-5;
+  program.rapid(to);
+  const double x = to[0], y = to[1];
+  program.arc({x, y + 1 * mm, 0}, {x + 1 * mm, y + 1 * mm, 0}, 1, 1, 1.0);
+  const Trajectory path = program.plan(options);
+  std::vector<double> time(program.moves().size());
+  constexpr double kStep = 10 * us;
+  each_sample(path, kStep, [&](double, const auto& at) { time[at.move] += kStep; });
+  constexpr double kRounded = 0.01;  // share by which rounded corners are shorter, and samples
+  double least = 1.0;
+  for (const double t : time) least = std::min(least, t / options.block_time);
+  EXPECT_GE(least, 1.0 - kRounded);
+  EXPECT_LT(least, 1.0 + kRounded);  // and it is the limit
+}
+
 }  // namespace
 }  // namespace servomill::controllers::test

@@ -1,0 +1,98 @@
+/// Error budget of a case: what each cause has of a residual, found by running the scenario again
+/// without it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/run.h"
+
+namespace servomill::sim {
+
+/// What a residual can come from. Taking a cause away (of the case and of the case that it is
+/// compared with) means:
+enum class Cause : std::uint8_t {
+  lag,             // loops and drives: axes stand where the NC wants them (servo = "ideal")
+  table,           // points of compensation tables, lines for several axes, their ends: the error
+                   // itself (form = "exact")
+  delay,           // response, dead time and update of tables, signal delay and model period of the
+                   // feedback hardware, delay of the scales: 0, and one base tick for the model
+  saturation,      // limits of virtual displacements: out of reach
+  one_step,        // errors evaluated where displacing changes them: iterations = "converged"
+  identification,  // strategies believe in the truth (or, without one, in the imposed model), and
+                   // in the origin of the case (rewritten_for = "case")
+  friction,       // dry friction, backlash, cogging, and what the NC does against them: none
+  measurement,    // errors, noise, steps, marks of encoders, errors of screws: none
+  cutting,        // the case runs in air
+  interpolation,  // chords of rewritten programs and path tolerances a hundredth, no
+                  // nominal-position filter, no block time
+  kinematics,     // stays without all others: what the axes cannot do about it
+};
+inline constexpr std::size_t kCauses = 11;
+struct CauseInfo {
+  std::string_view name;  // "lag", "table", ...
+  std::string_view help;
+};
+const CauseInfo& info_of(Cause cause);
+
+/// One cause of a residual.
+struct BudgetPart {
+  Cause cause = Cause::lag;
+  bool present = false;        // the case has it; else all is 0
+  double at_place = 0.0;       // um, signed, where the residual is largest
+  double rms = 0.0;            // um, along the path
+  std::vector<double> signal;  // um
+};
+
+/// With R the residual along the path and R(-c) that of a run without the cause c, at equal arc
+/// length:
+///
+///     part(c)          = R - R(-c)                                      for all but two (1)
+///     part(lag)        = R(-D) - R(-D, -lag) (2) part(kinematics) = R(- all causes) (3) remainder
+///     = R - sum of the parts                                                   (4)
+///
+/// D = friction, measurement, cutting, delay: they act through the loops and would go with them.
+///
+/// Causes are taken away one at a time, from the complete case, and not one after the other: parts
+/// do then not depend on an order, and what causes do together (a product of two of them, say) is
+/// in both, or in none. So it shows in the remainder; removed in turn, parts would add up exactly
+/// and the last ones would hide it.
+struct Budget {
+  QuantitySpec quantity;         // of one case; a signal along the path (has_path_signal)
+  std::vector<double> s;         // mm, of the original path
+  std::vector<double> residual;  // um
+  std::size_t place = 0;         // index of its largest value
+  std::array<BudgetPart, kCauses> parts;
+  std::vector<double> remainder;  // um
+  double remainder_rms = 0.0;
+  std::string note;  // why there is none: "case table stopped: ..."
+
+  double residual_at_place() const { return residual.at(place); }
+  double remainder_at_place() const { return remainder.at(place); }
+  double sum_at_place() const { return residual_at_place() - remainder_at_place(); }
+  double residual_rms() const;
+};
+
+/// What a scenario's quantities ask for that has a budget, each case of each once: brought_out and
+/// response_time stand for imposed_curve_residual; statistics do not matter.
+std::vector<QuantitySpec> budget_quantities(const Scenario& scenario);
+
+struct BudgetControl {
+  unsigned threads = 0;  // 0: one a core
+  const StopFlag* stop = nullptr;
+  std::function<void(double)> progress;  // share done, 0 to 1
+};
+
+/// Budgets of quantities, in their order; runs each case with and without each cause that it has.
+/// @param quantities  of one case each, as budget_quantities gives them
+/// @return empty if it was stopped
+/// @throws InputError before anything is simulated
+std::vector<Budget> find_budgets(const Scenario& scenario, std::span<const QuantitySpec> quantities,
+                                 const BudgetControl& control = {});
+
+}  // namespace servomill::sim

@@ -1,0 +1,210 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/budget.h"
+#include "sim/budget_store.h"
+#include "tools/servomill/command.h"
+#include "tools/servomill/interrupt.h"
+
+namespace servomill::tools {
+namespace {
+
+namespace po = boost::program_options;
+
+std::string causes_help() {
+  std::string out =
+      "Splits the residuals of a scenario's cases into what each cause has of them, by running\n"
+      "each case again without it, and compares the signals at equal arc length. Causes:\n";
+  for (std::size_t c = 0; c < sim::kCauses; ++c) {
+    const sim::CauseInfo& info = sim::info_of(static_cast<sim::Cause>(c));
+    out += fmt::format("  {:<15}{}\n", info.name, info.help);
+  }
+  out +=
+      "Each is taken away alone, from the complete case, so that parts do not depend on an order;\n"
+      "lag is taken from loops without friction, measurement, cutting and delay, which act "
+      "through\n"
+      "them. What causes do together is in the remainder, which is printed. Quantities that have "
+      "a\n"
+      "budget: imposed_curve_residual, trajectory_difference, tool_deviation, following_error.";
+  return out;
+}
+
+template <class Names>
+void must_be_among(const std::string& name, const Names& names, const char* option,
+                   const char* what) {
+  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  const std::string near = did_you_mean(name, views);
+  throw InputError(
+      {option},
+      fmt::format("no {} '{}'{}", what, name,
+                  !near.empty() ? near : fmt::format("; there are: {}", fmt::join(views, ", "))));
+}
+
+// What the options leave of what the scenario asks for.
+std::vector<sim::QuantitySpec> chosen(const sim::Scenario& scenario, const Options& options) {
+  std::vector<sim::QuantitySpec> all = sim::budget_quantities(scenario);
+  if (all.empty()) {
+    throw InputError({options.word()},
+                     "has no quantity with a budget (imposed_curve_residual, brought_out, "
+                     "response_time, trajectory_difference, tool_deviation, following_error)");
+  }
+  const auto keep = [&](const char* option, const char* what, auto name_of) {
+    const std::vector<std::string> wanted = options.list(option);
+    if (wanted.empty()) return;
+    std::vector<std::string> known;
+    for (const auto& one : all) {
+      if (std::find(known.begin(), known.end(), name_of(one)) == known.end()) {
+        known.push_back(name_of(one));
+      }
+    }
+    for (const std::string& name : wanted) {
+      must_be_among(name, known, fmt::format("--{}", option).c_str(), what);
+    }
+    std::erase_if(all, [&](const auto& one) {
+      return std::find(wanted.begin(), wanted.end(), name_of(one)) == wanted.end();
+    });
+  };
+  keep("quantity", "quantity with a budget", [](const auto& one) { return one.name; });
+  keep("axis", "axis with a budget", [](const auto& one) { return std::string(1, one.axis); });
+  keep("case", "case with a budget", [](const auto& one) { return one.cases.front(); });
+  return all;
+}
+
+std::string title_of(const sim::QuantitySpec& quantity) {
+  return fmt::format(
+      "{}: {} of {}{}{}", quantity.cases.front(), quantity.name, quantity.axis,
+      quantity.sections.empty() ? "" : fmt::format(", {}", fmt::join(quantity.sections, ", ")),
+      quantity.base.empty() ? "" : fmt::format(", against {}", quantity.base));
+}
+
+std::string micrometres(double value) {
+  const double size = std::abs(value);
+  return fmt::format("{:.{}f}", value, size >= 100.0 ? 1 : size >= 10.0 ? 2 : size >= 0.1 ? 3 : 4);
+}
+
+void print_line(std::string_view name, double at_place, double share, double rms,
+                std::string_view help) {
+  fmt::print("  {:<15} {:>9} um {:>7.1f} % {:>9} um  {}\n", name, micrometres(at_place),
+             100.0 * share, micrometres(rms), help);
+}
+
+void print_budget(const sim::Budget& budget) {
+  fmt::print("\n{}\n", title_of(budget.quantity));
+  if (!budget.note.empty()) {
+    fmt::print("  none: {}\n", budget.note);
+    return;
+  }
+  const double whole = budget.residual_at_place();
+  const auto share = [&](double part) { return whole != 0.0 ? part / whole : 0.0; };
+  fmt::print("  {:<15} {:>12} {:>9} {:>12}\n", "cause",
+             fmt::format("at s {:.1f}", budget.s[budget.place]), "share", "rms");
+  for (const sim::BudgetPart& part : budget.parts) {
+    if (!part.present) continue;
+    const sim::CauseInfo& info = sim::info_of(part.cause);
+    print_line(info.name, part.at_place, share(part.at_place), part.rms, info.help);
+  }
+  std::string absent;
+  for (const sim::BudgetPart& part : budget.parts) {
+    if (part.present) continue;
+    absent += fmt::format("{}{}", absent.empty() ? "" : ", ", sim::info_of(part.cause).name);
+  }
+  const double sum = budget.sum_at_place();
+  fmt::print("  {:<15} {:>9} um {:>7.1f} %\n", "sum", micrometres(sum), 100.0 * share(sum));
+  print_line("remainder", budget.remainder_at_place(), share(budget.remainder_at_place()),
+             budget.remainder_rms, "what causes do together, and what is not known");
+  print_line("residual", whole, 1.0, budget.residual_rms(), "");
+  if (!absent.empty()) fmt::print("  not in this case: {}\n", absent);
+}
+
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null";
+}
+
+void print_json(const sim::Budget& budget) {
+  const sim::QuantitySpec& q = budget.quantity;
+  fmt::print(R"({{"case": "{}", "quantity": "{}", "axis": "{}", "sections": "{}", "base": "{}", )",
+             sim::json_escaped(q.cases.front()), q.name, q.axis,
+             sim::json_escaped(fmt::format("{}", fmt::join(q.sections, ", "))),
+             sim::json_escaped(q.base));
+  if (!budget.note.empty()) {
+    fmt::print("\"note\": \"{}\"}}\n", sim::json_escaped(budget.note));
+    return;
+  }
+  fmt::print(R"("unit": "um", "s_mm": {}, "residual": {}, "residual_rms": {}, "parts": {{)",
+             number(budget.s[budget.place]), number(budget.residual_at_place()),
+             number(budget.residual_rms()));
+  const char* separator = "";
+  for (const sim::BudgetPart& part : budget.parts) {
+    if (!part.present) continue;
+    fmt::print(R"({}"{}": {{"at_place": {}, "rms": {}}})", separator, sim::info_of(part.cause).name,
+               number(part.at_place), number(part.rms));
+    separator = ", ";
+  }
+  fmt::print("}}, \"sum\": {}, \"remainder\": {}, \"remainder_rms\": {}}}\n",
+             number(budget.sum_at_place()), number(budget.remainder_at_place()),
+             number(budget.remainder_rms));
+}
+
+}  // namespace
+
+int budget_command(const Arguments& arguments) {
+  const std::string summary = causes_help();
+  Options options("budget", "SCENARIO.toml [--case NAME]... [--quantity NAME]... [-o OUT.h5]",
+                  summary, "SCENARIO.toml");
+  options.add()("case,c", po::value<std::vector<std::string>>()->value_name("NAME"),
+                "only of this case (default: of all that the quantities of the scenario name)");
+  options.add()("quantity", po::value<std::vector<std::string>>()->value_name("NAME"),
+                "only of this quantity");
+  options.add()("axis", po::value<std::vector<std::string>>()->value_name("Y"),
+                "only of this axis");
+  options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
+                "writes the signals of all parts, for tools/plot.py");
+  options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
+                "changes a key of the scenario, as in run");
+  options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
+                "threads (default: one a core); results do not depend on it");
+  options.add()("force,f", "replaces the result file if it exists");
+  options.add()("json", "prints one JSON object a budget");
+  options.add()("quiet,q", "no progress bar");
+  if (!options.parse(arguments)) return kDone;
+
+  const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
+  const std::vector<sim::QuantitySpec> quantities = chosen(scenario, options);
+  std::optional<sim::BudgetStore> store;
+  if (options.has("output")) {
+    store.emplace(options.get<std::string>("output"), options.has("force"), scenario);
+  }
+  const auto& stop = stop_on_interrupt();
+  ProgressBar bar(options.has("quiet") || options.has("json"));
+  sim::BudgetControl control;
+  control.threads = thread_count(options);
+  control.stop = &stop;
+  control.progress = [&](double share) { bar.show(share); };
+  const std::vector<sim::Budget> budgets = sim::find_budgets(scenario, quantities, control);
+  bar.clear();
+  if (budgets.empty()) {
+    fmt::print(stderr, "interrupted\n");
+    return kInterrupted;
+  }
+  if (!options.has("json")) fmt::print("{}\n", scenario.title);
+  bool all = true;
+  for (const sim::Budget& budget : budgets) {
+    options.has("json") ? print_json(budget) : print_budget(budget);
+    if (store) store->add(budget);
+    all &= budget.note.empty();
+  }
+  if (store) {
+    store->commit();
+    if (!options.has("json")) {
+      fmt::print("\nwritten to {}\n", options.get<std::string>("output"));
+    }
+  }
+  return all ? kDone : kMachineStopped;
+}
+
+}  // namespace servomill::tools
