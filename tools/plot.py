@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Draws figures from the result files (HDF5) of `servomill run`, `sweep`, `bode` and
-`step`, and the records of `compensate`.
+"""Draws figures from the result files (HDF5) of `servomill run`, `sweep`, `bode`,
+`step` and `budget`, and the records of `compensate`.
 
 Figures are named after those of Guevel et al. 2025 that they answer to; `--list` prints all.
 What a file does not hold is told and the rest drawn. Exit status: 0 drawn, 2 a file cannot be read or

@@ -97,6 +97,27 @@ class Servo(WithFiles):
         for name in drawn:
             self.assertGreater((self.out / "figures" / name).stat().st_size, SMALLEST_PNG)
 
+    def test_draws_error_budgets_that_add_up(self):
+        budget = self.out / "b.h5"
+        printed = servomill("budget", HERE / "side_and_contour.toml", "--json", "-o", budget, "--axis", "Y",
+                            "--case", "table", "--case", "gcode")
+        done = plot(budget, "-o", self.out / "figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        drawn = self.out / "figures" / "b-budget.png"
+        self.assertGreater(drawn.stat().st_size, SMALLEST_PNG)
+        with results.open_result(budget) as file:
+            said = [json.loads(line) for line in printed.splitlines()]
+            self.assertEqual([one.case for one in file.budgets], ["table", "gcode"])
+            for one, line in zip(file.budgets, said):
+                self.assertEqual({part.name for part in one.parts}, set(line["parts"]))
+                total = sum(part.signal for part in one.parts) + one.remainder.signal
+                self.assertLess(np.abs(total - one.residual.signal).max(), AGREE)
+                at = np.abs(one.residual.signal).argmax()
+                self.assertEqual(one.s[at], one.place)
+                for part in one.parts:
+                    self.assertEqual(part.signal[at], part.at_place)
+                    self.assertAlmostEqual(line["parts"][part.name]["at_place"], part.at_place, 6)
+
     def test_measured_is_exact_where_the_encoder_resolves_it(self):
         path = self.out / "y.h5"
         servomill("bode", HERE / "side_and_contour.toml", "--axis", "Y", "--points", 4, "--from", 5, "--to", 100, "-q",
@@ -434,7 +455,7 @@ class Drawing(WithFiles):
                           "figure15", "lag", "curves", "maps", "samples", "circular", "reversals", "nest", "ball_bar",
                           "li_3_2", "li_3_3", "li_4_1",
                           "five_axis", "deviations", "position", "velocity",
-                          "compliance", "compensated", "step"])
+                          "compliance", "compensated", "budget", "step"])
 
 
 class Balls(WithFiles):

@@ -2,7 +2,7 @@
 import dataclasses
 from typing import Callable
 
-from figures import (balls, bode, circular, compensated, deviations, error_functions, five_axis, lag, nonlinear, notches, step, straightness,
+from figures import (balls, bode, budget, circular, compensated, deviations, error_functions, five_axis, lag, nonlinear, notches, step, straightness,
                      sweeps, volumetric)
 
 
@@ -54,5 +54,6 @@ FIGURES = (
            lambda responses: bode.draw(responses, "compliance")),
     Figure("compensated", "compensate", "compensated program: path and correction magnified, correction along it",
            compensated.draw),
+    Figure("budget", "budget", "error budgets: what each cause has of the residuals", budget.draw),
     Figure("step", "step", "step responses of position, velocity and load", step.draw),
 )

@@ -277,7 +277,40 @@ class CompensatedProgram(ResultFile):
             self.compensate[name] = np.stack([group[f"{name}_{axis}"][:] for axis in "xyz"], axis=1)
 
 
-KINDS = {"run": Run, "sweep": Sweep, "bode": Responses, "step": Responses, "compensate": CompensatedProgram}
+@dataclasses.dataclass(frozen=True)
+class BudgetPart:
+    """One signal of a budget (um) where the residual is largest, and its rms."""
+    name: str
+    at_place: float
+    rms: float
+    signal: np.ndarray
+
+
+class Budget:
+    """The budget of one quantity of one case."""
+
+    def __init__(self, group):
+        self.case, self.quantity, self.axis, self.sections = (
+            str(group.attrs[name]) for name in ("case", "quantity", "axis", "sections"))
+        self.place, self.s = float(group.attrs["place"]), group["s"][:]
+        parts = {name: BudgetPart(name, float(data.attrs["at_place"]), float(data.attrs["rms"]), data[:])
+                 for name, data in group.items() if name != "s"}
+        self.residual, self.remainder = parts.pop("residual"), parts.pop("remainder")
+        self.parts = list(parts.values())
+
+
+class Budgets(ResultFile):
+    """A file that `servomill budget` wrote: `budgets`, without those of cases that stopped."""
+
+    def __init__(self, path):
+        super().__init__(path)
+        self.budgets = [Budget(group) for group in self.h5.get("budget", {}).values()
+                        if not str(group.attrs["note"])]
+        if not self.budgets:
+            raise InputError(f"{path}: error: holds no budget of a case that finished")
+
+
+KINDS = {"budget": Budgets, "run": Run, "sweep": Sweep, "bode": Responses, "step": Responses, "compensate": CompensatedProgram}
 
 
 def open_result(path):
