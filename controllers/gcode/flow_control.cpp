@@ -367,14 +367,14 @@ void Interpreter::Machine::branch(const std::string& name, const OWord& o) {
     fail(o.column, fmt::format("O{} is no IF but {}, in line {}", label_text(o),
                                name_of(label.flow), label.place.mark.line + 1));
   }
-  if (o.flow == Flow::endif) {
-    flow_.skip_to.reset();
-    flow_.has_taken_branch = true;  // an IF around this one was taken
-  } else if (flow_.has_taken_branch) {
-    skip_to(name);
-  } else if (o.flow == Flow::else_ || holds) {
+  // behind ENDIF an IF around this one was taken
+  const bool goes_on =
+      o.flow == Flow::endif || (!flow_.has_taken_branch && (o.flow == Flow::else_ || holds));
+  if (goes_on) {
     flow_.skip_to.reset();
     flow_.has_taken_branch = true;
+  } else if (flow_.has_taken_branch) {
+    skip_to(name);
   }
 }
 
