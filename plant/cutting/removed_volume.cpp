@@ -14,8 +14,9 @@ using Eigen::Array3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kTurnTolerance = 10e-9;  // m
-constexpr double kMembrane = 1e-9;        // m
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kTurnTolerance = 1e-9;  // m
+constexpr double kNothing = 1e-9;        // m
 constexpr std::uint32_t kRunSteps = 64;
 constexpr std::size_t kRunMargins = kRunSteps - 1;  // parts of two steps and more
 
@@ -44,13 +45,15 @@ CutterPosition between(const CutterPosition& a, const CutterPosition& b, double 
 }
 
 // Bound of the distance, seen from the cutter, between places first .. last and the straight way
-// from the first to the last, over a body that reaches so far from the tip.
-double distance_from_chord(const CutterPosition* first, const CutterPosition* last, double reach) {
+// from the first to the last, over all points of the body.
+double distance_from_chord(const CutterPosition* first, const CutterPosition* last,
+                           const Envelope& body) {
+  const double reach = body.reach();
   const Vector3d V = last->tip - first->tip, K = last->axis - first->axis;
   const double length = V.squaredNorm() + reach * reach * K.squaredNorm();
   const bool turns = std::any_of(
       first, last, [&](const CutterPosition& place) { return place.axis != last->axis; });
-  if (turns && first->axis.dot(last->axis) <= 0.0) return std::numeric_limits<double>::infinity();
+  if (turns && first->axis.dot(last->axis) <= 0.0) return kInfinity;
   const Matrix3d Q_last = turned_back(first->axis, last->axis);
   double most = 0.0, step_turn = 0.0, turn = 0.0;
   for (const CutterPosition* place = first + 1; place < last; ++place) {
@@ -61,7 +64,7 @@ double distance_from_chord(const CutterPosition* first, const CutterPosition* la
       most = std::max(most, (p - t * V).norm());
       continue;
     }
-    if (first->axis.dot(place->axis) <= 0.0) return std::numeric_limits<double>::infinity();
+    if (first->axis.dot(place->axis) <= 0.0) return kInfinity;
     const Matrix3d Q = turned_back(first->axis, place->axis);
     const Matrix3d turned = (1.0 - t) * Matrix3d::Identity() + t * Q_last - Q;
     const Vector3d moved = (1.0 - t) * p + t * (Q_last * (p - V));
@@ -75,7 +78,7 @@ double distance_from_chord(const CutterPosition* first, const CutterPosition* la
     step_turn = std::max(step_turn, angle_between(place->axis, (place + 1)->axis));
   }
   turn = std::max(turn, angle_between(first->axis, last->axis));
-  return most + turn * step_turn * reach + 2.0 * kTurnTolerance;
+  return most + 0.7 * turn * step_turn * body.radius() + 2.0 * kTurnTolerance;
 }
 
 // Not below x.
@@ -83,16 +86,35 @@ float rounded_up(double x) {
   return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
 }
 
-// Whether a ray meets a box.
-bool meets(const Ray& ray, const Array3d& low, const Array3d& high) {
-  double from = 0.0, to = ray.length;
+// From the nearest point of a node's box to x.
+template <class Node>
+Array3d away(const Array3d& x, const Node& node) {
+  return x - x.max(node.low).min(node.high);
+}
+
+template <class Node>
+bool nearer(const Array3d& x, const Node& a, const Node& b) {
+  const double of_a = away(x, a).square().sum(), of_b = away(x, b).square().sum();
+  if (of_a != of_b) return of_a < of_b;
+  return (2.0 * x - a.low - a.high).square().sum() <= (2.0 * x - b.low - b.high).square().sum();
+}
+
+// Whether a ray beyond `from` may come as near to the box of a node as its radius.
+template <class Node>
+bool meets(const Ray& ray, double from, const Node& node) {
+  const Array3d x = ray.at(from), d = ray.direction, apart = away(x, node);
+  const double distance_2 = apart.square().sum(), radius_2 = node.radius * node.radius;
+  if (distance_2 <= radius_2) return true;
+  if ((apart * d).sum() >= 0.0) return false;  // the distance is convex
+  double to = ray.length;
   for (int i = 0; i < 3; ++i) {
-    const double o = ray.start[i], d = ray.direction[i];
-    if (d == 0.0) {
-      if (o < low[i] || o > high[i]) return false;
+    const double low = node.low[i] - node.radius, high = node.high[i] + node.radius;
+    const double o = ray.start[i];
+    if (d[i] == 0.0) {
+      if (o < low || o > high) return false;
       continue;
     }
-    const double a = (low[i] - o) / d, b = (high[i] - o) / d;
+    const double a = (low - o) / d[i], b = (high - o) / d[i];
     from = std::max(from, std::min(a, b));
     to = std::min(to, std::max(a, b));
   }
@@ -104,8 +126,8 @@ bool meets(const Ray& ray, const Array3d& low, const Array3d& high) {
 double leave_step(const SweptCutter& step, const Ray& ray, std::initializer_list<double> guesses) {
   constexpr int kIterations = 20;
   constexpr double kSame = 1e-13;  // m
-  if (step.turn() == 0.0) return step.leave(ray, 0.0);
-  double s = -std::numeric_limits<double>::infinity();
+  if (!step.turns()) return step.leave(ray, 0.0);
+  double s = -kInfinity;
   for (const double guess : guesses) {
     double next = step.leave(ray, guess);
     for (int i = 0; i < kIterations && std::isfinite(next); ++i) {
@@ -189,29 +211,28 @@ void RemovedVolume::add_margins(const Run& run, std::size_t node, std::uint32_t 
   if (last - first < 2) return;
   const std::size_t r = static_cast<std::size_t>(&run - runs_.data());
   margins_[r * kRunMargins + node] = rounded_up(
-      distance_from_chord(&places_[first], &places_[last], envelope(cutters_[run.cutter]).reach()));
+      distance_from_chord(&places_[first], &places_[last], envelope(cutters_[run.cutter])));
   const auto [middle, left, right] = halves(node, first, last);
   add_margins(run, left, first, middle);
   add_margins(run, right, middle, last);
 }
 
 RemovedVolume::Node RemovedVolume::box_of(const Run& run) const {
-  const Cutter& cutter = cutters_[run.cutter];
+  const Envelope body = envelope(cutters_[run.cutter]);
   Node node;
-  node.low = Array3d::Constant(std::numeric_limits<double>::infinity());
+  node.low = Array3d::Constant(kInfinity);
   node.high = -node.low;
+  node.radius = body.corner + 2.0 * kTurnTolerance;
   node.first_step = run.first;
   node.right = 0;
   node.run = static_cast<std::uint32_t>(&run - runs_.data());
   for (std::uint32_t place = run.first; place <= run.last; ++place) {
     const auto& [tip, axis] = places_[place];
-    const Array3d disc = cutter.radius * (1.0 - axis.array().square()).max(0.0).sqrt();
-    const Array3d top = tip + cutter.length * axis;
-    node.low = node.low.min(tip.array() - disc).min(top - disc);
-    node.high = node.high.max(tip.array() + disc).max(top + disc);
+    const Array3d disc = body.disc * (1.0 - axis.array().square()).max(0.0).sqrt();
+    const Array3d centre = tip + body.centre * axis, top = tip + body.top * axis;
+    node.low = node.low.min(centre.min(top) - disc);
+    node.high = node.high.max(centre.max(top) + disc);
   }
-  node.low -= 2.0 * kTurnTolerance;
-  node.high += 2.0 * kTurnTolerance;
   return node;
 }
 
@@ -240,7 +261,10 @@ std::uint32_t RemovedVolume::add_node(std::uint32_t* begin, std::uint32_t* end) 
   const std::uint32_t left = add_node(begin, middle), right = add_node(middle, end);
   nodes_[number] = {nodes_[left].low.min(nodes_[right].low),
                     nodes_[left].high.max(nodes_[right].high),
-                    std::min(nodes_[left].first_step, nodes_[right].first_step), right, 0};
+                    std::max(nodes_[left].radius, nodes_[right].radius),
+                    std::min(nodes_[left].first_step, nodes_[right].first_step),
+                    right,
+                    0};
   return number;
 }
 
@@ -267,7 +291,8 @@ bool RemovedVolume::contains(const Vector3d& point, std::size_t n) const {
   while (count > 0) {
     const std::uint32_t number = waiting[--count];
     const Node& node = nodes_[number];
-    if (node.first_step >= end || (x < node.low).any() || (x > node.high).any()) continue;
+    if (node.first_step >= end || away(x, node).square().sum() > node.radius * node.radius)
+      continue;
     if (node.right == 0) {
       if (run_contains(node.run, point, end)) return true;
     } else {
@@ -312,8 +337,11 @@ struct RemovedVolume::Advance {
   std::uint32_t step = 0;
   std::vector<Stretch> beyond;  // not connected yet
 
+  // What reaches so far makes a difference. The start is to be found to be inside first.
+  bool wants(double bound) const { return bound >= (inside ? end + kNothing : 0.0); }
+
   bool joins(const Stretch& stretch) {
-    if (stretch.from > end + kMembrane) return false;
+    if (stretch.from > end + kNothing) return false;
     inside = true;
     if (stretch.to > end) end = stretch.to, step = stretch.step;
     return true;
@@ -321,74 +349,89 @@ struct RemovedVolume::Advance {
 };
 
 // As the axis turns, the part's body may be off by what a ray's points are away from its middle.
-RemovedVolume::Part RemovedVolume::bounded(Part part, const Ray& ray) const {
-  const Run& run = runs_[part.run];
+RemovedVolume::Part RemovedVolume::bounded(Part part, const Ray& ray, double beyond) const {
   const double margin = static_cast<double>(margins_[part.run * kRunMargins + part.node]);
-  part.bound = std::numeric_limits<double>::infinity();
+  part.bound = kInfinity;
   if (!std::isfinite(margin)) return part;
-  const Cutter& cutter = cutters_[run.cutter];
   const CutterPosition &a = places_[part.first], &b = places_[part.last];
   const double half = 0.5 * ray.length;
-  const double turn = SweptCutter(envelope(cutter, margin), a, b).turn();
-  part.bound = SweptCutter(envelope(cutter, margin + turn * half), a, b).leave(ray, half);
+  const Envelope body =
+      envelope(cutters_[runs_[part.run].cutter], margin + half * chord_of_turn(a, b));
+  const SweptCutter swept_by_all(body, a, b);
+  part.bound =
+      swept_by_all.may_leave(ray, half, beyond) ? swept_by_all.leave(ray, half) : -kInfinity;
   return part;
-}
-
-std::vector<RemovedVolume::Part> RemovedVolume::runs_along(const Ray& ray) const {
-  std::vector<Part> parts;
-  if (nodes_.empty()) return parts;
-  std::uint32_t waiting[64];
-  std::size_t count = 0;
-  waiting[count++] = 0;
-  while (count > 0) {
-    const std::uint32_t number = waiting[--count];
-    const Node& node = nodes_[number];
-    if (!meets(ray, node.low, node.high)) continue;
-    if (node.right != 0) {
-      waiting[count++] = node.right;
-      waiting[count++] = number + 1;
-      continue;
-    }
-    const Run& run = runs_[node.run];
-    const Part part = bounded({0.0, node.run, 0, run.first, run.last}, ray);
-    if (part.bound >= 0.0) parts.push_back(part);
-  }
-  return parts;
 }
 
 void RemovedVolume::pass_step(const Part& part, const Ray& ray, Advance& state) const {
   const SweptCutter step(envelope(cutters_[runs_[part.run].cutter]), places_[part.first],
                          places_[part.last]);
   const double to = leave_step(step, ray);
-  if (to < state.end || (state.inside && to == state.end)) return;
+  if (!state.wants(to)) return;
   const double from = enter_step(step, ray, to);
   if (from > ray.length) return;
   const Advance::Stretch stretch = {from, to, part.first};
   if (!state.joins(stretch)) state.beyond.push_back(stretch);
 }
 
-void RemovedVolume::advance(const Part& part, const Ray& ray, Advance& state) const {
-  Part waiting[16];
+RemovedVolume::Part RemovedVolume::whole(std::uint32_t run) const {
+  return {kInfinity, run, 0, runs_[run].first, runs_[run].last};
+}
+
+void RemovedVolume::pass(const Part& whole, const Ray& ray, Advance& state) const {
+  Part waiting[16];  // a run is halved six times
   std::size_t count = 0;
-  waiting[count++] = part;
+  waiting[count++] = whole;
   while (count > 0) {
-    const Part one = waiting[--count];
-    if (one.bound < state.end) continue;
-    if (one.last - one.first == 1) {
-      pass_step(one, ray, state);
+    const Part part = waiting[--count];
+    if (!state.wants(part.bound)) continue;
+    if (part.last - part.first == 1) {
+      pass_step(part, ray, state);
       continue;
     }
-    const auto [middle, left, right] = halves(one.node, one.first, one.last);
-    Part parts[2] = {{one.bound, one.run, static_cast<std::uint32_t>(left), one.first, middle},
-                     {one.bound, one.run, static_cast<std::uint32_t>(right), middle, one.last}};
-    for (Part& half : parts) {
-      if (half.last - half.first > 1) half = bounded(half, ray);
+    const auto [middle, left, right] = halves(part.node, part.first, part.last);
+    const std::size_t before = count;
+    for (Part half :
+         {Part{part.bound, part.run, static_cast<std::uint32_t>(left), part.first, middle},
+          Part{part.bound, part.run, static_cast<std::uint32_t>(right), middle, part.last}}) {
+      if (half.last - half.first > 1) half = bounded(half, ray, state.end);
+      if (state.wants(half.bound)) waiting[count++] = half;
     }
-    // the farther one first: it may spare the other
-    const bool left_first = parts[0].bound > parts[1].bound;
-    waiting[count++] = parts[left_first ? 1 : 0];
-    waiting[count++] = parts[left_first ? 0 : 1];
+    // the one that reaches farther first: it may spare the other
+    if (count == before + 2 && waiting[before].bound > waiting[before + 1].bound) {
+      std::swap(waiting[before], waiting[before + 1]);
+    }
   }
+}
+
+// Straight down to the run that is nearest to the start.
+void RemovedVolume::pass_nearest(const Ray& ray, Advance& state) const {
+  std::uint32_t number = 0;
+  while (nodes_[number].right != 0) {
+    const std::uint32_t left = number + 1, right = nodes_[number].right;
+    number = nearer(ray.start, nodes_[left], nodes_[right]) ? left : right;
+  }
+  pass(bounded(whole(nodes_[number].run), ray, 0.0), ray, state);
+}
+
+std::vector<RemovedVolume::Part> RemovedVolume::runs_along(const Ray& ray, double beyond) const {
+  std::vector<Part> parts;
+  std::uint32_t waiting[64];
+  std::size_t count = 0;
+  waiting[count++] = 0;
+  while (count > 0) {
+    const std::uint32_t number = waiting[--count];
+    const Node& node = nodes_[number];
+    if (!meets(ray, beyond, node)) continue;
+    if (node.right == 0) {
+      const Part part = bounded(whole(node.run), ray, beyond);
+      if (part.bound >= beyond) parts.push_back(part);
+    } else {
+      waiting[count++] = node.right;
+      waiting[count++] = number + 1;
+    }
+  }
+  return parts;
 }
 
 std::size_t RemovedVolume::position_of(std::uint32_t step) const {
@@ -396,16 +439,19 @@ std::size_t RemovedVolume::position_of(std::uint32_t step) const {
                                   place_of_.begin());
 }
 
-// The runs that reach farthest come first: after them, most others cannot go on.
+// The nearest run is what ends the way but for little, so that few others can go on; of these, the
+// one that reaches farthest comes first.
 FreeWay RemovedVolume::free_way(const Ray& ray) const {
-  std::vector<Part> parts = runs_along(ray);
+  if (nodes_.empty()) return {};
+  Advance state;
+  pass_nearest(ray, state);
+  std::vector<Part> parts = runs_along(ray, state.end);
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
     return a.bound != b.bound ? a.bound > b.bound : a.first < b.first;
   });
-  Advance state;
   for (const Part& part : parts) {
-    if (part.bound < state.end || state.end >= ray.length) break;
-    advance(part, ray, state);
+    if (!state.wants(part.bound) || state.end >= ray.length) break;
+    pass(part, ray, state);
   }
   // what was found before its connection to the start
   std::sort(state.beyond.begin(), state.beyond.end(),

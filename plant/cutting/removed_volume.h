@@ -36,7 +36,7 @@ struct FreeWay {
 /// of threads may ask. Positions are counted on through all passes: position i of the second pass
 /// has the number `passes[0].positions.size() + i`.
 ///
-/// Exact but for rounding (1e-15 m) and turns of the axis (10 nm, see swept_cutter.h: a step that
+/// Exact but for rounding (1e-15 m) and turns of the axis (1 nm, see swept_cutter.h: a step that
 /// turns too far is taken as several).
 class RemovedVolume {
  public:
@@ -56,7 +56,8 @@ class RemovedVolume {
   bool contains(const Eigen::Vector3d& point, std::size_t n) const;
 
   /// The stretch of the ray that holds its start: the union of what all steps remove, as far as it
-  /// is connected. Material of less than 1 nm between two cuts is none.
+  /// is connected. Material of less than 1 nm between two cuts is none, and steps that would
+  /// lengthen the way by less than 1 nm need not be found.
   FreeWay free_way(const Ray& ray) const;
 
  private:
@@ -65,9 +66,11 @@ class RemovedVolume {
     std::uint32_t first, last;  // steps first .. last - 1
     std::uint32_t cutter;
   };
-  // A node of the tree over runs. The left child follows its parent.
+  // A node of the tree over runs: every point that they remove is within `radius` of the box. The
+  // left child follows its parent.
   struct Node {
     Eigen::Array3d low, high;
+    double radius;
     std::uint32_t first_step;  // of all runs below
     std::uint32_t right;       // 0: this is a leaf
     std::uint32_t run;
@@ -90,9 +93,11 @@ class RemovedVolume {
     std::uint32_t node;
     std::uint32_t first, last;
   };
-  Part bounded(Part part, const Ray& ray) const;
-  std::vector<Part> runs_along(const Ray& ray) const;
-  void advance(const Part& part, const Ray& ray, Advance& state) const;
+  Part bounded(Part part, const Ray& ray, double beyond) const;
+  Part whole(std::uint32_t run) const;
+  void pass_nearest(const Ray& ray, Advance& state) const;
+  std::vector<Part> runs_along(const Ray& ray, double beyond) const;
+  void pass(const Part& part, const Ray& ray, Advance& state) const;
   void pass_step(const Part& part, const Ray& ray, Advance& state) const;
   std::size_t position_of(std::uint32_t step) const;
 

@@ -102,6 +102,10 @@ double turn_deviation(const CutterPosition& a, const CutterPosition& b, double r
   return angle * (angle * reach / 8.0 + (b.tip - a.tip).norm() / 4.0);
 }
 
+double chord_of_turn(const CutterPosition& a, const CutterPosition& b) {
+  return (b.axis - a.axis).norm();
+}
+
 SweptCutter::SweptCutter(const Envelope& body, const CutterPosition& a, const CutterPosition& b)
     : body_(body),
       p_a_(a.tip),
@@ -113,6 +117,7 @@ SweptCutter::SweptCutter(const Envelope& body, const CutterPosition& a, const Cu
 }
 
 Vector3d SweptCutter::way_of(const Vector3d& y_a) const {
+  if (!turns()) return v_;
   const Vector3d y = y_a - v_, turned = turn_.cross(y);
   return v_ + turned - turn_.cross(turned) / (1.0 + cosine_);
 }
@@ -137,8 +142,6 @@ bool SweptCutter::contains(const Vector3d& x) const {
   return h - t * dh <= body_.top && way.distance(t) <= body_.corner;
 }
 
-double SweptCutter::turn() const { return turn_.norm() * std::sqrt(2.0 / (1.0 + cosine_)); }
-
 // In the plane of s and t, what is swept is convex: leaving it is the largest s.
 double SweptCutter::leave(const Ray& ray, double s_near) const {
   const Vector3d y = ray.start - p_a_, d = ray.direction;
@@ -146,6 +149,22 @@ double SweptCutter::leave(const Ray& ray, double s_near) const {
   const double cylinder = leave_cylinder(y, d, w);
   if (body_.corner == 0.0) return cylinder;
   return std::max(cylinder, body_.disc == 0.0 ? leave_ball(y, d, w) : leave_rounded_disc(y, d, w));
+}
+
+// On its way down, a ray does not leave below the bottom; up to there it is within the radius of
+// the axis only if it is nearly so at once.
+bool SweptCutter::may_leave(const Ray& ray, double s_near, double beyond) const {
+  const Vector3d y = ray.at(beyond) - p_a_, d = ray.direction;
+  const Vector3d w = way_of(y + (s_near - beyond) * d);
+  const double h_s = k_.dot(d), dh = k_.dot(w);
+  if (h_s >= 0.0) return true;
+  const double above = k_.dot(y) - std::min(dh, 0.0) - (body_.centre - body_.corner);
+  if (above < 0.0) return false;
+  const Vector3d P = across(y, k_), dP = across(w, k_);
+  const double way = dP.squaredNorm();
+  const double t = way > 0.0 ? std::clamp(P.dot(dP) / way, 0.0, 1.0) : 0.0;
+  const double radius = body_.radius() + above / -h_s * across(d, k_).norm();
+  return (P - t * dP).squaredNorm() <= radius * radius;
 }
 
 // The heights and 0 <= t <= 1 bound a parallelogram of the plane of s and t, the radius an ellipse:

@@ -37,6 +37,9 @@ Envelope envelope(const Cutter& cutter, double margin = 0.0);
 /// a |p_b - p_a| / 4 for an angle a, from the second derivative of y.
 double turn_deviation(const CutterPosition& a, const CutterPosition& b, double reach);
 
+/// Chord of the angle between the axes of two positions, 2 sin(angle / 2).
+double chord_of_turn(const CutterPosition& a, const CutterPosition& b);
+
 /// The points start + s direction, 0 <= s <= length.
 struct Ray {
   Eigen::Vector3d start, direction;  // m; unit
@@ -60,8 +63,10 @@ class SweptCutter {
   /// - s_near| turn() across the line.
   double leave(const Ray& ray, double s_near) const;
 
-  /// Chord of the angle between the axes, 2 sin(angle / 2).
-  double turn() const;
+  /// Whether it may be that leave(ray, s_near) > beyond; quickly.
+  bool may_leave(const Ray& ray, double s_near, double beyond) const;
+
+  bool turns() const { return !turn_.isZero(0.0); }
 
  private:
   Eigen::Vector3d way_of(const Eigen::Vector3d& y_a) const;  // w of a point at y_a

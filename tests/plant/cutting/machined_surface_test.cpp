@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using Kind = Meeting::Kind;
 
-constexpr double kExact = 1e-12;  // m, rounding at 0.1 m, some operations
+constexpr double kExact = 1.001 * nm;  // what a way may be short of, and rounding
 constexpr double kClearance = 2 * mm, kDepth = 1 * mm;
 
 constexpr Cutter kFlat{.radius = 4e-3, .length = 20e-3};
