@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The programs that tools/s_part.py and tools/cone_frustum.py write are those that are shipped; both say in one line
-what is wrong with their options."""
+"""What tools/s_part.py, tools/cone_frustum.py and tools/m1_part.py write is what is shipped; they say in one line what is
+wrong with their options."""
 import pathlib
 import subprocess
 import tempfile
@@ -21,6 +21,13 @@ class Shipped(unittest.TestCase):
             done = made("s_part.py", path)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(path.read_bytes(), (PROGRAMS / "s_part.ngc").read_bytes())
+
+    def test_m1_part(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "m1_part.stl"
+            done = made("m1_part.py", path)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(path.read_bytes(), (ROOT / "scenarios" / "guevel2025" / "m1_part.stl").read_bytes())
 
     def test_cone_frusta(self):
         done = made("cone_frustum.py")
@@ -47,6 +54,18 @@ class Mistakes(unittest.TestCase):
             there = pathlib.Path(folder) / "a.cls"
             self.refuses("s_part.py: error: --height is 0; must be > 0", "s_part.py", there, "--height", "0")
             self.assertFalse(there.exists())
+
+    def test_of_the_m1_part(self):
+        with tempfile.TemporaryDirectory() as folder:
+            there = pathlib.Path(folder) / "a.stl"
+            for message, *options in (("--circle is -1; must be > 0", "--circle", "-1"),
+                                      ("--circle 113 does not fit on --diamond 113", "--circle", "113"),
+                                      ("--diamond 131 does not fit on --square 160", "--diamond", "131"),
+                                      ("--circle-depth, --diamond-depth and --square-depth must grow", "--diamond-depth", "5")):
+                self.refuses(f"m1_part.py: error: {message}", "m1_part.py", there, *options)
+            self.assertFalse(there.exists())
+            there.write_text("")
+            self.refuses(f"{there}: error: exists; use --force to overwrite", "m1_part.py", there)
 
 
 if __name__ == "__main__":
