@@ -301,11 +301,11 @@ class Accounts {
       if (!difference(complete_, {cause}, cause)) return {};
     }
     // the lag, of loops through which nothing else acts
-    RunOutput free;
-    if (!run(kThroughLoops, free)) return {};
+    RunOutput loops;
+    if (!run(kThroughLoops, loops)) return {};
     Causes ideal = kThroughLoops;
     ideal.insert(Cause::lag);
-    if (!difference(free, ideal, Cause::lag)) return {};
+    if (!difference(loops, ideal, Cause::lag)) return {};
     // what is left
     RunOutput none;
     if (!run(all, none)) return {};

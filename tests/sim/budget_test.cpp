@@ -140,8 +140,8 @@ TEST(Budget, OfChordsAlone) {
   expect_nothing_else(budget, {Cause::interpolation}, 0.05 * chord);
 }
 
-// Pitch of X turns the tool, which three linear axes cannot correct: the tip can be.
-TEST(Budget, OfWhatTheKinematicsCannotDo) {
+// Without a strategy all of it stays.
+TEST(Budget, OfWhatNobodyCorrects) {
   const Scenario scenario = small_scenario(
       kProgram,
       "truth = \"machine\"\n[errors.machine]\nEYX = { polynomial_um = [0.0, 1.0] }\n"
@@ -149,7 +149,7 @@ TEST(Budget, OfWhatTheKinematicsCannotDo) {
       "[[quantity]]\nname = \"tool_deviation\"\naxis = \"Y\"\nsections = [\"flank\"]\n");
   const auto budgets = find_budgets(scenario, budget_quantities(scenario));
   ASSERT_EQ(budgets.size(), 1U);
-  EXPECT_NEAR(part(budgets[0], Cause::kinematics).at_place, 80.0, 0.1);  // no strategy: all of it
+  EXPECT_NEAR(part(budgets[0], Cause::kinematics).at_place, 80.0, 0.1);
   expect_nothing_else(budgets[0], {Cause::kinematics}, 0.1);
 }
 

@@ -1,0 +1,96 @@
+#!/usr/bin/python3
+"""What the scenarios about statements of [G] say at their heads. words.py SERVOMILL"""
+import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SERVOMILL = os.path.abspath(sys.argv.pop(1))
+WORDS = os.path.join(HERE, "..", "..", "scenarios", "words")
+SHARE = 0.01     # numbers at the heads have three digits
+CHORD_UM = 0.2   # chord tolerance of rewritten programs and path tolerance, 0.1 um each
+
+
+class Words(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.out = os.path.join(folder.name, "out.h5")
+
+    def servomill(self, command, name, *arguments):
+        return subprocess.run([SERVOMILL, command, os.path.join(WORDS, name), "-o", self.out, "--force", *arguments],
+                              capture_output=True, text=True, check=False)
+
+    def values(self, name, quantity, statistic="max"):
+        """{case: value} of a quantity of a run."""
+        done = self.servomill("run", name, "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        rows = [json.loads(line) for line in done.stdout.splitlines()]
+        return {row["case"]: row["value"] for row in rows
+                if row["quantity"] == quantity and row["statistic"] in (None, statistic)}
+
+    def near(self, found, **expected):
+        for case, value in expected.items():
+            self.assertAlmostEqual(found[case], value, delta=SHARE * value, msg=case)
+
+    def test_a_rewritten_program_belongs_to_its_origin(self):
+        found = self.values("origin_shift.toml", "imposed_curve_residual")
+        self.near(found, gcode_moved=254.6, feedback=5.92, feedback_moved=5.92)
+        for case in ("gcode", "gcode_again"):
+            self.assertLess(found[case], CHORD_UM)
+
+    def test_a_table_cannot_follow_a_sudden_error(self):
+        found = self.values("sudden_error.toml", "imposed_curve_residual")
+        self.near(found, table=21.0, table_fine=22.7, table_prompt=15.5, feedback=7.63, feedback_lead=2.01)
+        self.assertLess(found["gcode"], 1.0)
+        refused = self.servomill("run", "sudden_error.toml", "--set",
+                                 "case.table_fine.strategy.max_step_ratio=0.015625")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("table over X: slope 20.00 um/mm at X = ", refused.stderr)
+        self.assertIn("the NC accepts at most 15.62 um/mm (max_step_ratio)", refused.stderr)
+
+    def test_short_blocks_cost_time(self):
+        time = self.values("short_blocks.toml", "cycle_time")
+        blocks = self.values("short_blocks.toml", "blocks")
+        self.assertEqual(blocks["gcode_0.1mm"], 2000)
+        # 200 mm of path at one block in 3.6 ms
+        for case, block in (("gcode_0.2mm", 0.2), ("gcode_0.1mm", 0.1)):
+            self.assertAlmostEqual(time[case], 200.0 / block * 3.6e-3, delta=0.05 * time[case])
+        for case in ("feedback", "gcode_1mm", "gcode_0.1mm_fast_nc"):
+            self.assertLess(time[case], 1.05 * time["nominal"])
+
+    def test_security_blocks_take_what_they_must_and_say_so(self):
+        found = self.values("saturation.toml", "imposed_curve_residual")
+        self.near(found, wide=5.92, displacement=50.0, rate=21.7, short_table=117.6)
+        said = self.servomill("run", "saturation.toml").stderr.splitlines()
+        self.assertEqual(len(said), 3, said)
+        self.assertRegex(said[0], r"flank\.ngc:\d+: warning: case displacement: strategy feedback: virtual displacement "
+                                  r"of Y saturated at 100 um, first here, [0-9.]+ s in all$")
+        self.assertRegex(said[1], r"flank\.ngc:\d+: warning: case rate: strategy feedback: rate of the virtual "
+                                  r"displacement of Y saturated at 0\.3 mm/s, first here, [0-9.]+ s in all$")
+        self.assertRegex(said[2], r"flank\.ngc:\d+: warning: case short_table: strategy table: the table over X ends at ")
+
+    def test_delays_add_to_the_lag(self):
+        done = self.servomill("sweep", "delay.toml", "--quiet")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        with open(self.out[:-3] + ".csv", encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 9)
+        column = {key.split(" [")[0]: key for key in rows[0]}
+        feed, Kv = 1394.0 / 60.0, 60.0   # mm/s, 1/s
+        for row in rows:
+            signal = float(row["feedback_hardware_signal_delay_us"])
+            model = float(row["feedback_hardware_model_period_us"])
+            ahead = float(row[column["connected_trajectory_difference_X_mean_flank"]])
+            self.assertAlmostEqual(ahead, feed * signal * 1e-3, delta=1e-3 + 1e-3 * ahead)
+            behind = float(row[column["feedback_response_time_Y_flank"]])
+            period = 0.2                 # ms, of the position loop: within it, it takes what the model gives
+            self.assertAlmostEqual(behind, 1e3 / Kv + 1.5e-3 * model, delta=period)
+
+
+if __name__ == "__main__":
+    unittest.main()
