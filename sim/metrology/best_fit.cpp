@@ -75,8 +75,7 @@ std::string free_motions(const Columns6& motions, const Vector3d& centre, double
   const Columns6 sorted = motions * svd.matrixV();  // those that turn come first
   std::vector<std::string> words;
   const Columns3 shifts = tidy(sorted.topRows(3).rightCols(motions.cols() - turning));
-  for (const Vector3d& shift : shifts.colwise())
-    words.push_back("a shift along " + in_words(shift));
+  for (const auto& shift : shifts.colwise()) words.push_back("a shift along " + in_words(shift));
   for (Eigen::Index k = 0; k < turning; ++k) {
     const Vector3d rotation = sorted.bottomRows(3).col(k) / size, shift = sorted.topRows(3).col(k);
     const Vector3d through = centre + rotation.cross(shift) / rotation.squaredNorm();
