@@ -8,6 +8,7 @@
 
 #include "plant/cutting/cutting_force.h"
 #include "plant/vocabulary/units.h"
+#include "tests/counting_new.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim {
@@ -85,6 +86,19 @@ TEST(CuttingTable, is_linear_between_rows_and_zero_beyond_them) {
   EXPECT_TRUE(at(4.5).isZero(0.0));
   EXPECT_LE((at(2.0) - Vector3d(80.0, 1.6 * 20.0, 0.0)).norm(), kRounding) << "and back";
   EXPECT_TRUE(table.force(2.0, 0.0, 1.0, 0.0, cursor).isZero(0.0)) << "standing";
+}
+
+TEST(CuttingLoad, takes_nothing_from_the_heap) {
+  const Scenario scenario = cutting_scenario(kSlot, one_case("cut"));
+  const CuttingTable table({{0.0, 2e-3, {1e6, 0.0, 0.0}, {10.0, 0.0, 0.0}, 0.0},
+                            {1.0, 2e-3, {1e6, 0.0, 0.0}, {10.0, 0.0, 0.0}, 1.0}});
+  const CuttingWear wear;
+  const Vector3d compliance(1e-8, 1e-8, 1e-8);
+  CuttingLoad load(table, wear, scenario.machine.chain, compliance);
+  const std::size_t before = allocations;
+  for (int n = 1; n < 100; ++n) load.advance(1e-3 * n, 0.2, Joints::Zero(), {0.0, 0.0, -0.1});
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(load.force().x(), 0.0);
 }
 
 TEST(Cutting, force_in_a_slot_is_that_of_the_closed_form) {
@@ -170,6 +184,70 @@ TEST(Cutting, meets_nothing_where_the_cutter_has_been) {
   EXPECT_EQ(second, 0.0);
 }
 
+// Finishing a boss with 0.1 mm of allowance: the same force all around, and none on a second turn
+// of the same circle, although steps of the removed volume are chords.
+TEST(Cutting, follows_a_circle_and_leaves_nothing_for_a_second_turn) {
+  const std::string circles =
+      "G17 G90 T1 M6\nG43 H1\nS4775 M3\nG0 X30 Y0\nZ-2\nG1 X24 F1394\n(MSG, first)\nG2 X24 Y0 "
+      "I-24 J0\n(MSG, second)\nG2 X24 Y0 I-24 J0\nM30\n";
+  const Scenario scenario = small_scenario(
+      circles, kTool + kSteel +
+                   "[[part.stock]]\ncylinder = { centre_mm = [0.0, 0.0], radius_mm = 20.1, from_mm "
+                   "= -20.0, to_mm = 0.0 }\n" +
+                   one_case("cut"));
+  const CaseOutput out = run_case(scenario, "cut");
+  const Series& servo = out.result.servo;
+  const std::size_t section = *servo.column("section"), s = *servo.column("s");
+  // clockwise about the boss, material on the right: climb milling of a curved wall
+  const double a = 24 * mm, R = 4 * mm, wall = 20.1 * mm;
+  const double phi = std::acos((a * a + R * R - wall * wall) / (2.0 * a * R));
+  const plant::EngagedArc arc{.width = 2 * mm, .height = 1 * mm, .from = kPi - phi, .to = kPi};
+  const double expected =
+      plant::average_force(plant::find_material("42CrMo4")->typical, 4, {}, {&arc, 1})
+          .at(kChip)
+          .norm();
+  double s_first = 0.0, second = 0.0;
+  for (std::size_t n = 0; n < servo.rows(); ++n) {
+    Vector3d F;
+    for (int i = 0; i < 3; ++i) F[i] = servo.at(n, *servo.column("cutting_force", "XYZ"[i]));
+    const std::string& name = out.sections[static_cast<std::size_t>(servo.at(n, section))];
+    if (name == "first" && s_first == 0.0) s_first = servo.at(n, s);
+    const double on_circle = servo.at(n, s) - s_first;
+    if (name == "first" && on_circle > 10.0 && on_circle < 130.0) {
+      EXPECT_NEAR(F.norm(), expected, 0.01 * expected) << on_circle;
+    }
+    if (name == "second") second = std::max(second, F.norm());
+  }
+  EXPECT_EQ(second, 0.0);
+}
+
+// Straight down into the block: the bottom's edges bear it all.
+TEST(Cutting, plunging_is_borne_by_the_bottom) {
+  const CaseOutput out =
+      run_case(cutting_scenario("G17 G90 T1 M6\nG43 H1\nS4775 M3\nG0 X-30 Y0\nZ2\nX0\n(MSG, "
+                                "down)\nG1 Z-4 F300\nM30\n",
+                                one_case("cut")),
+               "cut");
+  const plant::EngagedArc bottom{.width = 4 * mm, .kappa = 0.0, .from = 0.0, .to = 2.0 * kPi};
+  const double c = 300.0 / (4775.0 * 4) * mm;
+  const double expected =
+      plant::average_force(plant::find_material("42CrMo4")->typical, 4, {0.0, -1.0}, {&bottom, 1})
+          .at(c)
+          .z();
+  const Series& servo = out.result.servo;
+  const std::size_t z = *servo.column("tool_position_nominal", 'Z');
+  const std::size_t section = *servo.column("section");
+  std::size_t seen = 0;
+  for (std::size_t n = 0; n < servo.rows(); ++n) {
+    if (out.sections[static_cast<std::size_t>(servo.at(n, section))] != "down") continue;
+    if (servo.at(n, z) > -0.5 || servo.at(n, z) < -3.0) continue;
+    ++seen;
+    EXPECT_NEAR(servo.at(n, *servo.column("cutting_force", 'Z')), expected, 1e-3 * expected);
+    EXPECT_NEAR(servo.at(n, *servo.column("cutting_force", 'X')), 0.0, 1e-3 * expected);
+  }
+  EXPECT_GT(seen, 100U);
+}
+
 // The table turns by 90 degrees, the program and the part with it: the axes feel the force of
 // another side of the part.
 TEST(Cutting, turns_with_the_work) {
@@ -193,12 +271,13 @@ TEST(Cutting, turns_with_the_work) {
 
 TEST(Cutting, is_the_same_for_the_reference_integrator) {
   const auto with = [&](const std::string& integrator) {
-    return run_case(cutting_scenario("G17 G90 T1 M6\nG43 H1\nS4775 M3\nG0 X-24.5\nZ-2\nG1 X-23 "
-                                     "F1394\nM30\n",
-                                     "[record]\nsettle_ms = 1.0\n"
-                                     "[machine_override]\nintegrator = \"" +
-                                         integrator + "\"\n" + one_case("cut")),
-                    "cut");
+    return run_case(
+        cutting_scenario("G17 G90 T1 M6\nG43 H1\nS4775 M3\nG0 X-24.5\nZ-2\nG1 X-23 "
+                         "F1394\nM30\n",
+                         "[program.start]\nX_mm = -24.5\nZ_mm = 108.0\n[record]\nsettle_ms = 1.0\n"
+                         "[machine_override]\nintegrator = \"" +
+                             integrator + "\"\n" + one_case("cut")),
+        "cut");
   };
   const CaseOutput exact = with("exact"), cvode = with("cvode");
   const Series &a = exact.result.servo, &b = cvode.result.servo;

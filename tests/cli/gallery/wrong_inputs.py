@@ -303,6 +303,31 @@ OUTPUT = [
 SWEEP_IT = "servomill sweep scenario.toml -o out.h5"
 
 
+def cut(title, text, tool="diameter_mm = 8.0", case=""):
+    """A scenario with what it says of stock and cutting, the rest of its tool and of its first case."""
+    return {"title": title, "commands": CHECK,
+            "edit": [("scenario.toml", "length_mm = 110.0", "length_mm = 110.0\n" + tool),
+                     ("scenario.toml", "[record]", text + "\n[record]"),
+                     ("scenario.toml", 'name = "nominal"', 'name = "nominal"' + case)]}
+
+
+BLOCK = "[[part.stock]]\nbox = { from_mm = [-50.0, -50.0, -130.0], to_mm = [50.0, 50.0, -100.0] }\n"
+STEEL = '[cutting]\nmaterial = "42CrMo4"\n'
+CUTTING = [
+    cut("cutting without a raw part", STEEL),
+    cut("a material that is not known", BLOCK + '[cutting]\nmaterial = "42CrMo"'),
+    cut("some coefficients of a material are missing", BLOCK + '[cutting]\nKtc = "2300 N/mm^2"\nKrc = "900 N/mm"'),
+    cut("raw parts that are none", "[[part.stock]]\nbox = { from_mm = [0.0, 0.0, 0.0], to_mm = [1.0, 1.0, -1.0] }\n[[part.stock]]\n"
+        "cylinder = { centre_mm = [0.0], radius_mm = 0.0, from_mm = 0.0, to_mm = 1.0 }\n[[part.stock]]\n" + STEEL),
+    cut("wear of a case in air", BLOCK + STEEL, case="\ncutting = false\nwear = 2.0"),
+    cut("a case that cuts without cutting", "", case="\ncutting = true"),
+    cut("a raw part that is never touched", BLOCK.replace("-50.0, -50.0", "-900.0, -900.0").replace("[50.0, 50.0", "[-800.0, -800.0") + STEEL),
+    cut("a cut with the spindle standing", BLOCK + STEEL),
+    cut("a tool without diameter in the stock", BLOCK + STEEL, tool=""),
+    axis("a structure that gives way to nothing", "structural_stiffness = 0.0"),
+]
+
+
 def sweep(title, text, *commands):
     """A table [sweep] in the scenario."""
     return line(title, "[record]", f"[sweep]\n{text}\n[record]", commands=list(commands) or [SWEEP_IT])
@@ -444,4 +469,4 @@ TABLES = [
 ]
 
 WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO + POST + TABLES
-                + COMPENSATE)
+                + COMPENSATE + CUTTING)
