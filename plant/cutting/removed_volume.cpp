@@ -460,10 +460,17 @@ FreeWay RemovedVolume::free_way(const Ray& ray) const {
     if (!state.joins(stretch)) break;
   }
   if (!state.inside) {
-    return {state.beyond.empty() ? FreeWay::Kind::untouched : FreeWay::Kind::blocked, 0.0, 0};
+    return {state.beyond.empty() ? FreeWay::Kind::untouched : FreeWay::Kind::blocked, 0.0, 0, 0};
   }
-  if (state.end >= ray.length) return {FreeWay::Kind::through, ray.length, 0};
-  return {FreeWay::Kind::ends, state.end, position_of(state.step)};
+  if (state.end >= ray.length) return {FreeWay::Kind::through, ray.length, 0, 0};
+  return {FreeWay::Kind::ends, state.end, position_of(state.step), state.step};
+}
+
+double RemovedVolume::leave(const FreeWay& way, const Ray& ray) const {
+  const auto run = std::upper_bound(runs_.begin(), runs_.end(), way.step,
+                                    [](std::uint32_t step, const Run& r) { return step < r.last; });
+  const CutterPosition *a = &places_[way.step], *b = a + 1;
+  return leave_step(SweptCutter(envelope(cutters_[run->cutter]), *a, *b), ray);
 }
 
 }  // namespace servomill::plant

@@ -30,6 +30,7 @@ struct FreeWay {
   Kind kind = Kind::untouched;
   double end = 0.0;          // m from the start
   std::size_t position = 0;  // what ends there was cut by the step to this position
+  std::uint32_t step = 0;    // for RemovedVolume::leave
 };
 
 /// The volume that passes removed, indexed for queries; fixed once it is made, so that any number
@@ -59,6 +60,11 @@ class RemovedVolume {
   /// is connected. Material of less than 1 nm between two cuts is none, and steps that would
   /// lengthen the way by less than 1 nm need not be found.
   FreeWay free_way(const Ray& ray) const;
+
+  /// Where a ray, also one beside that of `way`, leaves what the step removed that ended `way` (s,
+  /// m); -infinity if it misses that. Concave over parallel rays.
+  /// @pre way.kind is ends
+  double leave(const FreeWay& way, const Ray& ray) const;
 
  private:
   // Up to kRunSteps consecutive steps of one cutter: step i goes from place i to place i + 1.

@@ -140,6 +140,74 @@ TEST(MachinedSurface, of_a_cone_milled_by_a_turning_flank) {
   }
 }
 
+constexpr double kContact = 50 * nm;  // of a probe ball
+constexpr double kProbe = 1 * mm;
+
+TEST(MachinedSurface, is_touched_by_a_ball_where_a_plane_is_met) {
+  const MachinedSurface surface({straight(kFlat, {-20e-3, 0, -1e-3}, {20e-3, 0, -1e-3})});
+  const Meeting meeting =
+      surface.touch({{0, 1e-3, -1e-3}, Vector3d::UnitZ()}, kProbe, kClearance, kDepth);
+  EXPECT_EQ(meeting.kind, Kind::met);
+  EXPECT_NEAR(meeting.distance, 0.0, kContact);
+  // the wall of the slot is nearer than the ball's radius
+  EXPECT_EQ(surface.touch({{0, 3.5e-3, -1e-3}, Vector3d::UnitZ()}, kProbe, kClearance, kDepth).kind,
+            Kind::blocked);
+}
+
+// Between two cusps, y beside the middle of the groove of radius R that the ball end mill left.
+double on_scallops(double y, double R, double r, double apart) {
+  const double height = R - std::sqrt(R * R - apart * apart / 4);
+  const double beside = apart / 2 - y;
+  // it lies in the groove as long as it touches it before the cusp, else on the cusp
+  if (r < R && y * R / (R - r) < apart / 2) return R - r - std::sqrt((R - r) * (R - r) - y * y);
+  return height - (r - std::sqrt(r * r - beside * beside));
+}
+
+TEST(MachinedSurface, carries_a_ball_by_its_scallops) {
+  constexpr double kApart = 0.5e-3;
+  const MachinedSurface surface(raster(kBall, kApart, 25));
+  for (const double radius : {kProbe, 5 * mm}) {
+    for (const double offset : {0.0, 0.1, 0.3, 0.4, 0.5}) {
+      const Meeting meeting = surface.touch(
+          {{0.17e-3, (12 + offset) * kApart, 0}, Vector3d::UnitZ()}, radius, 1 * mm, kDepth);
+      EXPECT_EQ(meeting.kind, Kind::met);
+      EXPECT_NEAR(meeting.distance, on_scallops(offset * kApart, kBall.radius, radius, kApart),
+                  kContact)
+          << "probe " << radius / mm << " mm, offset " << offset;
+    }
+  }
+}
+
+TEST(MachinedSurface, lets_a_ball_into_a_wider_groove_but_not_into_a_narrower_one) {
+  const auto groove = [](double radius) {
+    const Cutter wide{.radius = 10e-3, .length = 20e-3};
+    const Cutter ball{.radius = radius, .corner_radius = radius, .length = 20e-3};
+    return MachinedSurface({straight(wide, {-20e-3, 0, 0}, {20e-3, 0, 0}),
+                            straight(ball, {-20e-3, 0, -0.3e-3}, {20e-3, 0, -0.3e-3})});
+  };
+  const ProbeTarget target = {{0.3e-3, 0, 0}, Vector3d::UnitZ()};
+  // in the wide one it lies on the ground
+  EXPECT_NEAR(groove(2e-3).touch(target, kProbe, kClearance, kDepth).distance, -0.3e-3, kContact);
+  // the narrow one carries it by its edges
+  const double edge = std::sqrt(0.25e-6 - 0.04e-6);
+  EXPECT_NEAR(groove(0.5e-3).touch(target, kProbe, kClearance, kDepth).distance,
+              -(kProbe - std::sqrt(kProbe * kProbe - edge * edge)), kContact);
+}
+
+TEST(MachinedSurface, is_the_same_for_any_number_of_threads) {
+  const MachinedSurface surface(raster(kBullNose, 1.5e-3, 9));
+  std::vector<ProbeTarget> targets;
+  for (int i = 0; i < 1000; ++i) {
+    targets.push_back({{0.02e-3 * i, 0.013e-3 * i, 0}, Vector3d(0.1, -0.2, 1).normalized()});
+  }
+  const auto one = surface.meet(targets, kClearance, kDepth, 1);
+  ASSERT_EQ(one.size(), targets.size());
+  for (const unsigned threads : {0U, 2U, 7U}) {
+    EXPECT_EQ(surface.meet(targets, kClearance, kDepth, threads), one);
+  }
+  EXPECT_EQ(one[500], surface.meet(targets[500], kClearance, kDepth));
+}
+
 TEST(MachinedSurface, says_what_became_of_a_probe_that_met_nothing) {
   const MachinedSurface surface({straight(kFlat, {-20e-3, 0, 0}, {20e-3, 0, 0})});
   const auto kind = [&](const Vector3d& point, const Vector3d& normal) {
