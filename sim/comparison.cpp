@@ -16,6 +16,7 @@
 #include "sim/ball_quantities.h"
 #include "sim/case_samples.h"
 #include "sim/circular_quantities.h"
+#include "sim/probe_quantities.h"
 #include "sim/scenario.h"
 
 namespace servomill::sim {
@@ -25,7 +26,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUmPerMm = 1000.0;
 constexpr double kMsPerS = 1000.0;
 
-constexpr std::array<QuantityInfo, 26> kQuantities = {{
+constexpr std::array<QuantityInfo, 38> kQuantities = {{
     {"imposed_curve_residual", "um",
      "trajectory (scale) minus that of the base case minus the imposed displacement, at equal s",
      true, "XYZ", true, true, true},
@@ -94,6 +95,38 @@ constexpr std::array<QuantityInfo, 26> kQuantities = {{
     {"location_error", "um",
      "identified by a nest of sensors, or by each [[quantity.bar]]; angles in urad", false, "",
      false, false, false, 0, true},
+    {"probed_deviation", "um",
+     "probed points along their normals, minus nominal; with a base case minus those of it", false,
+     "", true, false, false, 0, false, 1},
+    {"probed_imposed_residual", "um",
+     "the same minus those of the base case minus the imposed displacement along the normals",
+     false, "", true, true, true, 0, false, 1},
+    {"probed_position", "um",
+     "fitted centre of a probed circle or cylinder, else mean of the points, minus nominal", true,
+     "XYZ", false, false, false, 0, false, 1},
+    {"straightness", "um", "of a probed line: smallest distance of two parallels around it", false,
+     "", false, false, false, 0, false, 1, true},
+    {"flatness", "um", "of a probed plane: smallest distance of two parallel planes around it",
+     false, "", false, false, false, 0, false, 1, true},
+    {"plane_rotation", "deg",
+     "turn of the least-squares plane of a probed plane about an axis, out of nominal", true, "XYZ",
+     false, false, false, 0, false, 1},
+    {"roundness", "um", "of a probed circle: smallest radial separation of two circles around it",
+     false, "", false, false, false, 0, false, 1, true},
+    {"cylindricity", "um",
+     "of a probed cylinder: smallest radial separation of two coaxial cylinders around it", false,
+     "", false, false, false, 0, false, 1, true},
+    {"diameter", "um", "least-squares diameter of a probed circle or cylinder, minus nominal",
+     false, "", false, false, false, 0, false, 1},
+    {"angle", "um/m",
+     "between two probed lines (from_mm to to_mm) or planes (normals), least squares, minus "
+     "nominal",
+     false, "", false, false, false, 0, false, 2},
+    {"squareness", "um/m", "the same of features at right angles; positive: more than 90 deg",
+     false, "", false, false, false, 0, false, 2},
+    {"distortion", "um",
+     "probed points of all features (or those of `probes`) from the nominal faces after best fit",
+     false, "", true, false, false, 0, false, kEveryProbe},
 }};
 
 // Reads a column of another case at a given arc length; s is asked for in rising order.
@@ -295,6 +328,16 @@ Noted evaluate_ball(const QuantitySpec& spec, Compared& compared) {
   return {statistic_of(spec.statistic, found.d), found.why_not};
 }
 
+Noted evaluate_probe(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
+  if (!one.finished || (base != nullptr && !base->finished)) return {};
+  if (quantity_info(spec.name).has_statistic) {
+    const ProbedDeviations found = probed_deviations(spec, one, base);
+    return {statistic_of(spec.statistic, found.d), found.note};
+  }
+  const ProbedValue found = probed_value(spec, one, base);
+  return {found.value, found.note};
+}
+
 Compared* find(std::deque<Compared>& cases, std::string_view name) {
   for (Compared& one : cases) {
     if (one.data.name == name) return &one;
@@ -365,14 +408,15 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
         row.axis = plant::to_string(*spec.ball->error);
         row.unit = unit_of_location(*spec.ball->error);
       }
+      if (spec.part) row.sections = fmt::format("{}", fmt::join(spec.part->probes, ", "));
       row.reference = spec.reference;
       row.kind = spec.kind;
       const bool missing = one == nullptr || (!spec.base.empty() && base == nullptr);
       const Noted found =
-          missing ? Noted{}
-          : quantity_info(spec.name).is_of_ball
-              ? evaluate_ball(spec, *one)
-              : Noted{evaluate(spec, *one, base != nullptr ? &base->data : nullptr)};
+          missing                               ? Noted{}
+          : quantity_info(spec.name).is_of_ball ? evaluate_ball(spec, *one)
+          : spec.part ? evaluate_probe(spec, one->data, base != nullptr ? &base->data : nullptr)
+                      : Noted{evaluate(spec, *one, base != nullptr ? &base->data : nullptr)};
       row.value = found.value;
       row.note = found.note;
       rows.push_back(std::move(row));

@@ -11,6 +11,7 @@
 
 namespace servomill::sim {
 
+struct ProbedFeature;
 struct QuantitySpec;
 
 /// A quantity that a scenario may ask for.
@@ -25,6 +26,9 @@ struct QuantityInfo {
   bool needs_imposed = false;  // the scenario's imposed error model
   int circles = 0;             // sections evaluated together, each one turn of a circle; 0: any
   bool is_of_ball = false;     // in the spindle, seen by sensors on the table: ball_quantities.h
+  int probes = 0;              // features of the part evaluated together: probe_quantities.h; a
+                               // base case is then optional unless needs_base
+  bool has_fit = false;        // minimum zone or least squares
 };
 
 std::span<const QuantityInfo> quantities();
@@ -39,7 +43,8 @@ struct CaseData {
   double duration = 0.0;              // s, of the program that the NC ran
   double blocks = 0.0;                // motion blocks of that program
   bool finished = true;
-  plant::MachineChain chain = {};  // the ideal machine
+  plant::MachineChain chain = {};                      // the ideal machine
+  const std::vector<ProbedFeature>* probes = nullptr;  // of the part; nullptr: none
 };
 
 /// One line of the printed comparison.

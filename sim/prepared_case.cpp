@@ -210,6 +210,20 @@ void refuse_standing_spindle(const InterpretedProgram& program, const Scenario& 
   }
 }
 
+// Under tool control X Y Z do not turn with the work offset, so that the coordinates of the program
+// are not those of the probes.
+void refuse_turned_tip(const InterpretedProgram& program, const Scenario& scenario,
+                       const CaseSpec& spec) {
+  const AxisWords offset = scenario.program.work_offset + spec.work_offset;
+  const Move* tip = program.first_tip_move();
+  if (scenario.probes.empty() || tip == nullptr || offset.tail<3>().isZero(0.0)) return;
+  throw InputError(scenario.probes.front().place,
+                   fmt::format("case {}: a part is probed in the coordinates of its program; with "
+                               "tool-centre-point control ({}:{}) these do not turn with the "
+                               "work_offset of a rotary axis: leave that at 0",
+                               spec.name, scenario.program.file, tip->line));
+}
+
 void refuse_start_outside(const Scenario& scenario, const MachineSettings& machine,
                           const Joints& start) {
   std::vector<Fault> faults;
@@ -525,6 +539,7 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   if (parts.program->path.size() == 0) throw InputError({scenario.program.file}, "moves no axis");
   refuse_absent_axes(*parts.program, scenario);
   refuse_standing_spindle(*parts.program, scenario);
+  refuse_turned_tip(*parts.program, scenario, spec);
   refuse_start_outside(scenario, parts.machine(), prepare.start());
 
   // the strategies, each of which may rewrite what the one before left
@@ -593,6 +608,15 @@ CaseOutput PreparedCase::output(CaseResult result) const {
   out.blocks = p.motion->blocks;
   out.sections = sections();
   out.chain = p.machine().chain;
+  if (!p.scenario.probes.empty() && out.result.outcome.finished) {
+    ProbedPart part =
+        probe_part({p.spec.name, out.result.servo, p.program->path, p.scenario.program.cutters,
+                    p.program->tips, out.chain, p.scenario.program.work_offset + p.spec.work_offset,
+                    p.imposed.get()},
+                   p.scenario.probes, p.scenario.cmm);
+    out.probes = std::move(part.features);
+    out.notes = std::move(part.notes);
+  }
   for (const Fault& warning : p.program->warnings) {
     out.notes.push_back(fmt::format("{}: warning: {}", to_string(warning.place), warning.message));
   }
@@ -717,7 +741,8 @@ std::vector<Fault> PreparedCase::circular_faults(PreparationCache* cache) const 
 }
 
 CaseData CaseOutput::data() const {
-  return {name, &result.servo, sections, duration, blocks, result.outcome.finished, chain};
+  return {name,   &result.servo,           sections, duration,
+          blocks, result.outcome.finished, chain,    probes.empty() ? nullptr : &probes};
 }
 
 std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/comparison.h"
+#include "sim/probed_part.h"
 #include "sim/scenario.h"
 #include "sim/simulate.h"
 
@@ -25,7 +26,8 @@ struct CaseOutput {
   double blocks = 0.0;
   std::vector<std::string> notes;  // what the NC put right or could not do as programmed
   std::vector<std::string> sections;
-  plant::MachineChain chain;  // the ideal machine
+  plant::MachineChain chain;          // the ideal machine
+  std::vector<ProbedFeature> probes;  // empty: nothing is probed, or the case stopped
   CaseData data() const;
 };
 

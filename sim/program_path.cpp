@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -32,7 +33,9 @@ ProgramPath::ProgramPath(std::span<const Move> moves, const AxisWords& start,
   AxisWords at = start;  // machine coordinates; behind a tip piece tip words with its p_ST
   const Piece* before = nullptr;
   int section = 0;
+  std::optional<int> tool;
   for (const Move& move : moves) {
+    if (move.kind == MoveKind::tool) tool = move.number;
     if (move.kind == MoveKind::message) section = index_of_section(sections_, move.text);
     if (!is_motion(move.kind)) continue;
     Piece piece{{},
@@ -41,6 +44,7 @@ ProgramPath::ProgramPath(std::span<const Move> moves, const AxisWords& start,
                 move.s_end,
                 move.line,
                 move.tool_offset,
+                tool.value_or(move.tool_offset),
                 move.kind == MoveKind::rapid,
                 section};
     piece.is_tip = move.tool_control != ToolControl::none;

@@ -34,6 +34,7 @@ class ProgramPath {
     double s_begin = 0.0, s_end = 0.0;  // m
     int line = 0;
     int tool_offset = 0;
+    int tool = 0;  // in the spindle; before the first change that of the tool offset
     bool rapid = false;
     int section = 0;                                 // index into sections()
     bool is_tip = false;                             // X Y Z are those of the tip in the workpiece

@@ -12,11 +12,13 @@
 #include "sim/ball_quantities.h"
 #include "sim/comparison.h"
 #include "sim/config/reader.h"
+#include "sim/probe_quantities.h"
 #include "sim/read_ball.h"
 #include "sim/read_cutter.h"
 #include "sim/read_cutting.h"
 #include "sim/read_errors.h"
 #include "sim/read_machine.h"
+#include "sim/read_probes.h"
 #include "sim/scenario_document.h"
 #include "sim/scenario_source.h"
 #include "sim/schedule.h"
@@ -74,6 +76,8 @@ class ScenarioReader {
     read_error_models(root);
     read_hardware(root);
     read_record(root);
+    out_.cmm = read_cmm(root);
+    out_.probes = read_probes(root, !out_.program.cutters.empty());
     check_periods(root);
     read_cut(root);
     const std::size_t before = root.faults();
@@ -569,7 +573,7 @@ class ScenarioReader {
       if (cases_are_known_)
         must_be_known(table, "cases", name, fmt::format("case '{}'", name), all);
     }
-    if (info.needs_base) {
+    if (info.needs_base || (info.probes > 0 && table.has("base"))) {
       spec.base = table.text("base");
       if (table.is("base", Value::Type::text) && cases_are_known_)
         must_be_known(table, "base", spec.base, "case", all);
@@ -577,7 +581,9 @@ class ScenarioReader {
     if (info.needs_imposed && out_.imposed.empty()) {
       table.fault("name", "needs the key 'imposed' of the scenario");
     }
-    if (info.is_of_ball) {
+    if (info.probes > 0) {
+      read_part(table, info, spec);
+    } else if (info.is_of_ball) {
       read_ball(table, out_.machine.chain.layout, spec);
     } else {
       spec.sections = info.circles > 0 ? table.texts("sections") : table.texts_or("sections", {});
@@ -594,6 +600,37 @@ class ScenarioReader {
     } else {
       out_.quantities.push_back(std::move(spec));
     }
+  }
+
+  // Features that a quantity is about, and how they are fitted.
+  void read_part(Reader& table, const QuantityInfo& info, QuantitySpec& spec) {
+    static constexpr std::array<std::string_view, 2> kFits = {"minimum_zone", "least_squares"};
+    spec.part.emplace();
+    std::vector<std::string> names;
+    for (const ProbeSpec& one : out_.probes) names.push_back(one.name);
+    if (info.probes == kEveryProbe) {
+      spec.part->probes = table.texts_or("probes", names);
+      for (const std::string& name : spec.part->probes) {
+        must_be_known(table, "probes", name, fmt::format("probe '{}'", name), names);
+      }
+      if (spec.part->probes.empty()) table.fault("needs a [[probe]]");
+      return;
+    }
+    for (const char* key : info.probes == 1 ? std::vector{"probe"} : std::vector{"probe", "to"}) {
+      const std::size_t before = table.faults();
+      const std::string name = table.text(key);
+      spec.part->probes.push_back(name);
+      if (table.faults() > before || !must_be_known(table, key, name, "probe", names)) continue;
+      const auto probe = std::find(names.begin(), names.end(), name) - names.begin();
+      const FeatureKind kind = out_.probes[static_cast<std::size_t>(probe)].feature.kind;
+      const auto kinds = kinds_of(spec.name);
+      if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) continue;
+      std::vector<std::string_view> wanted;
+      for (const FeatureKind one : kinds) wanted.push_back(name_of(one));
+      table.fault(key,
+                  fmt::format("is a {}; {} is of: {}", name_of(kind), spec.name, listed(wanted)));
+    }
+    if (info.has_fit) spec.part->minimum_zone = table.choice_or("fit", 0, kFits) == 0;
   }
 
   // Ball bars are evaluated one by one.

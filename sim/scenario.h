@@ -16,6 +16,8 @@
 #include "plant/vocabulary/parameters.h"
 #include "sim/config/document.h"
 #include "sim/machine.h"
+#include "sim/metrology/cmm.h"
+#include "sim/metrology/probing_plan.h"
 #include "sim/simulate.h"
 #include "sim/sweep/design.h"
 #include "strategies/registry.h"
@@ -66,6 +68,12 @@ struct BallSpec {
   std::optional<plant::ErrorName> error = {};  // location_error: which
 };
 
+/// What a quantity asks of the probed part.
+struct PartSpec {
+  std::vector<std::string> probes;  // features, each the name of a [[probe]]
+  bool minimum_zone = true;         // of the fit, where there is a choice; else least squares
+};
+
 /// One line of the comparison, for one or several cases.
 struct QuantitySpec {
   std::string name;       // one of quantity_names()
@@ -78,6 +86,7 @@ struct QuantitySpec {
   std::string reference;  // the paper's number with unit, or empty
   std::string kind;       // identified, predicted, chosen, bound or empty
   std::optional<BallSpec> ball = {};
+  std::optional<PartSpec> part = {};
 };
 
 /// What becomes of recorded signals.
@@ -106,6 +115,8 @@ struct Scenario {
   plant::Stock stock;  // in work coordinates of the program
   std::optional<CuttingSpec> cutting;
   std::vector<CaseSpec> cases;
+  std::vector<ProbeSpec> probes;  // measured on the part of every case
+  Cmm cmm;
   Tick record_period = 100;
   RecordSpec record;
   double settle_time = 0.1;  // s

@@ -11,6 +11,7 @@
 #include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/units.h"
 #include "sim/hdf5/series_writer.h"
+#include "sim/store_probes.h"
 #include "sim/version.h"
 
 namespace servomill::sim {
@@ -229,6 +230,7 @@ void RunStore::add(const CaseOutput& one) {
   if (one.result.last_ticks.rows() > 0) {
     write_series(group.group("last_ticks"), one.result.last_ticks);
   }
+  if (!one.probes.empty()) write_probes(group.group("probes"), one.probes);
   group.attribute("outcome", one.result.outcome.reason);
   group.attribute("duration_s", one.duration);
   group.attribute("blocks", one.blocks);
@@ -267,9 +269,13 @@ StoredRun read_run(const std::string& path) {
     if (!file.has("/comparison") && !file.has_attribute(group, "finished")) continue;
     run.series.push_back(read_series(file, group + "/servo"));
     check_signals(file, group + "/servo", *run.series.back(), *run.series.front());
+    run.probes.push_back(std::make_unique<std::vector<ProbedFeature>>(
+        read_probed(file, group + "/probes", scenario.probes)));
+    const std::vector<ProbedFeature>& probes = *run.probes.back();
     run.cases.push_back({name, run.series.back().get(), split_lines(file.text(group, "sections")),
                          file.number(group, "duration_s"), file.number(group, "blocks"),
-                         file.number(group, "finished") != 0.0, chain_of(scenario, name)});
+                         file.number(group, "finished") != 0.0, chain_of(scenario, name),
+                         probes.empty() ? nullptr : &probes});
   }
   return run;
 }

@@ -43,7 +43,8 @@ class RunStore {
 struct StoredRun {
   std::string scenario_name, title;
   std::vector<std::unique_ptr<Series>> series;
-  std::vector<CaseData> cases;           // point into `series`
+  std::vector<std::unique_ptr<std::vector<ProbedFeature>>> probes;
+  std::vector<CaseData> cases;           // point into `series` and `probes`
   std::vector<QuantitySpec> quantities;  // of the stored scenario
 };
 

@@ -448,6 +448,31 @@ void Hdf5Group::scalar(const std::string& name, double value, const Meaning& mea
   dataset.attribute("long_name", meaning.long_name);
 }
 
+void Hdf5Group::table(const std::string& name, std::size_t columns, std::span<const double> values,
+                      const Meaning& meaning, const std::string& row_scale,
+                      const std::string& column_scale) {
+  const Library library;
+  assert(columns > 0 && values.size() % columns == 0);
+  const std::array<hsize_t, 2> size = {values.size() / columns, columns};
+  const Hdf5Handle space = handle(H5Screate_simple(2, size.data(), nullptr));
+  Hdf5Dataset dataset(
+      Hdf5Handle(written(H5Dcreate2(id_.get(), name.c_str(), H5T_IEEE_F64LE, space.get(),
+                                    H5P_DEFAULT, dataset_creation().get(), H5P_DEFAULT),
+                         id_.get())),
+      columns, true);
+  written(
+      H5Dwrite(dataset.id_.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+      id_.get());
+  dataset.attribute("units", meaning.units);
+  dataset.attribute("long_name", meaning.long_name);
+  unsigned dimension = 0;
+  for (const std::string& scale : {row_scale, column_scale}) {
+    Hdf5Dataset of(Hdf5Handle(written(H5Dopen2(id_.get(), scale.c_str(), H5P_DEFAULT), id_.get())),
+                   1, false);
+    dataset.attach_scale(of, dimension++);
+  }
+}
+
 void Hdf5Group::list(const std::string& name, std::span<const double> values,
                      const Meaning& meaning, const std::string& scale) {
   const Library library;

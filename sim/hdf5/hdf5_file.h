@@ -128,6 +128,11 @@ class Hdf5Group : public Hdf5Object {
   /// One value.
   void scalar(const std::string& name, double value, const Meaning& meaning);
 
+  /// Rows of `columns` values each. The names of two lists in this group are its dimensions; or of
+  /// labels.
+  void table(const std::string& name, std::size_t columns, std::span<const double> values,
+             const Meaning& meaning, const std::string& row_scale, const std::string& column_scale);
+
   /// A list of values. With `scale`, the name of a list in this group of the same length, that one
   /// is its dimension; without, it is a dimension itself.
   void list(const std::string& name, std::span<const double> values, const Meaning& meaning,

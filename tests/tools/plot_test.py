@@ -23,7 +23,7 @@ import numpy as np
 from PIL import Image
 
 import plot as program
-from figures import balls, circular, five_axis, lag, nonlinear, notches, results, straightness, style, sweeps, volumetric
+from figures import balls, circular, five_axis, lag, nonlinear, notches, parts, results, straightness, style, sweeps, volumetric
 
 SERVOMILL = ""
 AGREE = 1e-7        # um; `compare` prints nine digits of up to 100 um
@@ -302,6 +302,8 @@ class Drawing(WithFiles):
             "figure12: not drawn, no error functions of Z",
             "figure14: not drawn, no case named generated",
             "figure15: not drawn, no case named generated",
+            *(f"{name}: not drawn, no part was probed ([[probe]] of the scenario)"
+              for name in ("probed", "part", "planes")),
             "nest: not drawn, the scenario asks for no radial_ball_deviation",
             "ball_bar: not drawn, the scenario asks for no ball_bar_deviation",
             *(f"li_{n}: not drawn, needs a case without strategy and one with the strategy exact"
@@ -452,10 +454,32 @@ class Drawing(WithFiles):
         done = subprocess.run([PLOT, "--list"], capture_output=True, text=True)
         self.assertEqual([line.split()[0] for line in done.stdout.splitlines()],
                          ["figure6", "figure9", "figure10", "figure11", "figure12", "figure14",
-                          "figure15", "lag", "curves", "maps", "samples", "circular", "reversals", "nest", "ball_bar",
+                          "figure15", "probed", "part", "planes", "lag", "curves", "maps", "samples", "circular", "reversals", "nest", "ball_bar",
                           "li_3_2", "li_3_3", "li_4_1",
                           "five_axis", "deviations", "position", "velocity",
                           "compliance", "compensated", "budget", "step"])
+
+
+class Parts(WithFiles):
+    """The part on the virtual CMM."""
+
+    def test_the_block_is_drawn_and_agrees_with_compare(self):
+        path = self.root / "block.h5"
+        servomill("run", HERE.parents[1] / "scenarios/parts/block.toml", "-o", path, "-q")
+        done = plot(path, "-o", self.out, "--figures", "probed,part,planes")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(self.drawn(), ["block-part.png", "block-planes.png", "block-probed.png"])
+        for drawn in self.out.iterdir():
+            self.assertGreater(drawn.stat().st_size, SMALLEST_PNG, drawn)
+        rows = [json.loads(line) for line in servomill("compare", path, "--json").splitlines()]
+        said = {row["case"]: row["value"] for row in rows if row["quantity"] == "probed_deviation"}
+        with results.open_result(path) as run:
+            front = parts.relative(run, parts.probed(run)["front"])
+        self.assertEqual(list(front), ["as_it_is", "compensated"])
+        for case, one in front.items():
+            self.assertAlmostEqual(np.abs(one.mean).max(), said[case], delta=AGREE)
+            # the bars are those of the scenario: 1.5 um, k = 2, both sides of the difference
+            self.assertAlmostEqual(np.sqrt((one.sigma ** 2).mean()), 0.75 * np.sqrt(2.0), delta=0.15)
 
 
 class Balls(WithFiles):

@@ -2,8 +2,8 @@
 import dataclasses
 from typing import Callable
 
-from figures import (balls, bode, budget, circular, compensated, deviations, error_functions, five_axis, lag, nonlinear, notches, step, straightness,
-                     sweeps, volumetric)
+from figures import (balls, bode, budget, circular, compensated, deviations, error_functions, five_axis, lag, nonlinear, notches,
+                     parts, step, straightness, sweeps, volumetric)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -29,6 +29,9 @@ FIGURES = (
            volumetric.draw_contours),
     Figure("figure15", "run", "top plane of nominal, generated, compensated; differences",
            volumetric.draw_plane),
+    Figure("probed", "run", "probed features: deviations along them with bars, against the imposed curve", parts.draw_deviations),
+    Figure("part", "run", "probed part from above: deviations magnified", parts.draw_plan),
+    Figure("planes", "run", "probed planes: maps of the deviations", parts.draw_planes),
     Figure("lag", "sweep", "residual and response time against feed", lag.draw),
     Figure("curves", "sweep", "quantities over one parameter, a line for each case", sweeps.draw_curves),
     Figure("maps", "sweep", "quantities over two parameters, in colours", sweeps.draw_maps),

@@ -468,5 +468,40 @@ TABLES = [
           write={"out/NC_CEC.INI": "precious"}, about="a file"),
 ]
 
+CASES = '[[case]]\nname = "nominal"'
+LINE = 'line = { from_mm = [0, 0, -1], to_mm = [50, 0, -1], normal = [0, -1, 0], points = 6 }'
+
+
+def probed(title, probes, *quantities, diameter="\ndiameter_mm = 8.0"):
+    """A scenario with these tables before its cases, and quantities behind them."""
+    edits = [("scenario.toml", "length_mm = 110.0", "length_mm = 110.0" + diameter),
+             ("scenario.toml", CASES, probes + "\n" + CASES)]
+    edits += [("scenario.toml", 'name = "imposed_curve_residual"\naxis = "Y"', one) for one in quantities]
+    return {"title": title, "edit": edits, "commands": CHECK}
+
+
+def probe(keys, name="flank"):
+    return f'[[probe]]\nname = "{name}"\n{keys}\n'
+
+
+PROBES = [
+    probed("a probe where nothing is cut", probe(LINE), diameter=""),
+    probed("a probe that says nothing, and one that says too much", probe("") + probe(LINE + "\npoints_mm = []", "top")),
+    probed("probes without names of their own", probe(LINE) + probe(LINE) + probe(LINE, "a/b")),
+    probed("a line that is none", probe(LINE.replace("50,", "0,")) + probe(LINE.replace("points = 6", "points = 1"), "two")
+           + probe(LINE.replace("[0, -1, 0]", "[1, 0, 0]"), "three") + probe(LINE.replace("[0, -1, 0]", "[0, 0, 0]"), "four")
+           + probe(LINE.replace("[50, 0, -1]", "[50, 0]"), "five")),
+    probed("a plane that is none", probe("plane = { corner_mm = [0, 0, 0], u_mm = [1, 0, 0], v_mm = [2, 0, 0], normal = [0, 0, 1], "
+                                         "points = [3, 3] }")
+           + probe("plane = { corner_mm = [0, 0, 0], u_mm = [1, 0, 0], v_mm = [0, 1, 0], normal = [0, 0, 1], points = [3, 1] }", "top")),
+    probed("a circle that is none", probe("circle = { centre_mm = [0, 0, 0], radius_mm = 0, outside = true, points = 2 }")
+           + probe("circle = { centre_mm = [0, 0, 0], radius_mm = 5, outside = true, points = 8, from_deg = 90, to_deg = 0 }", "two")
+           + probe("cylinder = { centre_mm = [0, 0, 0], radius_mm = 5, outside = true, points = [8, 2], to_mm = 0 }", "three")),
+    probed("points that are none", probe("points_mm = [[0, 0, 0, 0, 0, 1], [0, 0, 0, 0, 0, 0]]")),
+    probed("a CMM that is none", probe(LINE) + "[cmm]\nuncertainty_um = -1\nrepetitions = 0\nprobe_radius = 1"),
+    probed("a quantity of a probe that is not there", probe(LINE), 'name = "straightness"\nprobe = "flnak"'),
+    probed("a quantity of another kind of probe", probe(LINE), 'name = "flatness"\nprobe = "flank"'),
+]
+
 WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO + POST + TABLES
-                + COMPENSATE + CUTTING)
+                + COMPENSATE + CUTTING + PROBES)

@@ -1,0 +1,193 @@
+#include "sim/probed_part.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "plant/vocabulary/units.h"
+#include "sim/work_frame.h"
+
+namespace servomill::sim {
+namespace {
+
+using Eigen::Vector3d;
+using plant::Meeting;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSameS = 1e-8;          // m; recorded arc lengths are rounded
+constexpr double kPoorChord = 1.0 * um;  // chord errors beyond it are told
+constexpr double kParallel = 1e-9;       // sine of an angle
+
+Vector3d vector_at(const Series& series, std::size_t row, std::size_t first) {
+  return {series.at(row, first), series.at(row, first + 1), series.at(row, first + 2)};
+}
+
+// The piece of the program that a recorded row belongs to; rows are asked for in order.
+class PieceOfRow {
+ public:
+  PieceOfRow(const Series& series, const ProgramPath& path)
+      : series_(series), path_(path), s_(*series.column("s")), line_(*series.column("line")) {}
+
+  const ProgramPath::Piece& at(std::size_t row) {
+    const double s = series_.at(row, s_) * mm;
+    const int line = static_cast<int>(series_.at(row, line_));
+    while (piece_ + 1 < path_.size() && is_behind(path_.piece(piece_), s, line)) ++piece_;
+    return path_.piece(piece_);
+  }
+
+ private:
+  static bool is_behind(const ProgramPath::Piece& piece, double s, int line) {
+    return s > piece.s_end + kSameS || (line != piece.line && s >= piece.s_end - kSameS);
+  }
+
+  const Series& series_;
+  const ProgramPath& path_;
+  std::size_t s_, line_;
+  std::size_t piece_ = 0;
+};
+
+const plant::Cutter* cutter_of(const PartSource& source, const ProgramPath::Piece& piece) {
+  const auto found = source.cutters.find(piece.tool);
+  return found == source.cutters.end() ? nullptr : &found->second;
+}
+
+// Where the tip of a cutter with axis k stands when its body touches a face with this normal at a
+// point: at the foot of the flank, on the rounding or, as for a plane, under the axis.
+Vector3d tip_that_cuts(const plant::Cutter& cutter, const Vector3d& k,
+                       const plant::ProbeTarget& target) {
+  const Vector3d across = target.normal - target.normal.dot(k) * k;
+  const double r = cutter.corner_radius;
+  Vector3d tip = target.point + r * (target.normal - k);
+  if (across.norm() > kParallel) tip += (cutter.radius - r) * across.normalized();
+  return tip;
+}
+
+// Displacement along the normals that the imposed errors ask for where the program cuts the points,
+// with the rotary axes where the work system has them at 0.
+std::vector<double> imposed_on(const PartSource& source, const PartFrame& frame,
+                               const Feature& feature) {
+  std::vector<double> out;
+  const plant::MachineChain& chain = source.chain;
+  const Joints Q_0 = chain.layout.joints(source.work_offset);
+  const Eigen::Matrix3d J = plant::linear_jacobian(chain, Q_0);
+  for (std::size_t i = 0; i < source.path.size(); ++i) {
+    const ProgramPath::Piece& piece = source.path.piece(i);
+    const plant::Cutter* cutter = cutter_of(source, piece);
+    if (cutter == nullptr || piece.rapid) continue;
+    // the first cutter that works
+    const auto tip = source.tips.find(piece.tool_offset);
+    const Vector3d p_ST = tip == source.tips.end() ? Vector3d::Zero() : tip->second;
+    const Vector3d k = frame.direction(plant::forward(chain, Q_0, p_ST).k_W);
+    for (const plant::ProbeTarget& target : feature.targets) {
+      const Vector3d p_W = frame.in_workpiece(tip_that_cuts(*cutter, k, target));
+      const auto Q = plant::inverse_fixed_rotary(chain, p_W, Q_0, p_ST);
+      out.push_back(
+          Q ? target.normal.dot(frame.direction(J * source.imposed->joint_offset(*Q, p_ST)))
+            : kNone);
+    }
+    return out;
+  }
+  return {};
+}
+
+std::string place_of(const Vector3d& p) {
+  return fmt::format("X{:g} Y{:g} Z{:g}", p.x() / mm, p.y() / mm, p.z() / mm);
+}
+
+struct Misses {
+  std::size_t count = 0, first = 0;
+};
+
+std::string why(Meeting::Kind kind, const Cmm& cmm) {
+  switch (kind) {
+    case Meeting::Kind::untouched:
+      return "no cutter came there";
+    case Meeting::Kind::blocked:
+      return fmt::format("there is uncut material {:g} mm (cmm.clearance_mm) above it",
+                         cmm.clearance / mm);
+    default:
+      return fmt::format("the cutter took away all down to {:g} mm (cmm.depth_mm) below it",
+                         cmm.depth / mm);
+  }
+}
+
+}  // namespace
+
+std::vector<plant::CutterPass> cutter_passes(const PartSource& source) {
+  const PartFrame frame = work_frame(source.chain, source.work_offset);
+  const Series& servo = source.servo;
+  const std::size_t position = *servo.column("tool_position_true", 'X');
+  const std::size_t axis = *servo.column("tool_axis_true", 'I');
+  PieceOfRow pieces(servo, source.path);
+  std::vector<plant::CutterPass> passes;
+  const plant::Cutter* cutting = nullptr;
+  for (std::size_t row = 0; row < servo.rows(); ++row) {
+    const plant::Cutter* cutter = cutter_of(source, pieces.at(row));
+    if (cutter != nullptr && cutter != cutting) passes.push_back({*cutter, {}});
+    cutting = cutter;
+    if (cutter == nullptr) continue;
+    passes.back().positions.push_back({frame.point(vector_at(servo, row, position) * mm),
+                                       frame.direction(vector_at(servo, row, axis)).normalized()});
+  }
+  return passes;
+}
+
+double chord_error(const Series& servo) {
+  const std::size_t position = *servo.column("tool_position_true", 'X');
+  const std::size_t rapid = *servo.column("rapid");
+  double largest = 0.0;
+  for (std::size_t row = 1; row + 1 < servo.rows(); ++row) {
+    if (servo.at(row, rapid) != 0.0) continue;
+    const Vector3d bend = vector_at(servo, row + 1, position) -
+                          2.0 * vector_at(servo, row, position) +
+                          vector_at(servo, row - 1, position);
+    largest = std::max(largest, bend.norm() / 8.0 * mm);
+  }
+  return largest;
+}
+
+ProbedPart probe_part(const PartSource& source, const std::vector<ProbeSpec>& plan,
+                      const Cmm& cmm) {
+  const PartFrame frame = work_frame(source.chain, source.work_offset);
+  const plant::MachinedSurface surface(cutter_passes(source));
+  ProbedPart out;
+  std::size_t met = 0;
+  for (const ProbeSpec& probe : plan) {
+    const std::vector<plant::ProbeTarget>& targets = probe.feature.targets;
+    ProbedFeature found{probe.name, probe.feature, {}, {}, {}};
+    std::map<Meeting::Kind, Misses> missed;
+    const auto meetings = cmm.probe_radius > 0.0
+                              ? surface.touch(targets, cmm.probe_radius, cmm.clearance, cmm.depth)
+                              : surface.meet(targets, cmm.clearance, cmm.depth);
+    for (std::size_t i = 0; i < meetings.size(); ++i) {
+      const bool hit = meetings[i].kind == Meeting::Kind::met;
+      found.deviation.push_back(hit ? meetings[i].distance : kNone);
+      met += hit ? 1 : 0;
+      if (!hit && missed[meetings[i].kind].count++ == 0) missed[meetings[i].kind].first = i;
+    }
+    for (const auto& [kind, misses] : missed) {
+      out.notes.push_back(fmt::format(
+          "{}: warning: case {}: {} of {} points of probe '{}' met no cut surface, first at {}: {}",
+          to_string(probe.place), source.case_name, misses.count, targets.size(), probe.name,
+          place_of(targets[misses.first].point), why(kind, cmm)));
+    }
+    found.measured = probe_all(cmm, source.case_name, probe.name, found.deviation);
+    if (source.imposed != nullptr) found.imposed = imposed_on(source, frame, probe.feature);
+    out.features.push_back(std::move(found));
+  }
+  if (met == 0) return out;
+  const double chord = chord_error(source.servo);
+  if (chord > kPoorChord) {
+    out.notes.push_back(fmt::format(
+        "warning: case {}: the recorded path has corners of up to {:.2g} um between its samples "
+        "where the tool accelerates; probes there are as uncertain (record.period_ms)",
+        source.case_name, chord / um));
+  }
+  return out;
+}
+
+}  // namespace servomill::sim

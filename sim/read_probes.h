@@ -1,0 +1,17 @@
+/// Reads what is probed on the part of a scenario, and with what.
+#pragma once
+
+#include "sim/config/reader.h"
+#include "sim/metrology/cmm.h"
+#include "sim/metrology/probing_plan.h"
+
+namespace servomill::sim {
+
+/// The table [cmm]: uncertainty_um, probe_radius_mm, repetitions, seed, clearance_mm, depth_mm.
+Cmm read_cmm(Reader& root);
+
+/// All [[probe]]: a name and one of line, plane, circle, cylinder, notch, points_mm.
+/// @param has_cutter  whether a tool has a diameter: without one nothing is cut
+std::vector<ProbeSpec> read_probes(Reader& root, bool has_cutter);
+
+}  // namespace servomill::sim

@@ -1,0 +1,31 @@
+/// Probed features in result files.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/hdf5/hdf5_file.h"
+#include "sim/probed_part.h"
+
+namespace servomill::sim {
+
+/// A group for each feature:
+///
+///     point, repetition                 numbers of the points and of the repetitions, from 0
+///     nominal  (point, xyz)        mm   in the work frame
+///     normal   (point, ijk)        1    out of the part
+///     deviation (point)            um   along the normal, without error of the CMM; NaN: missed
+///     measured (repetition, point) um   along the normal
+///     sigma    (point)             um   standard deviation of the repetitions
+///     imposed  (point)             um   displacement along the normal that is asked for, if any
+///
+/// and the attribute `kind`.
+void write_probes(Hdf5Group group, std::span<const ProbedFeature> features);
+
+/// Reads them back, in the order of the plan; nothing if there is no such group.
+/// @throws InputError if what is there does not fit the plan
+std::vector<ProbedFeature> read_probed(const InputFile& file, const std::string& group,
+                                       std::span<const ProbeSpec> plan);
+
+}  // namespace servomill::sim
