@@ -1,0 +1,148 @@
+"""Numbers that no command prints: made of result files, the papers' own tables and scenarios.
+
+Each function takes the results (values.Results) and what a row says beside `derived`; NotInFile says what is missing.
+"""
+import csv
+import pathlib
+
+import numpy as np
+
+from figures import nonlinear, results as files, straightness
+from figures.results import NotInFile
+
+TABLE31 = pathlib.Path(__file__).resolve().parents[2] / "scenarios" / "li2024" / "table31.csv"
+
+
+def scenario_key(results, run, key):
+    """A number that the scenario sets: what was taken from the paper as an input. Elements of lists by name or place."""
+    node = results.opened(run).scenario
+    for part in key.split("."):
+        if isinstance(node, list):
+            named = [one for one in node if one.get("name") == part]
+            node = named[0] if named else node[int(part)] if part.isdigit() and int(part) < len(node) else None
+        else:
+            node = node.get(part)
+        if node is None:
+            raise NotInFile(f"{run} sets no {key}")
+    text = str(node).split()[0]
+    try:
+        return float(text)
+    except ValueError:
+        raise NotInFile(f"{key} of {run} is no number") from None
+
+
+def _over_sweep(results, run, case, quantity):
+    sweep = results.opened(run)
+    for one in sweep.quantities:
+        if one["case"] == case and one["quantity"] == quantity:
+            good = np.isfinite(one["value"])
+            if good.sum() < 2:
+                raise NotInFile(f"{quantity} of {case} stands at fewer than two points of {run}")
+            return sweep, good, one["value"][good]
+    raise NotInFile(f"{run} holds no {quantity} of {case}")
+
+
+def sweep_spread(results, run, case, quantity):
+    """Largest departure of a quantity from its mean over a sweep, %."""
+    _, _, values = _over_sweep(results, run, case, quantity)
+    return 100.0 * np.abs(values / values.mean() - 1.0).max()
+
+
+def sweep_departure_from_proportional(results, run, case, quantity, key):
+    """Largest departure of quantity / parameter from its mean over a sweep, %."""
+    sweep, good, values = _over_sweep(results, run, case, quantity)
+    slope = values / sweep.keys[key][good]
+    return 100.0 * np.abs(slope / slope.mean() - 1.0).max()
+
+
+def slope_correlation(results, run, case, axis, section):
+    """Correlation of what is missing with the slope of the imposed curve in the direction of travel; -1: a pure delay."""
+    run = results.opened(run)
+    found = [one for one in straightness.tracks(run, axis, section) if one.case.name == case]
+    if not found:
+        raise NotInFile(f"no case {case}")
+    x, imposed = straightness.imposed_curve(run, axis, section)
+    x, first = np.unique(x, return_index=True)
+    slope = np.gradient(imposed[first], x)
+    missing, slopes = [], []
+    for at, _, residual in found[0].passes:
+        missing.append(residual)
+        slopes.append(np.interp(at, x, slope) * np.sign(at[-1] - at[0]))
+    return float(np.corrcoef(np.concatenate(missing), np.concatenate(slopes))[0, 1])
+
+
+def volumetric_error(results, run, case):
+    """Largest imposed displacement of the tool tip where the program goes, um."""
+    one = results.opened(run).cases.get(case)
+    if one is None or not one.has("imposed_linear"):
+        raise NotInFile(f"{run} holds no imposed displacement of {case}")
+    return float(np.linalg.norm(np.column_stack([one.column("imposed_linear", a) for a in "XYZ"]), axis=1).max())
+
+
+# Li 2024 --------------------------------------------------------------------------------------------------------------
+
+def table31():
+    """The 23 values of table 3.1, mm."""
+    with TABLE31.open(encoding="utf-8") as lines:
+        rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    return np.array([float(row["error_mm"]) for row in rows])
+
+
+def _segment(results, run):
+    segments = nonlinear.Segments(results.opened(run))
+    places = segments.longest_error()
+    return segments.chord(places), np.linalg.norm(segments.tip_error(segments.plain)[places], axis=1)
+
+
+def points_of(chord):
+    """Places of the points of table 3.1 on a chord (mm): every 0.1 mm and at its end."""
+    return np.append(np.arange(0.0, chord, nonlinear.SPACING), chord)
+
+
+def points_of_segment(results, run):
+    """How many points lie on the segment at the spacing of table 3.1."""
+    return float(len(points_of(_segment(results, run)[0][-1])))
+
+
+def chord(results, run):
+    """Length of the segment with the largest error, mm."""
+    return float(_segment(results, run)[0][-1])
+
+
+def share_at_point(results, run, k):
+    """Error of the tip at point k of table 3.1, in % of the largest of the points."""
+    way, error = _segment(results, run)
+    points = points_of(way[-1])
+    if k > len(points):
+        raise NotInFile(f"the segment has {len(points)} points")
+    values = np.interp(points, way, error)
+    return float(100.0 * values[k - 1] / values.max())
+
+
+def left_of_table31(results, model):
+    """What a model through the peak leaves of the paper's own table 3.1, % of the peak."""
+    values = table31()
+    way = np.minimum(nonlinear.SPACING * np.arange(len(values)), CHORD_OF_TABLE31)
+    t = way / way[-1]
+    shape = np.sin(np.pi * t) if model == "sine" else 4.0 * t * (1.0 - t)
+    return float(100.0 * np.abs(values - values.max() * shape).max() / values.max())
+
+
+CHORD_OF_TABLE31 = 2.1846   # mm, between the locations that section 3.2.3 prints
+
+
+def peak_over_segments(results, run, case, lowest=False):
+    """Largest share of a segment's error that a case leaves, over all segments, %."""
+    segments = nonlinear.Segments(results.opened(run))
+    if case not in segments.run.cases:
+        raise NotInFile(f"no case {case}")
+    before = np.linalg.norm(segments.tip_error(segments.plain), axis=1)
+    after = np.linalg.norm(segments.tip_error(segments.run.cases[case]), axis=1)
+    shares = [100.0 * after[segments.line == line].max() / before[segments.line == line].max()
+              for line in np.unique(segments.line) if (segments.line == line).sum() > 10]
+    return float(min(shares) if lowest else max(shares))
+
+
+FUNCTIONS = {one.__name__: one for one in (
+    scenario_key, sweep_spread, sweep_departure_from_proportional, slope_correlation, volumetric_error, points_of_segment,
+    chord, share_at_point, left_of_table31, peak_over_segments)}

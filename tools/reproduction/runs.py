@@ -1,0 +1,48 @@
+"""The scenarios of both papers, run one after the other."""
+import dataclasses
+import pathlib
+import subprocess
+import time
+
+SCENARIOS = pathlib.Path(__file__).resolve().parents[2] / "scenarios"
+
+
+@dataclasses.dataclass(frozen=True)
+class Run:
+    name: str          # of the result file
+    scenario: str      # below scenarios/
+    what: str
+    command: str = "run"
+
+
+RUNS = (
+    Run("signal_delay", "guevel2025/signal_delay.toml", "[G] signal delay of the feedback hardware"),
+    Run("experiment1", "guevel2025/experiment1.toml", "[G] experiment 1: errors imposed along X"),
+    Run("experiment1_feed", "guevel2025/experiment1_feed.toml", "[G] experiment 1 over the feed", "sweep"),
+    Run("experiment1_friction", "guevel2025/experiment1_friction.toml", "[G] experiment 1 with dry friction"),
+    Run("experiment2_air", "guevel2025/experiment2_air.toml", "[G] experiment 2 in air: 21 errors"),
+    Run("example1", "li2024/example1.toml", "[L] example 1: one segment"),
+    Run("table32", "li2024/table32.toml", "[L] example 2: 20 locations of an impeller blade"),
+    Run("table32_low", "li2024/table32_low.toml", "[L] example 2, centre of rotation 150 mm below"),
+)
+
+
+def run_all(runs, servomill, folder, tell):
+    """Runs them, keeps what they print in NAME.txt; returns {name: why there is no complete result}. A scenario that
+    fails does not stop the others."""
+    failed = {}
+    for number, one in enumerate(runs, 1):
+        tell(f"[{number}/{len(runs)}] {one.what}")
+        begin = time.monotonic()
+        result = folder / f"{one.name}.h5"
+        result.unlink(missing_ok=True)   # a result of an earlier run must not pass for one of this
+        done = subprocess.run([servomill, one.command, SCENARIOS / one.scenario, "--force", "-o", result],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        (folder / f"{one.name}.txt").write_text(done.stdout + done.stderr, encoding="utf-8")
+        if done.returncode != 0:
+            lines = done.stderr.strip().splitlines() or done.stdout.strip().splitlines() or ["printed nothing"]
+            failed[one.name] = f"servomill {one.command} ended with {done.returncode}: {lines[-1]}"
+            tell(f"      {failed[one.name]}")
+        else:
+            tell(f"      {time.monotonic() - begin:.1f} s")
+    return failed

@@ -1,0 +1,100 @@
+"""Our side of each row: values that `servomill compare` prints, and what is derived from the files."""
+import dataclasses
+import json
+import math
+import pathlib
+import subprocess
+
+from command_line import InputError
+from figures.results import NotInFile, open_result
+from reproduction import derived
+
+MATCHED = ("case", "quantity", "axis", "sections", "statistic", "probe")
+
+
+@dataclasses.dataclass(frozen=True)
+class Value:
+    number: float | None
+    reason: str = ""      # why there is none
+
+
+class Results:
+    """Result files of one folder by the name of their scenario; read when asked for."""
+
+    def __init__(self, folder, servomill, failed=None):
+        """failed: {run: why its scenario failed}"""
+        self.folder, self.servomill, self.failed = pathlib.Path(folder), servomill, failed or {}
+        self._compared, self._opened = {}, {}
+
+    def path(self, run):
+        """Its result file. NotInFile where there is none."""
+        path = self.folder / f"{run}.h5"
+        if run in self.failed:
+            raise NotInFile(f"{run}: {self.failed[run]}")
+        if not path.exists():
+            raise NotInFile(f"{path.name} was not written")
+        return path
+
+    def compared(self, run):
+        """What `servomill compare --json` prints about a run, as dicts. NotInFile where it cannot."""
+        if run not in self._compared:
+            path = self.path(run)
+            done = subprocess.run([self.servomill, "compare", path, "--json"], capture_output=True, text=True)
+            if done.returncode != 0:
+                raise NotInFile((done.stderr.strip().splitlines() or [f"{path.name} cannot be compared"])[-1])
+            self._compared[run] = [json.loads(line) for line in done.stdout.splitlines()]
+        return self._compared[run]
+
+    def opened(self, run):
+        """The result file as figures.results has it."""
+        if run not in self._opened:
+            path = self.path(run)
+            try:
+                self._opened[run] = open_result(path)
+            except InputError as fault:
+                raise NotInFile(f"{fault}") from None
+        return self._opened[run]
+
+    def close(self):
+        for one in self._opened.values():
+            one.h5.close()
+
+
+def _matches(wanted, row):
+    return all(row.get(key) == wanted[key] for key in MATCHED if key in wanted)
+
+
+def _compared(wanted, results, unit):
+    rows = [row for row in results.compared(wanted["run"]) if _matches(wanted, row)]
+    what = ", ".join(str(wanted[key]) for key in ("run", *MATCHED) if key in wanted)
+    if not rows:
+        raise NotInFile(f"no value for {what}")
+    if len(rows) > 1:
+        raise NotInFile(f"{len(rows)} values for {what}")
+    if rows[0]["value"] is None:
+        raise NotInFile(f"the value for {what} is not a number")
+    if unit is not None and rows[0]["unit"] != unit:
+        raise NotInFile(f"{what} is in {rows[0]['unit']}, not in {unit}")
+    return float(rows[0]["value"])
+
+
+def _number(wanted, results, unit):
+    if "derived" in wanted:
+        arguments = {key: value for key, value in wanted.items() if key != "derived"}
+        return derived.FUNCTIONS[wanted["derived"]](results, **arguments)
+    if "over" in wanted:   # a ratio of two values; in percent where the row is
+        above, below = _compared(wanted, results, None), _compared({"run": wanted["run"], **wanted["over"]}, results, None)
+        return above / below * (100.0 if unit == "%" else 1.0)
+    return _compared(wanted, results, unit)
+
+
+def find(row, results):
+    """Value of a row: of `here` either a row of the comparison (run, case, quantity, ...), the ratio of two (over), or
+    what a function of derived.py makes of the files (derived and its arguments)."""
+    if not row.here:
+        return Value(None, row.lacks)
+    try:
+        number = _number(row.here, results, row.unit)
+    except NotInFile as reason:
+        return Value(None, f"{reason}")
+    return Value(number) if math.isfinite(number) else Value(None, "is not a number")
