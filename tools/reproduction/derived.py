@@ -88,8 +88,12 @@ def table31():
     return np.array([float(row["error_mm"]) for row in rows])
 
 
+def _segments(results, run):
+    return results.once(("segments", run), lambda: nonlinear.Segments(results.opened(run)))
+
+
 def _segment(results, run):
-    segments = nonlinear.Segments(results.opened(run))
+    segments = _segments(results, run)
     places = segments.longest_error()
     return segments.chord(places), np.linalg.norm(segments.tip_error(segments.plain)[places], axis=1)
 
@@ -133,7 +137,7 @@ CHORD_OF_TABLE31 = 2.1846   # mm, between the locations that section 3.2.3 print
 
 def peak_over_segments(results, run, case, lowest=False):
     """Largest share of a segment's error that a case leaves, over all segments, %."""
-    segments = nonlinear.Segments(results.opened(run))
+    segments = _segments(results, run)
     if case not in segments.run.cases:
         raise NotInFile(f"no case {case}")
     before = np.linalg.norm(segments.tip_error(segments.plain), axis=1)

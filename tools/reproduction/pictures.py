@@ -4,7 +4,7 @@ import pathlib
 
 import plot
 from command_line import InputError
-from figures import style
+from figures import li_flow, style
 from figures.catalogue import FIGURES
 from figures.results import NotInFile
 
@@ -24,44 +24,44 @@ class Picture:
 
 PICTURES = (
     Picture("G", "6", "figure6", ("experiment1",),
-            "The error functions imposed along X: straightness (one curve for Y and Z, -150 to +150 µm) and positioning.",
-            "The paper's curves have no numbers; ours are chosen."),
+            "the error functions imposed along X: straightness (one curve for Y and Z, -150 to +150 µm) and positioning.",
+            "the paper's curves have no numbers; ours are chosen."),
     Picture("G", "9", "figure9", ("experiment1_part", "experiment1"),
-            "Horizontal straightness: (a) trajectory of Y, probed points with bars of 2σ and imposed curve for table, "
+            "horizontal straightness: (a) trajectory of Y, probed points with bars of 2σ and imposed curve for table, "
             "feedback and G-code; (b) differences to the imposed curve; (c) feedback and G-code enlarged."),
     Picture("G", "10", "figure10", ("experiment1_part", "experiment1"),
-            "The same for Z over the horizontal plane; the probed points suffer from back-cutting."),
+            "the same for Z over the horizontal plane; the probed points suffer from back-cutting."),
     Picture("G", "11", "figure11", ("experiment1_part", "experiment1"),
-            "Positions of the notches along X against the imposed positioning error; all strategies within 2 µm."),
+            "positions of the notches along X against the imposed positioning error; all strategies within 2 µm."),
     Picture("G", "lag", "lag", ("experiment1_feed",),
-            "No figure of the paper: its words that the table's response time is constant whatever the feed.",
-            "Residual and response time over the feed."),
+            "no figure, but the words that the table's response time is constant whatever the feed.",
+            "residual and response time over the feed."),
     Picture("G", "12", "figure12", ("experiment2", "experiment2_air"),
-            "Some of the polynomials of Z among the 21 imposed errors.", "All six of Z; coefficients are chosen."),
+            "some of the polynomials of Z among the 21 imposed errors.", "all six of Z; coefficients are chosen."),
     Picture("G", "14", "figure14", ("experiment2", "experiment2_air"),
-            "Trajectories of the contours, nominal, generated, compensated, and difference vectors in X, Y, Z."),
+            "trajectories of the contours, nominal, generated, compensated, and difference vectors in X, Y, Z."),
     Picture("G", "15", "figure15", ("experiment2", "experiment2_air"),
-            "The same for the top plane."),
+            "the same for the top plane."),
     Picture("G", "16", "figure16", ("experiment2",),
             "Z of the circle in air (dashed, nominal and compensated coincide) and while cutting (shifted, each part "
             "differently: forces, wear, an elastic Z axis)."),
     Picture("G", "17", "figure17", ("experiment2",),
-            "Top plane: trajectory, probed points and least-squares planes of the three parts; table 2 has their rotations."),
+            "top plane: trajectory, probed points and least-squares planes of the three parts; table 2 has their rotations."),
     Picture("G", "18", "figure18", ("experiment2",),
-            "Quiver plots of the three parts in XY after best fit: distances of the probed points to the CAD model, up to "
+            "quiver plots of the three parts in XY after best fit: distances of the probed points to the CAD model, up to "
             "86 µm on the modified part."),
     Picture("G", "19", "figure19", ("experiment2",),
-            "The three parts superposed, distances x 100: nominal and compensated lie on each other."),
-    Picture("L", "3.1", "li_3_1", (), "Flow of modelling and compensation."),
+            "the three parts superposed, distances x 100: nominal and compensated lie on each other."),
+    Picture("L", "3.1", "li_3_1", (), "flow of modelling and compensation."),
     Picture("L", "3.2", "li_3_2", ("example1",),
-            "Error at the 23 points of table 3.1, largest 0.973 mm.", "Its shape; the amplitude depends on the centre."),
+            "error at the 23 points of table 3.1, largest 0.973 mm.", "its shape; the amplitude depends on the centre."),
     Picture("L", "3.3", "li_3_3", ("example1",),
-            "Example 1 in the machine: way uncompensated, compensated and ideal; error before and after."),
+            "example 1 in the machine: way uncompensated, compensated and ideal; error before and after."),
     Picture("L", "4.1", "li_4_1", ("table32_low",),
-            "Example 2 in the machine: way uncompensated, compensated and ideal, with an enlargement."),
+            "example 2 in the machine: way uncompensated, compensated and ideal, with an enlargement."),
 )
 
-NOT_DRAWN = ("Not drawn: sketches and photographs ([G] figures 1 to 5, 7, 8, 13).",)
+NOT_DRAWN = ("Not drawn, since they are sketches and photographs: [G] figures 1 to 5, 7, 8, 13.",)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -73,6 +73,8 @@ class Drawn:
 
 
 def _draw(picture, results):
+    if not picture.runs:
+        return li_flow.draw(None), ""
     drawers = {figure.name: figure.draw for figure in FIGURES}
     if picture.figure not in drawers:
         raise NotInFile(f"no figure is named {picture.figure}")

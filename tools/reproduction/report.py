@@ -5,6 +5,7 @@ import html
 
 from reproduction import rows as vocabulary
 from reproduction import verdicts
+from reproduction.pictures import NOT_DRAWN
 from reproduction.values import Value
 
 
@@ -44,10 +45,11 @@ def accepted(row):
 
 
 def summary(lines):
-    """{verdict: {kind: count}} of the verdicts that occur, in their order."""
+    """{verdict: {kind: count}} of the verdicts that occur, in their order; a series counts once a verdict."""
     counts = {}
     for verdict in verdicts.ALL:
-        kinds = [line.row.kind for line in lines if line.verdict == verdict]
+        having = {line.row.part_of or line.row.id: line.row.kind for line in lines if line.verdict == verdict}
+        kinds = list(having.values())
         if kinds:
             counts[verdict] = {kind: kinds.count(kind) for kind in vocabulary.KINDS if kind in kinds}
     return counts
@@ -68,7 +70,7 @@ INTRODUCTION = (
     "stored with their reasons in tools/reproduction/rows.toml.",
     "Kinds: identified numbers fixed a parameter and prove nothing by themselves; predicted ones followed; chosen ones follow "
     "from an input that the paper does not give, and are never called reproduced; a bound is one that the model has no "
-    "cause to reach.")
+    "cause to reach. A table of values counts once in the summary.")
 
 
 def markdown(lines, drawn, begun):
@@ -81,10 +83,10 @@ def markdown(lines, drawn, begun):
         out += ["| " + " | ".join(_cell(text) for text in _columns(line)) + " |" for line in group]
     out += ["", "## Figures", ""]
     for one in drawn:
-        out += [f"### {_title(one.picture)}", "", f"The paper's figure: {one.picture.shows} {one.picture.here}".rstrip(), ""]
+        out += [f"### {_title(one.picture)}", "", _caption(one.picture), ""]
         out += [f"![{_title(one.picture)}]({one.file.parent.name}/{one.file.name})" if one.file
                 else f"Not drawn: {one.reason}.", ""]
-    return "\n".join(out) + "\n"
+    return "\n".join([*out, *NOT_DRAWN]) + "\n"
 
 
 def _cell(text):
@@ -99,6 +101,10 @@ def _columns(line):
 
 def _title(picture):
     return f"[{picture.paper}] figure {picture.number}" if picture.number[0].isdigit() else f"[{picture.paper}] {picture.number}"
+
+
+def _caption(picture):
+    return f"In the paper: {picture.shows}" + (f" Here: {picture.here}" if picture.here else "")
 
 
 STYLE = """
@@ -145,13 +151,12 @@ def page(lines, drawn, begun):
     out.append('<h2 id="figures">Figures</h2>')
     for one in drawn:
         title = html.escape(_title(one.picture))
-        text = html.escape(f"The paper's figure: {one.picture.shows}")
-        ours = f" Ours: {html.escape(one.picture.here)}" if one.picture.here else ""
         if one.file:
             data = base64.b64encode(one.file.read_bytes()).decode()
             out.append(f'<figure><img alt="{title}" src="data:image/png;base64,{data}">')
         else:
             out.append(f'<figure><p class="missing">Not drawn: {html.escape(one.reason)}.</p>')
-        out.append(f"<figcaption><b>{title}.</b> {text}{ours}</figcaption></figure>")
+        out.append(f"<figcaption><b>{title}.</b> {html.escape(_caption(one.picture))}</figcaption></figure>")
+    out += [f"<p>{html.escape(text)}</p>" for text in NOT_DRAWN]
     out.append("</body></html>")
     return "\n".join(out) + "\n"

@@ -35,6 +35,7 @@ class Row:
     tolerance: float = 0.0  # in the row's unit; of "equal" to both sides, of limits beyond them
     tolerance_reason: str = ""
     lacks: str = ""         # what the paper does not give, so that the two cannot be compared
+    part_of: str = ""       # the series that it is one value of; a summary counts a series once
     open: bool = False      # the paper leaves the cause open: a miss is "not explained"
 
 
@@ -72,6 +73,7 @@ def _expanded(table):
         one = {key: text.replace("{k}", str(k)).replace("{value}", f"{value:g}") if isinstance(text, str) else text
                for key, text in rest.items()}
         one["here"] = {**rest["here"], "k": k}
+        one["part_of"] = rest["id"]
         one["value"] = 100.0 * value / scale if scale else value
         found.append(one)
     return found

@@ -24,7 +24,7 @@ class Results:
     def __init__(self, folder, servomill, failed=None):
         """failed: {run: why its scenario failed}"""
         self.folder, self.servomill, self.failed = pathlib.Path(folder), servomill, failed or {}
-        self._compared, self._opened = {}, {}
+        self._compared, self._opened, self._made = {}, {}, {}
 
     def path(self, run):
         """Its result file. NotInFile where there is none."""
@@ -54,6 +54,12 @@ class Results:
             except InputError as fault:
                 raise NotInFile(f"{fault}") from None
         return self._opened[run]
+
+    def once(self, key, make):
+        """make(), the first time; what it gave, later."""
+        if key not in self._made:
+            self._made[key] = make()
+        return self._made[key]
 
     def close(self):
         for one in self._opened.values():

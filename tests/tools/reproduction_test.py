@@ -1,0 +1,303 @@
+#!/usr/bin/python3
+"""tools/reproduction: every row of the papers finds its value, verdicts follow from values and stored tolerances on both
+sides of each, and what is missing is said and never counts. Usage: reproduction_test.py SERVOMILL"""
+import dataclasses
+import html.parser
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCENARIOS = ROOT / "scenarios"
+sys.path.insert(0, str(ROOT / "tools"))
+
+from command_line import InputError
+from reproduction import derived, pictures, report, rows, runs, values, verdicts
+
+SERVOMILL = ""
+JUST = 1e-6   # of a tolerance or a limit: beside its edge
+SMALL = ("signal_delay", "example1")   # fractions of a second each
+
+
+def servomill(*arguments):
+    done = subprocess.run([SERVOMILL, *map(str, arguments)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def based(path):
+    """A scenario as a dict with what it is based on: cases by name, other lists as a whole."""
+    own = tomllib.loads(path.read_text(encoding="utf-8"))
+    if "based_on" not in own:
+        return own
+    base = based(path.parent / own["based_on"])
+    cases = {one["name"]: one for one in base.get("case", [])} | {one["name"]: one for one in own.get("case", [])}
+    return {**base, **own, "case": list(cases.values())}
+
+
+def promised(scenario):
+    """(case, quantity, axis, sections, probe) of all rows that a comparison of the scenario will print."""
+    names = [one["name"] for one in scenario["case"]]
+    return {(case, one["name"], one.get("axis"), ", ".join(one["sections"]) if "sections" in one else None, one.get("probe"))
+            for one in scenario["quantity"] for case in one.get("cases", names)}
+
+
+def row(**changes):
+    return dataclasses.replace(
+        rows.Row(id="x", paper="G", group="g", quantity="q", printed="p", unit="um", why="w", kind="predicted", here={"run": "r"},
+                 value=2.0, tolerance=0.5, tolerance_reason="t"), **changes)
+
+
+class TheTable(unittest.TestCase):
+    def setUp(self):
+        self.rows = rows.read()
+
+    def test_every_row_asks_for_something_that_its_scenario_compares(self):
+        scenarios = {one.name: based(SCENARIOS / one.scenario) for one in runs.RUNS}
+        for one in self.rows:
+            with self.subTest(one.id):
+                if not one.here:
+                    self.assertTrue(one.lacks)
+                    continue
+                if "run" in one.here:
+                    self.assertIn(one.here["run"], scenarios)
+                if "derived" in one.here:
+                    self.assertIn(one.here["derived"], derived.FUNCTIONS)
+                    continue
+                for wanted in (one.here, *([one.here["over"]] if "over" in one.here else [])):
+                    key = tuple(wanted.get(name) for name in ("case", "quantity", "axis", "sections", "probe"))
+                    self.assertIn(key, promised(scenarios[one.here["run"]]))
+
+    def test_every_tolerance_has_a_reason_and_every_row_says_why(self):
+        for one in self.rows:
+            self.assertTrue(one.why, one.id)
+            self.assertTrue(one.lacks or one.tolerance_reason, one.id)
+
+    def test_table_3_1_is_the_one_of_the_scenario(self):
+        series = [one for one in self.rows if one.part_of == "L1-point-{k}"]
+        self.assertEqual([float(one.printed.split()[0]) for one in series], list(derived.table31()))
+
+    def test_figures_are_those_of_both_papers(self):
+        numbers = {paper: [one.number for one in pictures.PICTURES if one.paper == paper and one.number[0].isdigit()]
+                   for paper in rows.PAPERS}
+        self.assertEqual(numbers, {"G": ["6", "9", "10", "11", "12", "14", "15", "16", "17", "18", "19"],
+                                   "L": ["3.1", "3.2", "3.3", "4.1"]})
+
+    def test_figures_are_drawn_from_scenarios_that_are_run(self):
+        for one in pictures.PICTURES:
+            self.assertLessEqual(set(one.runs), {run.name for run in runs.RUNS}, one.number)
+
+
+class Verdicts(unittest.TestCase):
+    def test_change_on_both_sides_of_every_tolerance(self):
+        edges = 0
+        for one in rows.read():
+            if one.lacks:
+                continue
+            inside = {verdicts.verdict(one, value) for value in _inside(one)}
+            self.assertLessEqual(inside, {verdicts.REPRODUCED, verdicts.WITHIN}, one.id)
+            for value in _outside(one):
+                edges += 1
+                self.assertIn(verdicts.verdict(one, value), (verdicts.NOT_REPRODUCED, verdicts.NOT_EXPLAINED), one.id)
+        self.assertGreater(edges, len(rows.read()))
+
+    def test_by_meaning(self):
+        for one, value, wanted in (
+                (row(), 2.5, verdicts.REPRODUCED),
+                (row(), 2.51, verdicts.NOT_REPRODUCED),
+                (row(kind="chosen"), 2.0, verdicts.WITHIN),
+                (row(meaning="below", tolerance=0.0), 2.0, verdicts.WITHIN),
+                (row(meaning="below", tolerance=0.0), 2.01, verdicts.NOT_REPRODUCED),
+                (row(meaning="above", tolerance=0.0), 1.99, verdicts.NOT_REPRODUCED),
+                (row(meaning="between", value=None, limits=(1.0, 3.0), tolerance=0.0), 3.0, verdicts.WITHIN),
+                (row(open=True), 0.0, verdicts.NOT_EXPLAINED),
+                (row(open=True), 2.0, verdicts.REPRODUCED),
+                (row(lacks="its unit"), 2.0, verdicts.NOT_COMPARED),
+                (row(lacks="its curve", here={}), None, verdicts.NOT_COMPARED),
+                (row(), None, verdicts.MISSING),
+                (row(meaning="below"), math.nan, verdicts.MISSING),
+                (row(meaning="below"), -math.inf, verdicts.MISSING)):
+            self.assertEqual(verdicts.verdict(one, value), wanted, (one, value))
+
+    def test_chosen_is_never_reproduced(self):
+        for one in rows.read():
+            if one.kind == "chosen" and not one.lacks:
+                self.assertNotEqual(verdicts.verdict(one, sum(_inside(one)) / 2), verdicts.REPRODUCED, one.id)
+
+
+def _edges(one):
+    low, high = verdicts.limits(one)
+    return [(edge, sign) for edge, sign in ((low, -1.0), (high, 1.0)) if math.isfinite(edge)]
+
+
+def _step(one, edge):
+    return JUST * max(one.tolerance, abs(edge), 1e-3)
+
+
+def _inside(one):
+    edges = [edge - sign * (_step(one, edge) if verdicts.limits(one)[0] < verdicts.limits(one)[1] else 0.0)
+             for edge, sign in _edges(one)]
+    return edges if len(edges) == 2 else [edges[0], edges[0]]
+
+
+def _outside(one):
+    return [edge + sign * _step(one, edge) for edge, sign in _edges(one)]
+
+
+def setUpModule():
+    """Result files that all tests share."""
+    WithResults.held = tempfile.TemporaryDirectory()
+    WithResults.folder = pathlib.Path(WithResults.held.name)
+    small = [one for one in runs.RUNS if one.name in SMALL]
+    WithResults.failed = runs.run_all(small, SERVOMILL, WithResults.folder, lambda _: None)
+
+
+def tearDownModule():
+    WithResults.held.cleanup()
+
+
+class WithResults(unittest.TestCase):
+    def results(self, folder=None, failed=None):
+        found = values.Results(folder or self.folder, SERVOMILL, failed)
+        self.addCleanup(found.close)
+        return found
+
+    def lines(self, chosen, results=None):
+        results = results or self.results()
+        return [report.judged(one, values.find(one, results)) for one in rows.read() if chosen(one)]
+
+
+class Values(WithResults):
+    def test_runs_end_well(self):
+        self.assertEqual(self.failed, {})
+
+    def test_every_row_of_these_scenarios_finds_its_value(self):
+        lines = self.lines(lambda one: one.here and one.here.get("run", SMALL[0]) in SMALL)
+        self.assertGreater(len(lines), 30)
+        for line in lines:
+            self.assertIsNotNone(line.value.number, (line.row.id, line.value.reason))
+
+    def test_the_rest_says_that_it_is_missing_and_counts_as_nothing(self):
+        lines = self.lines(lambda one: one.here and one.here.get("run", SMALL[0]) not in SMALL)
+        self.assertGreater(len(lines), 20)
+        for line in lines:
+            self.assertEqual(line.verdict, verdicts.MISSING)
+            self.assertEqual(line.here(), f"missing: {line.row.here['run']}.h5 was not written")
+
+    def test_a_scenario_that_failed_gives_no_value_even_where_an_old_file_lies(self):
+        (line,) = self.lines(lambda one: one.id == "G-delay", self.results(failed={"signal_delay": "ended with 1"}))
+        self.assertEqual((line.verdict, line.here()), (verdicts.MISSING, "missing: signal_delay: ended with 1"))
+
+    def test_values_in_another_unit_or_ambiguous_ones_are_missing(self):
+        results = self.results()
+        for here, unit, reason in (
+                ({"run": "signal_delay", "case": "connected", "quantity": "trajectory_difference"}, "mm",
+                 "signal_delay, connected, trajectory_difference is in um, not in mm"),
+                ({"run": "example1", "quantity": "tool_difference"}, "um", "4 values for example1, tool_difference"),
+                ({"run": "example1", "case": "none"}, "um", "no value for example1, none")):
+            self.assertEqual(values.find(row(here=here, unit=unit), results), values.Value(None, reason))
+
+    def test_a_changed_input_changes_the_verdict(self):
+        # 10 us at 10 m/min are 1.667 um; the paper's digits hold from 9.99 to 10.05 m/min
+        for feed, wanted in ((10000.0, verdicts.REPRODUCED), (9900.0, verdicts.NOT_REPRODUCED), (10100.0, verdicts.NOT_REPRODUCED)):
+            with tempfile.TemporaryDirectory() as folder:
+                scenario = SCENARIOS / "guevel2025" / "signal_delay.toml"
+                servomill("run", scenario, "-q", "-o", pathlib.Path(folder) / "signal_delay.h5", "--set",
+                          f"program.parameters.#101={feed}")
+                (line,) = self.lines(lambda one: one.id == "G-delay", self.results(folder))
+                self.assertEqual(line.verdict, wanted, line.value)
+                self.assertIn(f"| {wanted} |", report.markdown([line], [], ""))
+
+
+class Report(WithResults):
+    def setUp(self):
+        self.all = self.lines(lambda one: True)
+        self.drawn = [pictures.Drawn(one, None, reason="no results") for one in pictures.PICTURES]
+
+    def test_counts_a_series_once_and_missing_values_as_nothing_else(self):
+        lines = self.all
+        counted = report.summary(lines)
+        once = {line.row.part_of or line.row.id for line in lines if line.verdict == verdicts.REPRODUCED}
+        self.assertEqual(sum(counted[verdicts.REPRODUCED].values()), len(once))
+        self.assertEqual(sum(counted[verdicts.MISSING].values()), sum(line.value.number is None and bool(line.row.here)
+                                                                      for line in lines))
+
+    def test_page_holds_every_row_and_nothing_from_elsewhere(self):
+        page = report.page(self.all, self.drawn, "0")
+        reader = Reader()
+        reader.feed(page)
+        self.assertEqual(reader.open, [])
+        self.assertEqual([one for one in reader.links if not one.startswith(("#", "data:"))], [])
+        for line in self.all:
+            self.assertIn(f'id="{line.row.id}"', page)
+        self.assertNotRegex(page, r"https?://|@import|url\(")
+
+    def test_markdown_has_a_line_for_every_row(self):
+        text = report.markdown(self.all, self.drawn, "0")
+        for line in self.all:
+            self.assertIn(f"| {line.row.quantity} |", text)
+        self.assertEqual(text.count("Not drawn: no results."), len(pictures.PICTURES))
+
+    def test_figures_are_embedded(self):
+        told = []
+        drawn = pictures.draw_all(self.results(), self.folder / "figures", told.append)
+        done = {one.picture.name() for one in drawn if one.file}
+        self.assertEqual(done, {"L_3_1", "L_3_2", "L_3_3"})
+        self.assertEqual(report.page([], drawn, "").count("data:image/png;base64,"), len(done))
+        missing = next(one for one in drawn if one.picture.number == "6")
+        self.assertEqual(missing.reason, "experiment1: experiment1.h5 was not written")
+
+
+class Reader(html.parser.HTMLParser):
+    """Tags that are left open, and everything that a page refers to."""
+    EMPTY = ("meta", "img", "br")
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.links = [], []
+
+    def handle_starttag(self, tag, attrs):
+        self.links += [value for key, value in attrs if key in ("href", "src")]
+        if tag not in self.EMPTY:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open and self.open[-1] == tag, (tag, self.open)
+        self.open.pop()
+
+
+class Faults(unittest.TestCase):
+    def fails(self, text, message):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "rows.toml"
+            path.write_text(text, encoding="utf-8")
+            with self.assertRaises(InputError) as fault:
+                rows.read(path)
+        self.assertEqual(str(fault.exception).replace(str(path), "rows.toml"), message)
+
+    GOOD = ('[[row]]\nid = "a"\npaper = "G"\ngroup = "g"\nquantity = "q"\nprinted = "p"\nunit = "um"\nwhy = "w"\nkind = "bound"\n'
+            'here = {}\nvalue = 1.0\ntolerance_reason = "t"\n')
+
+    def test_say_which_row(self):
+        self.fails(self.GOOD.replace('"bound"', '"guessed"'), "rows.toml: row a: error: kind = 'guessed'; must be one of identified, "
+                   "predicted, chosen, bound")
+        self.fails(self.GOOD.replace("value = 1.0\n", ""), "rows.toml: row a: error: value is missing; where the paper gives none, "
+                   "lacks must say what it lacks")
+        self.fails(self.GOOD.replace('tolerance_reason = "t"\n', ""), "rows.toml: row a: error: tolerance_reason is missing")
+        self.fails(self.GOOD.replace('why = "w"\n', ""), "rows.toml: row a: error: why is missing")
+        self.fails(self.GOOD + self.GOOD, "rows.toml: row a: error: stands there 2 times")
+
+    def test_the_program_is_not_there(self):
+        done = subprocess.run([sys.executable, "-B", "-m", "reproduction", "nowhere/servomill", "-o", tempfile.gettempdir()],
+                              capture_output=True, text=True, cwd=ROOT / "tools")
+        self.assertEqual((done.returncode, done.stderr),
+                         (2, "reproduction: error: nowhere/servomill does not exist\n"))
+
+
+if __name__ == "__main__":
+    SERVOMILL = sys.argv.pop(1)
+    unittest.main()
