@@ -2,8 +2,8 @@
 import dataclasses
 from typing import Callable
 
-from figures import (balls, bode, budget, circular, compensated, deviations, error_functions, five_axis, lag, nonlinear, notches,
-                     parts, step, straightness, sweeps, volumetric)
+from figures import (balls, bode, budget, circular, compensated, deviations, error_functions, experiment2, five_axis, lag,
+                     nonlinear, notches, parts, step, straightness, sweeps, volumetric)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -29,6 +29,11 @@ FIGURES = (
            volumetric.draw_contours),
     Figure("figure15", "run", "top plane of nominal, generated, compensated; differences",
            volumetric.draw_plane),
+    Figure("figure16", "run", "Z of the circle in air and while cutting, at the scale and at the tool",
+           experiment2.draw_air_and_cutting),
+    Figure("figure17", "run", "top plane: trajectory, probed points, least-squares planes", experiment2.draw_top_plane),
+    Figure("figure18", "run", "three parts from above: distances to the nominal one after best fit", experiment2.draw_quivers),
+    Figure("figure19", "run", "three parts superposed, distances magnified", experiment2.draw_superposed),
     Figure("probed", "run", "probed features: deviations along them with bars, against the imposed curve", parts.draw_deviations),
     Figure("part", "run", "probed part from above: deviations magnified", parts.draw_plan),
     Figure("planes", "run", "probed planes: maps of the deviations", parts.draw_planes),

@@ -4,13 +4,14 @@ import re
 
 import numpy as np
 
-from figures import results, style
+from figures import probed_points, results, style
 from figures.results import NotInFile
 
 
 @dataclasses.dataclass
 class Notches:
     """One case: per notch its X (mm), and mean, lowest and highest of displacement and residual."""
+    case: str
     look: style.Look
     x: np.ndarray
     difference: np.ndarray    # (notch, [mean, low, high]) um
@@ -34,7 +35,7 @@ def notches(run, section="notch"):
         if not case.has("imposed_linear"):
             raise NotInFile("no error model is imposed")
         found.append(Notches(
-            style.look_of(run, case.name),
+            case.name, style.look_of(run, case.name),
             np.array([results.programmed(base, "X", case.column("s")[p]).mean() for p in parts]),
             np.array([_summary(results.trajectory_difference(case, base, "X", p)) for p in parts]),
             np.array([_summary(results.imposed_curve_residual(case, base, "X", p))
@@ -65,6 +66,14 @@ def draw(run):
         _points(axes[1], one.x + shift, one.residual, one.look)
         _points(axes[2], one.x + shift, one.residual * 1000.0, one.look)
 
+    probed = probed_points.notches(run)
+    for number, one in enumerate(found):
+        points = probed.get(one.case)
+        if points is not None:
+            shift = spacing * 0.11 * (number - (len(found) - 1) / 2 + 0.45)
+            points.draw(axes[0], points.displacement, one.look)
+            points.draw(axes[1], points.residual, one.look, shift)
+
     axes[0].set_title("(a) Notch positions minus nominal, and what was imposed")
     axes[0].set_ylabel("X displacement, µm")
     axes[1].set_title("(b) Difference to the imposed curve"
@@ -73,7 +82,8 @@ def draw(run):
     if bound:
         for side in (-bound, bound):
             axes[1].axhline(side, color=style.GREY, linestyle=style.DASH, linewidth=1.2)
-        axes[1].set_ylim(-1.25 * bound, 1.25 * bound)
+        reach_y = max([bound, *(points.reach() for points in probed.values())])
+        axes[1].set_ylim(-1.25 * reach_y, 1.25 * reach_y)
     step = run.scenario.get("machine", {}).get("axis", {}).get("X", {}).get("scale_step")
     axes[2].set_title("(c) The same enlarged" + (f": one count of the scale is {step}"
                                                  if step else ""))
@@ -84,7 +94,7 @@ def draw(run):
         if ax is not axes[-1]:
             ax.tick_params(labelbottom=False)
     axes[-1].set_xlabel("X of the machine, mm   (points: mean over a notch, bars: its range; "
-                        "drawn side by side)")
+                        "drawn side by side" + (f"; crosses: probed, ±{probed_points.COVERAGE:g}σ)" if probed else ")"))
     worst = max(one.largest() for one in found)
     style.headline(figure, f"Notches in X: all strategies within {style.number(worst)} µm "
                            "of the imposed curve")

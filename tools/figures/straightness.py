@@ -3,8 +3,11 @@ import dataclasses
 
 import numpy as np
 
-from figures import results, style
+from figures import probed_points, results, style
 from figures.results import NotInFile
+
+
+MOST_OVER = 3.0   # times the largest residual of a trajectory in an enlargement: points beyond are left out
 
 
 @dataclasses.dataclass
@@ -74,6 +77,17 @@ def draw(run, axis, section):
                     _pass(ax, at, residual, one.look, part)
     style.line(axes[0], x, imposed, style.IMPOSED, zorder=1.9)
 
+    probed = probed_points.along(run, section, axis)
+    for one in found:
+        points = probed.get(one.case.name)
+        if points is None:
+            continue
+        points.draw(axes[0], points.displacement, one.look)
+        for ax, group in zip(axes[1:], groups):
+            # noise or back-cutting must not hide the curves that an enlargement is about
+            if ax is axes[1] or one in group and points.largest() < MOST_OVER * group[-1].largest():
+                points.draw(ax, points.residual, one.look)
+
     axes[0].set_title(f"(a) Trajectory of {axis} minus nominal, and what was imposed")
     axes[1].set_title("(b) What is missing: difference to the imposed curve")
     axes[0].set_ylabel(f"{axis} displacement, µm")
@@ -87,7 +101,7 @@ def draw(run, axis, section):
         ax.margins(x=0.01)
         if ax is not axes[-1]:
             ax.tick_params(labelbottom=False)
-    axes[-1].set_xlabel(_x_label(found))
+    axes[-1].set_xlabel(_x_label(found) + (f"   (points: probed, ±{probed_points.COVERAGE:g}σ)" if probed else ""))
     missing = ", ".join(f"{one.look.label} {style.number(one.largest())} µm"
                         for one in found if "lead" not in one.look.label)
     style.headline(figure, f"{axis} misses the imposed curve by: {missing}")

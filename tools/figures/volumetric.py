@@ -10,6 +10,7 @@ from figures.results import NotInFile
 CONTOURS = ("circle", "diamond", "square")
 PLANE = ("plane",)
 NEEDED = ("generated", "compensated")
+MOST_NAMED_PASSES = 7
 
 
 def differences(run, sections):
@@ -120,6 +121,7 @@ def _oblique_scales(ax, flat, scale):
     for start, end in zip(starts, ends):
         y = np.mean(flat[start:end, 1])
         fronts.append(y)
+    for y in fronts[::-(-len(fronts) // MOST_NAMED_PASSES)]:
         u, v = _oblique(np.array([[high + gap, y, 0.0]]))
         ax.text(u[0], v[0], f"Y {y:.0f} mm".replace("-", "−"), va="center")
     for x in (low, high):
@@ -171,15 +173,14 @@ def _per_direction(run, axes, base, found):
 
 
 def _name_sections(ax, base, found):
-    # above the strips, over the middle of each section
+    # above the strips, over the middle of all passes of a section
     s = found["generated"][0]
     names = [name for name in CONTOURS if name in base.sections and len(base.samples([name]))]
     for name in names:
-        for part in results.passes(base.samples([name])):
-            middle = base.column("s")[part].mean()
-            if np.nanmin(s) <= middle <= np.nanmax(s) and np.nanmin(np.abs(s - middle)) < 1.0:
-                ax.text(middle, 1.04, name, ha="center", color=style.GREY,
-                        transform=ax.get_xaxis_transform())
+        passes = [base.column("s")[part] for part in results.passes(base.samples([name]))]
+        if any(np.nanmin(np.abs(s - part.mean())) < 1.0 for part in passes):
+            ax.text(0.5 * (passes[0].min() + passes[-1].max()), 1.04, name, ha="center", color=style.GREY,
+                    transform=ax.get_xaxis_transform())
 
 
 def _message(what, found):

@@ -7,7 +7,7 @@ import pathlib
 
 import numpy as np
 
-from figures import nonlinear, results as files, straightness
+from figures import experiment2, nonlinear, probed_points, results as files, straightness
 from figures.results import NotInFile
 
 TABLE31 = pathlib.Path(__file__).resolve().parents[2] / "scenarios" / "li2024" / "table31.csv"
@@ -77,6 +77,56 @@ def volumetric_error(results, run, case):
     if one is None or not one.has("imposed_linear"):
         raise NotInFile(f"{run} holds no imposed displacement of {case}")
     return float(np.linalg.norm(np.column_stack([one.column("imposed_linear", a) for a in "XYZ"]), axis=1).max())
+
+
+# Parts ----------------------------------------------------------------------------------------------------------------
+
+def probed_residual(results, run, case, axis, feature):
+    """Largest distance of probed points to the imposed curve, relative to the nominal side, um. The feature "notches"
+    stands for all of them."""
+    run = results.opened(run)
+    found = probed_points.notches(run) if feature == "notches" else probed_points.along(run, feature, axis)
+    if case not in found or not np.isfinite(found[case].residual).any():
+        raise NotInFile(f"{feature} of case {case} was not probed")
+    return float(found[case].largest())
+
+
+def part_minus_trajectory(results, run, case, axis, feature):
+    """Root mean square of probed points minus trajectory, both relative to the nominal side, um."""
+    run = results.opened(run)
+    points = probed_points.along(run, feature, axis).get(case)
+    track = [one for one in straightness.tracks(run, axis, feature) if one.case.name == case]
+    if points is None or not track:
+        raise NotInFile(f"{feature} of case {case} was not probed")
+    x, difference, _ = track[0].passes[0]
+    order = np.argsort(x, kind="stable")
+    apart = points.displacement - np.interp(points.x, x[order], difference[order])
+    return float(np.sqrt(np.nanmean(apart**2)))
+
+
+def largest_after_best_fit(results, run, case):
+    """Largest distance of the probed contours to the nominal part after best fit in XY, um."""
+    return float(experiment2.best_fit(results.opened(run), case).largest())
+
+
+def difference_after_best_fit(results, run, case, base):
+    """Largest difference of these distances between two parts, um."""
+    one, other = (experiment2.best_fit(results.opened(run), name) for name in (case, base))
+    return float(np.nanmax(np.abs(one.distance - other.distance)))
+
+
+def cutting_minus_air(results, run, case, at):
+    """Largest shift of Z by cutting on the contours and the top plane, at the scale or the tool, um."""
+    run = results.opened(run)
+    for name in (case, case + experiment2.AIR):
+        if name not in run.cases or not run.cases[name].finished:
+            raise NotInFile(f"no finished case named {name}")
+    cutting, air = run.cases[case], run.cases[case + experiment2.AIR]
+    rows = cutting.samples(("plane", "circle", "diamond", "square"))
+    if at == "scale":
+        return float(np.abs(files.trajectory_difference(cutting, air, "Z", rows)).max())
+    in_air = files.along_path(air, air.column("tool_position_true", "Z"), cutting.column("s")[rows])
+    return float(np.abs(cutting.column("tool_position_true", "Z")[rows] - in_air).max() * files.UM_PER_MM)
 
 
 # Li 2024 --------------------------------------------------------------------------------------------------------------
@@ -149,4 +199,5 @@ def peak_over_segments(results, run, case, lowest=False):
 
 FUNCTIONS = {one.__name__: one for one in (
     scenario_key, sweep_spread, sweep_departure_from_proportional, slope_correlation, volumetric_error, points_of_segment,
-    chord, share_at_point, left_of_table31, peak_over_segments)}
+    probed_residual, part_minus_trajectory, largest_after_best_fit, difference_after_best_fit, cutting_minus_air, chord,
+    share_at_point, left_of_table31, peak_over_segments)}

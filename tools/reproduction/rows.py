@@ -14,8 +14,9 @@ PAPERS = {"G": "Guevel et al. 2025", "L": "Li 2024"}
 # What a paper's number means: the value itself, an upper or lower limit, or limits within which it lies.
 MEANINGS = ("equal", "below", "above", "between")
 # What our number is worth. identified: a parameter was fixed with the paper's number; predicted: it followed;
-# chosen: it follows from an input that the paper does not give; bound: the model has no cause to reach it.
-KINDS = ("identified", "predicted", "chosen", "bound")
+# chosen: it follows from an input that the paper does not give; bound: the model has no cause to reach it; given: an input
+# that is the paper's.
+KINDS = ("identified", "predicted", "chosen", "bound", "given")
 
 
 @dataclasses.dataclass(frozen=True)

@@ -9,7 +9,7 @@ from command_line import InputError
 from figures.results import NotInFile, open_result
 from reproduction import derived
 
-MATCHED = ("case", "quantity", "axis", "sections", "statistic", "probe")
+MATCHED = ("case", "quantity", "axis", "sections", "statistic")   # keys of a row of `servomill compare --json`
 
 
 @dataclasses.dataclass(frozen=True)
@@ -86,7 +86,7 @@ def _compared(wanted, results, unit):
 
 def _number(wanted, results, unit):
     if "derived" in wanted:
-        arguments = {key: value for key, value in wanted.items() if key != "derived"}
+        arguments = {key: value for key, value in wanted.items() if key not in ("derived", "absolute")}
         return derived.FUNCTIONS[wanted["derived"]](results, **arguments)
     if "over" in wanted:   # a ratio of two values; in percent where the row is
         above, below = _compared(wanted, results, None), _compared({"run": wanted["run"], **wanted["over"]}, results, None)
@@ -103,4 +103,6 @@ def find(row, results):
         number = _number(row.here, results, row.unit)
     except NotInFile as reason:
         return Value(None, f"{reason}")
+    if row.here.get("absolute"):
+        number = abs(number)
     return Value(number) if math.isfinite(number) else Value(None, "is not a number")

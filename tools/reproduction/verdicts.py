@@ -3,11 +3,12 @@ import math
 
 REPRODUCED = "reproduced"
 WITHIN = "within bound"
+GIVEN = "as given"
 NOT_REPRODUCED = "not reproduced"
 NOT_EXPLAINED = "not explained"
 NOT_COMPARED = "cannot be compared"
 MISSING = "no value here"
-ALL = (REPRODUCED, WITHIN, NOT_REPRODUCED, NOT_EXPLAINED, NOT_COMPARED, MISSING)
+ALL = (REPRODUCED, WITHIN, GIVEN, NOT_REPRODUCED, NOT_EXPLAINED, NOT_COMPARED, MISSING)
 
 
 def limits(row):
@@ -34,6 +35,8 @@ def verdict(row, value):
     if row.lacks:
         return NOT_COMPARED
     low, high = limits(row)
+    if low <= value <= high and row.kind == "given":
+        return GIVEN
     if low <= value <= high:
         return REPRODUCED if row.meaning == "equal" and row.kind != "chosen" else WITHIN
     return NOT_EXPLAINED if row.open else NOT_REPRODUCED

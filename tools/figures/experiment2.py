@@ -1,0 +1,254 @@
+"""Figures 16 to 19: three parts of experiment 2, in air and cut, and as probed."""
+import dataclasses
+
+import numpy as np
+
+from figures import parts, results, style
+from figures.results import NotInFile, UM_PER_MM
+from figures.volumetric import magnification
+
+PARTS = ("nominal", "generated", "compensated")
+CIRCLE, PLANE = "circle", "plane"     # sections
+TOP = "top"                           # probed feature
+SUPERPOSED = 100.0                    # times: differences in figure 19, as in the paper's
+AIR = "_air"
+
+
+def _cases(run, names):
+    missing = [name for name in names if name not in run.cases or not run.cases[name].finished]
+    if missing:
+        raise NotInFile("no finished case named " + ", ".join(missing))
+    return {name: run.cases[name] for name in names}
+
+
+def _tool_z(case, rows):
+    return case.column("tool_position_true", "Z")[rows]
+
+
+def draw_air_and_cutting(run):
+    """Figure 16: Z of the circle at the scale, in air and while cutting, and what cutting adds at scale and tool."""
+    cutting = _cases(run, PARTS)
+    air = _cases(run, [name + AIR for name in PARTS])
+    base = cutting["nominal"]
+    figure, strip, grid = style.panels([1.0, 0.8], (11.0, 7.2), columns=2, widths=[1.0, 1.0])
+    looks = {name: style.look_of(run, name) for name in PARTS}
+    air_look = style.Look("in air", style.GREY, style.DASH, "")
+    style.legend(strip, [dataclasses.replace(look, line="-", width=1.7) for look in looks.values()] + [air_look])
+    (oblique, over), (scale, tool) = grid
+    told, size = {}, 0.0
+    for name in PARTS:
+        rows, rows_air = (one.samples([CIRCLE]) for one in (cutting[name], air[name + AIR]))
+        if not len(rows) or not len(rows_air):
+            raise NotInFile(f"no feed motion in a section named {CIRCLE}")
+        size = max(size, np.abs(_height(base, cutting[name], rows)).max())
+    factor = magnification(150.0, size, 0.25)
+    for name in PARTS:
+        for case, line, width in ((cutting[name], "-", 1.7), (air[name + AIR], style.DASH, 1.2)):
+            rows = case.samples([CIRCLE])
+            look = dataclasses.replace(looks[name], line=line, width=width)
+            angle, x, y = _around(base, case, rows)
+            z = _height(base, case, rows)
+            style.line(oblique, x + 0.35 * y, z * factor / UM_PER_MM + 0.5 * y, look)
+            style.line(over, angle, z, look)
+        rows = cutting[name].samples([CIRCLE])
+        angle, _, _ = _around(base, cutting[name], rows)
+        added = results.trajectory_difference(cutting[name], air[name + AIR], "Z", rows)
+        style.noisy_line(scale, angle, added, dataclasses.replace(looks[name], line="-"), buckets=120)
+        at_tool = (_tool_z(cutting[name], rows) - results.along_path(
+            air[name + AIR], air[name + AIR].column("tool_position_true", "Z"), cutting[name].column("s")[rows])) * UM_PER_MM
+        style.noisy_line(tool, angle, at_tool, dataclasses.replace(looks[name], line="-"), buckets=120)
+        told[name] = (np.abs(added).max(), np.abs(at_tool).max())
+    oblique.set_title(f"(a) Circle seen obliquely, Z at the scale × {factor:.0f}")
+    oblique.set_aspect("equal", adjustable="datalim")
+    oblique.axis("off")
+    over.set_title("(b) Z at the scale minus programmed")
+    scale.set_title("(c) Cutting minus air, at the scale")
+    tool.set_title("(d) Cutting minus air, at the tool")
+    for ax in (over, scale, tool):
+        ax.set_ylabel("Z, µm")
+        ax.margins(x=0.01)
+        ax.set_xlabel("angle from the begin of the circle, deg")
+    largest = [max(told[name][i] for name in PARTS) for i in (0, 1)]
+    style.headline(figure, f"Cutting shifts Z by up to {style.number(largest[0])} µm at the scale and "
+                           f"{style.number(largest[1])} µm at the tool")
+    return figure
+
+
+def _around(base, case, rows):
+    s = case.column("s")[rows]
+    x, y = (results.along_path(base, base.column("ref_linear", axis), s) for axis in "XY")
+    x, y = x - 0.5 * (x.max() + x.min()), y - 0.5 * (y.max() + y.min())
+    angle = np.degrees(np.unwrap(np.arctan2(y, x)))
+    return np.abs(angle - angle[0]), x, y
+
+
+def _height(base, case, rows):
+    # scale minus what the nominal program asks for, um
+    nominal = results.along_path(base, base.column("ref_linear", "Z"), case.column("s")[rows])
+    return (case.column("meas_linear", "Z")[rows] - nominal) * UM_PER_MM
+
+
+@dataclasses.dataclass
+class FittedPlane:
+    """Least-squares plane z = c + a x + b y of probed points (um over mm)."""
+    c: float
+    a: float
+    b: float
+    residual: np.ndarray
+
+    def rotations(self):
+        """About X and Y, deg."""
+        return np.degrees(np.arctan(self.b / UM_PER_MM)), -np.degrees(np.arctan(self.a / UM_PER_MM))
+
+
+def fitted_plane(points, deviation):
+    """Plane through the deviations (um) over X and Y (mm) of points that were met."""
+    good = np.isfinite(deviation)
+    if good.sum() < 3:
+        raise NotInFile("fewer than three points of the plane were met")
+    matrix = np.column_stack([np.ones(good.sum()), points[good, 0], points[good, 1]])
+    c, a, b = np.linalg.lstsq(matrix, deviation[good], rcond=None)[0]
+    return FittedPlane(c, a, b, deviation[good] - matrix @ [c, a, b])
+
+
+def draw_top_plane(run):
+    """Figure 17: trajectory, probed points and least-squares plane of the top, seen along Y and along X."""
+    cases = _cases(run, PARTS)
+    features = parts.probed(run)
+    if TOP not in features:
+        raise NotInFile(f"no probed feature named {TOP}")
+    base = cases["nominal"]
+    figure, strip, grid = style.panels([1.0, 1.0], (11.4, 7.4), columns=3, sharey=None)
+    looks = {name: style.look_of(run, name) for name in PARTS}
+    style.legend(strip, [dataclasses.replace(looks[name], line="-", marker="") for name in PARTS] +
+                 [style.Look("probed, ±σ", style.GREY, "", "x"), style.Look("least-squares plane", style.GREY, style.DASH, "")],
+                 points=True)
+    z_offset = run.scenario.get("program", {}).get("work_offset", {})
+    told = {}
+    for column, name in enumerate(PARTS):
+        one = features[TOP].get(name)
+        if one is None:
+            raise NotInFile(f"case {name} was not probed")
+        plane = fitted_plane(one.nominal, one.mean)
+        told[name] = plane.rotations()
+        rows = cases[name].samples([PLANE])
+        at = {axis: results.programmed(base, axis, cases[name].column("s")[rows]) - float(z_offset.get(f"{axis}_mm", 0.0))
+              for axis in "XY"}
+        height = _height(base, cases[name], rows)
+        for row, axis, slope in ((0, "X", plane.a), (1, "Y", plane.b)):
+            ax = grid[row][column]
+            for part in results.passes(np.arange(len(rows))[np.flatnonzero(np.diff(rows, prepend=rows[0] - 1) >= 1)]):
+                ax.plot(at[axis][part][::20], height[part][::20], ",", color=style.paler(looks[name].colour, 0.5), zorder=1.8)
+            number = "XY".index(axis)
+            shown = np.s_[::-(-len(one.mean) // 169)]
+            ax.errorbar(one.nominal[shown, number], one.mean[shown], yerr=one.sigma[shown], color=looks[name].colour, marker="x",
+                        markersize=3.5, linestyle="none", elinewidth=0.8, zorder=3)
+            reach = np.array([one.nominal[:, number].min(), one.nominal[:, number].max()]) * 1.35
+            ax.plot(reach, plane.c + slope * reach, color=style.GREY, linestyle=style.DASH, linewidth=2.0, zorder=3.5)
+            ax.set_xlabel(f"{axis} of the part, mm")
+            if column == 0:
+                ax.set_ylabel("Z, µm")
+        about_x, about_y = plane.rotations()
+        grid[0][column].set_title(f"{looks[name].label}: turned about Y by {about_y:.5f}°", fontsize=10.5)
+        grid[1][column].set_title(f"about X by {about_x:.5f}°, flat within {np.ptp(plane.residual):.1f} µm", fontsize=10.5)
+    for row in grid:
+        limits = [ax.get_ylim() for ax in row]
+        for ax in row:
+            ax.set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
+    style.headline(figure, "Top plane, generated / compensated: turned by "
+                   f"{np.hypot(*told['generated']):.4f}° / {np.hypot(*told['compensated']):.5f}°")
+    return figure
+
+
+@dataclasses.dataclass
+class FittedPart:
+    """Probed points of one part in XY after best fit (mm, um): nominal, normal, distance, sigma, and the fit."""
+    nominal: np.ndarray
+    normal: np.ndarray
+    distance: np.ndarray
+    sigma: np.ndarray
+    features: list          # (name, slice)
+    shift: np.ndarray       # um
+    turn: float             # urad
+
+    def largest(self):
+        return np.nanmax(np.abs(self.distance))
+
+
+def best_fit(run, case):
+    """All probed features of a part with normals in XY, moved and turned about Z as one so that the squares of their
+    distances to the nominal part are least: the last step of an iterated closest point (ICP) on flat and round faces, which
+    is linear for micrometres."""
+    features = {name: cases[case] for name, cases in parts.probed(run).items() if case in cases and cases[case].is_level()}
+    if not features:
+        raise NotInFile(f"no probed feature of case {case} has normals in XY")
+    nominal, normal, d, sigma = (np.concatenate([getattr(one, name) for one in features.values()])
+                                 for name in ("nominal", "normal", "mean", "sigma"))
+    ends = np.cumsum([len(one.mean) for one in features.values()])
+    slices = [(name, np.s_[end - len(one.mean):end]) for end, (name, one) in zip(ends, features.items())]
+    shift, turn, left = rigid_fit(nominal[:, :2], normal[:, :2], d)
+    return FittedPart(nominal[:, :2], normal[:, :2], left, sigma, slices, shift, turn)
+
+
+def rigid_fit(p, n, d):
+    """(shift um, turn urad, what is left um) of distances d (um) along normals n at points p (mm) in a plane."""
+    matrix = np.column_stack([n, (p[:, 0] * n[:, 1] - p[:, 1] * n[:, 0]) / UM_PER_MM])   # um per um, um per urad
+    good = np.isfinite(d)
+    if good.sum() < 3:
+        raise NotInFile("fewer than three points were met")
+    solution = np.linalg.lstsq(matrix[good], d[good], rcond=None)[0]
+    return solution[:2], solution[2], d - matrix @ solution
+
+
+def draw_quivers(run):
+    """Figure 18: distances of the three parts to the nominal one in XY after best fit."""
+    fitted = {name: best_fit(run, name) for name in _cases(run, PARTS)}
+    largest = max(one.largest() for one in fitted.values())
+    figure, strip, grid = style.panels([1.0], (13.2, 5.7), columns=3)
+    strip.axis("off")
+    factor = magnification(np.ptp(fitted["nominal"].nominal, axis=0).max(), largest, 0.12)
+    for ax, (name, one) in zip(grid[0], fitted.items()):
+        look = style.look_of(run, name)
+        for _, part in one.features:
+            ax.plot(*_closed(one.nominal[part]).T, color=style.GREY, linewidth=0.9, zorder=1.9)
+        moved = one.distance[:, None] * one.normal * factor / UM_PER_MM
+        ax.quiver(one.nominal[:, 0], one.nominal[:, 1], moved[:, 0], moved[:, 1], color=look.colour, angles="xy",
+                  scale_units="xy", scale=1.0, width=0.004, zorder=3)
+        ax.set_aspect("equal", adjustable="datalim")
+        ax.margins(0.12)
+        ax.set_title(f"{look.label}: up to {style.number(one.largest())} µm (σ {np.nanmean(one.sigma):.2f} µm)")
+        ax.set_xlabel("X of the part, mm")
+    grid[0][0].set_ylabel("Y of the part, mm")
+    style.headline(figure, f"Distances to the nominal part after best fit, × {factor:.0f}: up to {style.number(largest)} µm")
+    return figure
+
+
+def _closed(points):
+    # a full circle of points is drawn closed
+    step = np.linalg.norm(points[1] - points[0])
+    return np.vstack([points, points[:1]]) if np.linalg.norm(points[-1] - points[0]) < 1.5 * step else points
+
+
+def draw_superposed(run):
+    """Figure 19: the three parts on each other, distances magnified."""
+    fitted = {name: best_fit(run, name) for name in _cases(run, PARTS)}
+    figure, strip, grid = style.panels([1.0], (8.6, 8.8))
+    ax = grid[0][0]
+    nominal = fitted["nominal"]
+    for _, part in nominal.features:
+        ax.plot(*_closed(nominal.nominal[part]).T, color="#b5b5b5", linewidth=1.0, zorder=1.9)
+    looks = [style.Look("nominal part", "#b5b5b5", "-", "", 1.0)]
+    for name, one in fitted.items():
+        look = dataclasses.replace(style.look_of(run, name), line=style.DASH if name == "compensated" else "-")
+        looks.append(look)
+        shown = one.nominal + one.distance[:, None] * one.normal * SUPERPOSED / UM_PER_MM
+        for _, part in one.features:
+            style.line(ax, *_closed(shown[part]).T, look, zorder=3.2 if name == "compensated" else 3)
+    style.legend(strip, looks)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel("X of the part, mm")
+    ax.set_ylabel("Y of the part, mm")
+    ax.set_title(f"Distances × {SUPERPOSED:.0f}, after best fit")
+    apart = np.nanmax(np.abs(fitted["compensated"].distance - nominal.distance))
+    style.headline(figure, f"Nominal and compensated part differ by up to {style.number(apart)} µm, as probed")
+    return figure
