@@ -57,7 +57,7 @@ PICTURES = (
             "error at the 23 points of table 3.1, largest 0.973 mm.", "its shape; the amplitude depends on the centre."),
     Picture("L", "3.3", "li_3_3", ("example1",),
             "example 1 in the machine: way uncompensated, compensated and ideal; error before and after."),
-    Picture("L", "4.1", "li_4_1", ("table32_low",),
+    Picture("L", "4.1", "li_4_1", ("table32_identified", "table32_low"),
             "example 2 in the machine: way uncompensated, compensated and ideal, with an enlargement."),
 )
 

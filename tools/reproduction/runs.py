@@ -26,6 +26,7 @@ RUNS = (
     Run("example1", "li2024/example1.toml", "[L] example 1: one segment"),
     Run("table32", "li2024/table32.toml", "[L] example 2: 20 locations of an impeller blade"),
     Run("table32_low", "li2024/table32_low.toml", "[L] example 2, centre of rotation 150 mm below"),
+    Run("table32_identified", "li2024/table32_identified.toml", "[L] example 2, centre of rotation identified"),
 )
 
 
