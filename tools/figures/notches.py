@@ -74,7 +74,7 @@ def draw(run):
             points.draw(axes[0], points.displacement, one.look)
             points.draw(axes[1], points.residual, one.look, shift)
 
-    axes[0].set_title("(a) Notch positions minus nominal, and what was imposed")
+    axes[0].set_title("(a) Notch positions minus nominal, and what was imposed" + probed_points.told(probed))
     axes[0].set_ylabel("X displacement, µm")
     axes[1].set_title("(b) Difference to the imposed curve"
                       + (f" on the scale of the paper's bound of ±{bound:g} µm" if bound else ""))
@@ -94,7 +94,7 @@ def draw(run):
         if ax is not axes[-1]:
             ax.tick_params(labelbottom=False)
     axes[-1].set_xlabel("X of the machine, mm   (points: mean over a notch, bars: its range; "
-                        "drawn side by side" + (f"; crosses: probed, ±{probed_points.COVERAGE:g}σ)" if probed else ")"))
+                        "drawn side by side)")
     worst = max(one.largest() for one in found)
     style.headline(figure, f"Notches in X: all strategies within {style.number(worst)} µm "
                            "of the imposed curve")

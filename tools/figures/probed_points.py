@@ -71,3 +71,8 @@ def _centre(one, offset):
     count = np.isfinite(one.mean).sum()
     return (middle(one.nominal[:, 0]) + offset, middle(one.mean * across), middle((one.mean - one.imposed) * across),
             np.sqrt(np.nanmean(one.sigma**2) / max(count, 1)))
+
+
+def told(probed):
+    """For a title, where there are points."""
+    return f"; crosses: probed, ±{COVERAGE:g}σ" if probed else ""

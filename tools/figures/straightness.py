@@ -88,7 +88,7 @@ def draw(run, axis, section):
             if ax is axes[1] or one in group and points.largest() < MOST_OVER * group[-1].largest():
                 points.draw(ax, points.residual, one.look)
 
-    axes[0].set_title(f"(a) Trajectory of {axis} minus nominal, and what was imposed")
+    axes[0].set_title(f"(a) Trajectory of {axis} minus nominal, and what was imposed" + probed_points.told(probed))
     axes[1].set_title("(b) What is missing: difference to the imposed curve")
     axes[0].set_ylabel(f"{axis} displacement, µm")
     for letter, ax, group in zip("cdefgh", axes[2:], groups[1:]):
@@ -101,7 +101,7 @@ def draw(run, axis, section):
         ax.margins(x=0.01)
         if ax is not axes[-1]:
             ax.tick_params(labelbottom=False)
-    axes[-1].set_xlabel(_x_label(found) + (f"   (points: probed, ±{probed_points.COVERAGE:g}σ)" if probed else ""))
+    axes[-1].set_xlabel(_x_label(found))
     missing = ", ".join(f"{one.look.label} {style.number(one.largest())} µm"
                         for one in found if "lead" not in one.look.label)
     style.headline(figure, f"{axis} misses the imposed curve by: {missing}")
