@@ -9,13 +9,19 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+import types
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
 SCENARIOS = ROOT / "scenarios"
 sys.path.insert(0, str(ROOT / "tools"))
 
+import h5py
+import numpy as np
+
 from command_line import InputError
+from figures import experiment2, parts, results as files, style
 from reproduction import derived, pictures, report, rows, runs, values, verdicts
 
 SERVOMILL = ""
@@ -254,6 +260,90 @@ class Report(WithResults):
         self.assertEqual(report.page([], drawn, "").count("data:image/png;base64,"), len(done))
         missing = next(one for one in drawn if one.picture.number == "6")
         self.assertEqual(missing.reason, "experiment1: experiment1.h5 was not written")
+
+
+class Parts(unittest.TestCase):
+    """Figures 16 to 19 and what is derived from probed parts, of parts whose errors are known."""
+
+    SCALE, TILT = 0.3, 2e-4       # um/mm along X and against Y; rad about X
+    SHIFT, TURN = np.array([7.0, -4.0]), 50.0     # um, urad: what a best fit takes away
+
+    @classmethod
+    def setUpClass(cls):
+        folder = cls.enterClassContext(tempfile.TemporaryDirectory())
+        path = pathlib.Path(folder) / "parts.h5"
+        servomill("run", HERE / "generated_and_compensated.toml", "-q", "-o", path)
+        with h5py.File(path, "a") as file:
+            for case in experiment2.PARTS:
+                file.copy(file[f"cases/{case}"], file["cases"], case + experiment2.AIR)
+                cls.probe(file[f"cases/{case}"], case == "generated")
+        cls.run_ = cls.enterClassContext(files.open_result(path))
+
+    @classmethod
+    def probe(cls, case, deformed):
+        angle = np.arange(72) * 5.0
+        round_ = np.column_stack([np.cos(np.radians(angle)), np.sin(np.radians(angle)), 0.0 * angle])
+        x, y = (grid.ravel() for grid in np.meshgrid(np.linspace(-20.0, 20.0, 5), np.linspace(-20.0, 20.0, 5)))
+        for name, kind, points, normals in (
+                ("circle", "circle", 50.0 * round_, round_),
+                ("side", "line", np.column_stack([np.full(9, 60.0), np.linspace(-40.0, 40.0, 9), np.zeros(9)]),
+                 np.tile([1.0, 0.0, 0.0], (9, 1))),
+                ("top", "plane", np.column_stack([x, y, 0.0 * x]), np.tile([0.0, 0.0, 1.0], (25, 1)))):
+            moved = np.zeros_like(points)
+            if deformed:
+                moved[:, :2] = (cls.SHIFT + cls.TURN / 1000.0 * np.column_stack([-points[:, 1], points[:, 0]])
+                                + cls.SCALE * points[:, :2] * [1.0, -1.0])
+                moved[:, 2] = 1000.0 * np.tan(cls.TILT) * points[:, 1]
+            group = case.create_group(f"probes/{name}")
+            group.attrs["kind"] = kind
+            group["nominal"], group["normal"] = points, normals
+            group["deviation"] = (moved * normals).sum(axis=1)
+            group["measured"] = np.tile(group["deviation"][:], (3, 1))
+            group["sigma"] = np.zeros(len(points))
+
+    def test_plane_is_turned_as_it_was_cut(self):
+        feature = parts.probed(self.run_)["top"]["generated"]
+        about_x, about_y = experiment2.fitted_plane(feature.nominal, feature.mean).rotations()
+        self.assertAlmostEqual(about_x, np.degrees(self.TILT), delta=1e-12)
+        self.assertAlmostEqual(about_y, 0.0, delta=1e-12)
+
+    def test_best_fit_takes_away_what_a_rigid_part_can_do_and_nothing_else(self):
+        angle = np.radians(np.arange(72) * 5.0)
+        normal = np.column_stack([np.cos(angle), np.sin(angle)])
+        points = np.array([50.0, 30.0]) * normal
+        form = 2.0 * np.cos(4.0 * angle)     # neither a shift nor a turn
+        moved = self.SHIFT + self.TURN / 1000.0 * np.column_stack([-points[:, 1], points[:, 0]])
+        shift, turn, left = experiment2.rigid_fit(points, normal, (moved * normal).sum(axis=1) + form)
+        np.testing.assert_allclose(shift, self.SHIFT, atol=1e-9)
+        self.assertAlmostEqual(turn, self.TURN, delta=1e-9)
+        np.testing.assert_allclose(left, form, atol=1e-9)
+
+    def test_missed_points_are_left_out_of_the_fit(self):
+        normal = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 0.0]])
+        points = np.array([[10.0, 3.0], [-5.0, 10.0], [-10.0, 3.0], [3.0, -10.0], [10.0, -7.0]])
+        d = normal @ self.SHIFT
+        d[4] = np.nan
+        shift, _, left = experiment2.rigid_fit(points, normal, d)
+        np.testing.assert_allclose(shift, self.SHIFT, atol=1e-9)
+        self.assertTrue(np.isnan(left[4]))
+        with self.assertRaises(files.NotInFile):
+            experiment2.rigid_fit(points[:2], normal[:2], d[:2])
+
+    def test_distortion_is_that_of_the_scale_errors(self):
+        results = types.SimpleNamespace(opened=lambda _: self.run_)
+        self.assertLess(derived.largest_after_best_fit(results, "", "nominal"), 1e-9)
+        largest = derived.largest_after_best_fit(results, "", "generated")
+        self.assertTrue(0.3 * 50.0 < largest < 0.3 * 60.0 + 1.0, largest)   # the side lies 60 mm out; a shift may share
+        self.assertAlmostEqual(derived.difference_after_best_fit(results, "", "generated", "nominal"), largest, delta=1e-9)
+        self.assertEqual(derived.cutting_minus_air(results, "", "generated", "scale"), 0.0)
+
+    def test_figures_are_drawn(self):
+        style.set_up()
+        for draw in (experiment2.draw_air_and_cutting, experiment2.draw_top_plane, experiment2.draw_quivers,
+                     experiment2.draw_superposed):
+            figure = draw(self.run_)
+            self.assertTrue(figure.axes)
+            style.plt.close(figure)
 
 
 class Reader(html.parser.HTMLParser):
