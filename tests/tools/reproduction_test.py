@@ -348,7 +348,7 @@ class Parts(unittest.TestCase):
 
 class Reader(html.parser.HTMLParser):
     """Tags that are left open, and everything that a page refers to."""
-    EMPTY = ("meta", "img", "br")
+    EMPTY = ("meta", "img", "br")   # have no end
 
     def __init__(self):
         super().__init__()

@@ -111,13 +111,17 @@ STYLE = """
 body { font: 15px/1.45 "DejaVu Sans", Verdana, sans-serif; color: #111; max-width: 1280px; margin: 1.5em auto; padding: 0 1em; }
 table { border-collapse: collapse; width: 100%; font-size: 13px; margin: .4em 0 1.6em; }
 th, td { text-align: left; vertical-align: top; padding: .3em .55em; border-bottom: 1px solid #ddd; }
-th { border-bottom: 2px solid #888; } td.number { white-space: nowrap; } td.why { color: #444; min-width: 20em; }
+th { border-bottom: 2px solid #888; } .number { white-space: nowrap; } small { color: #666; } td.why { color: #444; min-width: 20em; }
 .verdict { white-space: nowrap; font-weight: bold; padding: .05em .4em; border-radius: .3em; }
 .reproduced { background: #d3ecd4; } .within-bound { background: #e3eed0; } .as-given { background: #e6eef6; } .not-reproduced { background: #f6cfc9; }
 .not-explained { background: #fbdcb0; } .cannot-be-compared { background: #e4e4e4; } .no-value-here { background: #f3b5d5; }
 figure { margin: 1.2em 0 2.2em; } figure img { max-width: 100%; } figcaption { color: #333; max-width: 62em; }
 nav a { margin-right: 1em; } h2 { margin-top: 1.8em; } .missing { background: #f3f3f3; padding: 1em; }
 """
+
+
+def _reason(row):
+    return "" if row.lacks else f"<br><small>{html.escape(row.tolerance_reason)}</small>"
 
 
 def _marked(verdict):
@@ -145,7 +149,7 @@ def page(lines, drawn, begun):
             missing = line.value.number is None
             out.append(f'<tr id="{html.escape(line.row.id)}"><td>{html.escape(what)}</td><td>{html.escape(printed)}</td>'
                        f'<td{"" if missing else " class=number"}>{html.escape(here)}</td>'
-                       f'<td class="number" title="{html.escape(line.row.tolerance_reason)}">{html.escape(limits)}</td>'
+                       f'<td><span class="number">{html.escape(limits)}</span>{_reason(line.row)}</td>'
                        f'<td>{kind}</td><td>{_marked(verdict)}</td><td class="why">{html.escape(why)}</td></tr>')
         out.append("</table>")
     out.append('<h2 id="figures">Figures</h2>')
