@@ -256,7 +256,7 @@ class Report(WithResults):
         told = []
         drawn = pictures.draw_all(self.shared, self.folder / "figures", told.append)
         done = {one.picture.name() for one in drawn if one.file}
-        self.assertEqual(done, {"L_3_1", "L_3_2", "L_3_3"})
+        self.assertEqual(done, {"L_3_1", "L_3_2", "L_3_3", "L_table_3_1"})
         self.assertEqual(report.page([], drawn, "").count("data:image/png;base64,"), len(done))
         missing = next(one for one in drawn if one.picture.number == "6")
         self.assertEqual(missing.reason, "experiment1: experiment1.h5 was not written")

@@ -4,9 +4,10 @@ import pathlib
 
 import plot
 from command_line import InputError
-from figures import li_flow, style
+from figures import li_flow, li_table31, style
 from figures.catalogue import FIGURES
 from figures.results import NotInFile
+from reproduction import derived
 
 
 @dataclasses.dataclass(frozen=True)
@@ -19,7 +20,7 @@ class Picture:
     here: str = ""   # what is different in ours
 
     def name(self):
-        return f"{self.paper}_{self.number.replace('.', '_')}"
+        return f"{self.paper}_{self.number.replace('.', '_').replace(' ', '_')}"
 
 
 PICTURES = (
@@ -55,6 +56,8 @@ PICTURES = (
     Picture("L", "3.1", "li_3_1", (), "flow of modelling and compensation."),
     Picture("L", "3.2", "li_3_2", ("example1",),
             "error at the 23 points of table 3.1, largest 0.973 mm.", "its shape; the amplitude depends on the centre."),
+    Picture("L", "table 3.1", "li_table31", ("example1",),
+            "the values behind figure 3.2.", "both in % of their peaks, and how far a sine and a parabola are from the table."),
     Picture("L", "3.3", "li_3_3", ("example1",),
             "example 1 in the machine: way uncompensated, compensated and ideal; error before and after."),
     Picture("L", "4.1", "li_4_1", ("table32_identified", "table32_low"),
@@ -76,6 +79,7 @@ def _draw(picture, results):
     if not picture.runs:
         return li_flow.draw(None), ""
     drawers = {figure.name: figure.draw for figure in FIGURES}
+    drawers["li_table31"] = lambda run: li_table31.draw(run, derived.table31())
     if picture.figure not in drawers:
         raise NotInFile(f"no figure is named {picture.figure}")
     reasons = []
