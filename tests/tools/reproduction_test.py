@@ -213,7 +213,8 @@ class Values(WithResults):
 
     def test_a_changed_input_changes_the_verdict(self):
         # 10 us at 10 m/min are 1.667 um; the paper's digits hold from 9.99 to 10.05 m/min
-        for feed, wanted in ((10000.0, verdicts.REPRODUCED), (9900.0, verdicts.NOT_REPRODUCED), (10100.0, verdicts.NOT_REPRODUCED)):
+        for feed, wanted in ((10000.0, verdicts.REPRODUCED), (9900.0, verdicts.NOT_REPRODUCED),
+                             (10100.0, verdicts.NOT_REPRODUCED)):
             with tempfile.TemporaryDirectory() as folder:
                 scenario = SCENARIOS / "guevel2025" / "signal_delay.toml"
                 servomill("run", scenario, "-q", "-o", pathlib.Path(folder) / "signal_delay.h5", "--set",
@@ -335,7 +336,8 @@ class Parts(unittest.TestCase):
         largest = derived.largest_after_best_fit(results, "", "generated")
         self.assertTrue(0.3 * 50.0 < largest < 0.3 * 60.0 + 1.0, largest)   # the side lies 60 mm out; a shift may share
         self.assertAlmostEqual(derived.difference_after_best_fit(results, "", "generated", "nominal"), largest, delta=1e-9)
-        self.assertEqual(derived.cutting_minus_air(results, "", "generated", "scale"), 0.0)
+        for at in ("scale", "tool"):
+            self.assertEqual(derived.cutting_minus_air(results, "", "generated", at, "circle"), 0.0)
 
     def test_figures_are_drawn(self):
         style.set_up()

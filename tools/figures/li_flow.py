@@ -33,7 +33,8 @@ def draw(_):
         _way(ax, [(BOXES[first][0], BOXES[first][1] - sign * HALF_HEIGHT),
                   (BOXES[second][0], BOXES[second][1] + sign * HALF_HEIGHT)])
     x, y = BOXES["posts"][:2]
-    _way(ax, [(x + HALF_WIDTH, y), (0.31, y), (0.31, BOXES["amplitude"][1]), (BOXES["amplitude"][0] - HALF_WIDTH - 0.02, BOXES["amplitude"][1])])
+    top = BOXES["amplitude"][1]
+    _way(ax, [(x + HALF_WIDTH, y), (0.31, y), (0.31, top), (BOXES["amplitude"][0] - HALF_WIDTH - 0.02, top)])
     _way(ax, [(BOXES["moved"][0] + HALF_WIDTH, y), (BOXES["paths"][0] - HALF_WIDTH, y)])
     _way(ax, [(x, y - HALF_HEIGHT), (x, 0.16), (BOXES["paths"][0], 0.16), (BOXES["paths"][0], y - HALF_HEIGHT)])
     ax.text(0.50, 0.17, "S, uncompensated", ha="center", va="bottom", color=style.GREY)

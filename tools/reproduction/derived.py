@@ -115,18 +115,50 @@ def difference_after_best_fit(results, run, case, base):
     return float(np.nanmax(np.abs(one.distance - other.distance)))
 
 
-def cutting_minus_air(results, run, case, at):
-    """Largest shift of Z by cutting on the contours and the top plane, at the scale or the tool, um."""
-    run = results.opened(run)
+def _cutting_and_air(run, case):
     for name in (case, case + experiment2.AIR):
         if name not in run.cases or not run.cases[name].finished:
             raise NotInFile(f"no finished case named {name}")
-    cutting, air = run.cases[case], run.cases[case + experiment2.AIR]
-    rows = cutting.samples(("plane", "circle", "diamond", "square"))
-    if at == "scale":
-        return float(np.abs(files.trajectory_difference(cutting, air, "Z", rows)).max())
+    return run.cases[case], run.cases[case + experiment2.AIR]
+
+
+def _tool_shift(run, case, sections):
+    # Z of the tool tip, cutting minus air at equal s, um
+    cutting, air = _cutting_and_air(run, case)
+    rows = cutting.samples(sections)
+    if not len(rows):
+        raise NotInFile("no feed motion in sections named " + ", ".join(sections))
     in_air = files.along_path(air, air.column("tool_position_true", "Z"), cutting.column("s")[rows])
-    return float(np.abs(cutting.column("tool_position_true", "Z")[rows] - in_air).max() * files.UM_PER_MM)
+    return (cutting.column("tool_position_true", "Z")[rows] - in_air) * files.UM_PER_MM
+
+
+def cutting_minus_air(results, run, case, at, section):
+    """Shift of Z by cutting on a section, at the scale or the tool: its median, um."""
+    run = results.opened(run)
+    if at == "tool":
+        return float(np.median(_tool_shift(run, case, (section,))))
+    cutting, air = _cutting_and_air(run, case)
+    return float(np.median(files.trajectory_difference(cutting, air, "Z", cutting.samples((section,)))))
+
+
+def _between_parts(results, run, case, base, section):
+    apart = abs(cutting_minus_air(results, run, case, "tool", section) - cutting_minus_air(results, run, base, "tool", section))
+    if apart == 0.0:
+        raise NotInFile(f"cutting shifts {case} and {base} alike")
+    return apart
+
+
+def stiffness_needed(results, run, case, base, section, um):
+    """Structural stiffness of Z (N/um) at which the tool would show `um` between two parts cut with these forces."""
+    return (scenario_key(results, run, "machine.axis.Z.structural_stiffness")
+            * _between_parts(results, run, case, base, section) / um)
+
+
+def wear_needed(results, run, case, base, section, um):
+    """Wear (factor on the terms of the edge) of the later part at which the tool would show `um` between the two."""
+    first = scenario_key(results, run, "cutting.wear")
+    later = scenario_key(results, run, f"case.{case}.wear")
+    return first + (later - first) * um / _between_parts(results, run, case, base, section)
 
 
 # Li 2024 --------------------------------------------------------------------------------------------------------------
@@ -199,5 +231,6 @@ def peak_over_segments(results, run, case, lowest=False):
 
 FUNCTIONS = {one.__name__: one for one in (
     scenario_key, sweep_spread, sweep_departure_from_proportional, slope_correlation, volumetric_error, points_of_segment,
-    probed_residual, part_minus_trajectory, largest_after_best_fit, difference_after_best_fit, cutting_minus_air, chord,
+    probed_residual, part_minus_trajectory, largest_after_best_fit, difference_after_best_fit, cutting_minus_air, stiffness_needed,
+    wear_needed, chord,
     share_at_point, left_of_table31, peak_over_segments)}

@@ -84,8 +84,8 @@ def markdown(lines, drawn, begun):
     out += ["", "## Figures", ""]
     for one in drawn:
         out += [f"### {_title(one.picture)}", "", _caption(one.picture), ""]
-        out += [f"![{_title(one.picture)}]({one.file.parent.name}/{one.file.name})" if one.file
-                else f"Not drawn: {one.reason}.", ""]
+        picture = one.file and f"![{_title(one.picture)}]({one.file.parent.name}/{one.file.name})"
+        out += [picture or f"Not drawn: {one.reason}.", ""]
     return "\n".join([*out, *NOT_DRAWN]) + "\n"
 
 
@@ -100,7 +100,8 @@ def _columns(line):
 
 
 def _title(picture):
-    return f"[{picture.paper}] figure {picture.number}" if picture.number[0].isdigit() else f"[{picture.paper}] {picture.number}"
+    what = "figure " if picture.number[0].isdigit() else ""
+    return f"[{picture.paper}] {what}{picture.number}"
 
 
 def _caption(picture):
