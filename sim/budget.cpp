@@ -221,7 +221,8 @@ Causes present(const Causes& causes, const Scenario& scenario, const CaseSpec& o
 }
 
 // The cases that a variation changes, changed; the others are as they were.
-Scenario without(const Scenario& scenario, const Causes& removed,
+// @param already  causes that are taken away of a run that is known: alone, they make no other one
+Scenario without(const Scenario& scenario, const Causes& removed, const Causes& already,
                  const std::map<std::string, Causes>& present_in) {
   Scenario out = scenario;
   out.quantities.clear();
@@ -232,7 +233,9 @@ Scenario without(const Scenario& scenario, const Causes& removed,
     CaseSpec changed = one;
     bool any = removed.empty();
     for (const Cause cause : removed) {
-      if (found->second.contains(cause)) any |= remove(cause, out, changed);
+      if (!found->second.contains(cause)) continue;
+      remove(cause, out, changed);
+      any |= !already.contains(cause);
     }
     if (any) out.cases.push_back(std::move(changed));
   }
@@ -294,21 +297,24 @@ class Accounts {
 
   std::vector<Budget> find() {
     const Causes all = without_kinematics();
-    total_ = static_cast<double>(all.size() + 3);
+    total_ = static_cast<double>(all.size() + 2);
     if (!run_complete()) return {};
+    const Causes steps = {Cause::measurement};
+    RunOutput smooth;
+    if (!run(steps, {}, smooth)) return {};
+    subtract(Cause::measurement, complete_, smooth);
     for (const Cause cause : all) {
-      if (cause == Cause::lag) continue;
-      if (!difference(complete_, {cause}, cause)) return {};
+      if (cause == Cause::lag || cause == Cause::measurement) continue;
+      if (!take_away(cause, steps, smooth)) return {};
     }
     // the lag, of loops through which nothing else acts
     RunOutput loops;
-    if (!run(kThroughLoops, loops)) return {};
-    Causes ideal = kThroughLoops;
-    ideal.insert(Cause::lag);
-    if (!difference(loops, ideal, Cause::lag)) return {};
+    if (!run(kThroughLoops, steps, loops)) return {};
+    add_missing(loops, smooth);
+    if (!take_away(Cause::lag, kThroughLoops, loops)) return {};
     // what is left
     RunOutput none;
-    if (!run(all, none)) return {};
+    if (!run(all, {}, none)) return {};
     for (Budget& budget : budgets_) {
       if (!budget.note.empty()) continue;
       take(budget, Cause::kinematics, signal(budget, none, complete_), true);
@@ -318,8 +324,9 @@ class Accounts {
   }
 
  private:
-  bool run(const Causes& removed, RunOutput& out) {
-    const Scenario changed = without(scenario_, removed, present_);
+  // Runs the cases that have a cause to be removed which another run has not removed already.
+  bool run(const Causes& removed, const Causes& already, RunOutput& out) {
+    const Scenario changed = without(scenario_, removed, already, present_);
     if (!changed.cases.empty()) {
       RunControl control;
       control.threads = control_.threads;
@@ -334,8 +341,15 @@ class Accounts {
     return control_.stop == nullptr || !*control_.stop;
   }
 
+  // Cases that a run did not change, as another one has them.
+  static void add_missing(RunOutput& run, const RunOutput& other) {
+    for (const CaseOutput& one : other.cases) {
+      if (sim::find(run, one.name) == nullptr) run.cases.push_back(one);
+    }
+  }
+
   bool run_complete() {
-    if (!run({}, complete_)) return false;
+    if (!run({}, {}, complete_)) return false;
     for (Budget& budget : budgets_) {
       const auto of_case = outputs(budget, complete_, complete_);
       for (const CaseOutput* one : {of_case.first, of_case.second}) {
@@ -405,16 +419,8 @@ class Accounts {
            (!base.empty() && present_.at(base).contains(cause));
   }
 
-  // part = residual of `with` - residual without `removed`
-  bool difference(const RunOutput& with, const Causes& removed, Cause cause) {
-    const bool any = std::any_of(budgets_.begin(), budgets_.end(),
-                                 [&](const Budget& budget) { return has(budget, cause); });
-    if (!any) {
-      runs_ += 1.0;
-      return true;
-    }
-    RunOutput less;
-    if (!run(removed, less)) return false;
+  // part = residual of `with` - residual of `less`
+  void subtract(Cause cause, const RunOutput& with, const RunOutput& less) {
     for (Budget& budget : budgets_) {
       if (!budget.note.empty() || !has(budget, cause)) continue;
       std::vector<double> part = signal(budget, with, complete_);
@@ -423,6 +429,21 @@ class Accounts {
       for (std::size_t n = 0; n < part.size(); ++n) part[n] -= left[n];
       take(budget, cause, std::move(part), true);
     }
+  }
+
+  // A cause, from a run without others; false if stopped.
+  bool take_away(Cause cause, Causes removed, const RunOutput& with) {
+    const bool any = std::any_of(budgets_.begin(), budgets_.end(),
+                                 [&](const Budget& budget) { return has(budget, cause); });
+    if (!any) {
+      runs_ += 1.0;
+      return true;
+    }
+    const Causes already = removed;
+    removed.insert(cause);
+    RunOutput less;
+    if (!run(removed, already, less)) return false;
+    subtract(cause, with, less);
     return true;
   }
 

@@ -26,12 +26,12 @@ enum class Cause : std::uint8_t {
   one_step,        // errors evaluated where displacing changes them: iterations = "converged"
   identification,  // strategies believe in the truth (or, without one, in the imposed model), and
                    // in the origin of the case (rewritten_for = "case")
-  friction,       // dry friction, backlash, cogging, and what the NC does against them: none
-  measurement,    // errors, noise, steps, marks of encoders, errors of screws: none
-  cutting,        // the case runs in air
-  interpolation,  // chords of rewritten programs and path tolerances a hundredth, no
-                  // nominal-position filter, no block time
-  kinematics,     // stays without all others: what the axes cannot do about it
+  friction,        // dry friction, backlash, cogging, and what the NC does against them: none
+  measurement,     // errors, noise, steps, marks of encoders, errors of screws: none
+  cutting,         // the case runs in air
+  interpolation,   // chords of rewritten programs and path tolerances a hundredth, no
+                   // nominal-position filter, no block time
+  kinematics,      // stays without all others: what the axes cannot do about it
 };
 inline constexpr std::size_t kCauses = 11;
 struct CauseInfo {
@@ -52,16 +52,19 @@ struct BudgetPart {
 /// With R the residual along the path and R(-c) that of a run without the cause c, at equal arc
 /// length:
 ///
-///     part(c)          = R - R(-c)                                      for all but two (1)
-///     part(lag)        = R(-D) - R(-D, -lag) (2) part(kinematics) = R(- all causes) (3) remainder
-///     = R - sum of the parts                                                   (4)
+///     part(measurement) = R - R(-m)                                      m = measurement (1)
+///     part(c)           = R(-m) - R(-m, -c)                              for all others but (2)
+///     part(lag)         = R(-D) - R(-D, -lag) (3) part(kinematics)  = R(- all causes) (4)
+///     remainder         = R - sum of the parts (5)
 ///
-/// D = friction, measurement, cutting, delay: they act through the loops and would go with them.
+/// m is taken away first, since the steps of encoders (some 20 nm) would be in every other
+/// difference. D = friction, measurement, cutting, delay: they act through the loops and would go
+/// with them.
 ///
-/// Causes are taken away one at a time, from the complete case, and not one after the other: parts
-/// do then not depend on an order, and what causes do together (a product of two of them, say) is
-/// in both, or in none. So it shows in the remainder; removed in turn, parts would add up exactly
-/// and the last ones would hide it.
+/// Apart from that, causes are taken away one at a time and not one after the other: parts do then
+/// not depend on an order, and what causes do together (a product of two of them, say) is in both,
+/// or in none. So it shows in the remainder; removed in turn, parts would add up exactly and the
+/// last ones would hide it.
 struct Budget {
   QuantitySpec quantity;         // of one case; a signal along the path (has_path_signal)
   std::vector<double> s;         // mm, of the original path

@@ -321,7 +321,7 @@ std::string saturation_note(const Scenario& scenario, const CaseSpec& spec,
   const bool linear = held.joint < kLinearJoints;
   return fmt::format(
       "{}:{}: warning: case {}: strategy feedback: {} of {} saturated at {:g} {}{}, first here, "
-      "{:.3g} s in all",
+      "{:.2f} s in all",
       scenario.program.file, line, spec.name,
       held.of_rate ? "rate of the virtual displacement" : "virtual displacement",
       scenario.machine.chain.layout.letter_of(held.joint),

@@ -208,10 +208,9 @@ TEST(Table, RefusesWhatTheNcWouldRefuse) {
 
 TEST(Table, KnowsWhereItEnds) {
   const Belief belief = three_axes(trilinear_errors());
-  Parameters p = parameters({.form = "lines", .axis = "XZ"});
-  p.set("from_mm", -70.0 * mm);
-  p.set("to_mm", 80.0 * mm);  // three intervals of 50 mm
-  const auto strategy = table_entry().make(p, Sign::generate, belief);
+  const auto strategy =
+      table_entry().make(parameters({.form = "lines", .axis = "XZ", .spacing = 150.0 * mm}),
+                         Sign::generate, belief);  // travel of +-200 mm: three intervals
   const auto ends = [&](double x, double y, double z) {
     Joints Q = belief.reference;
     Q.head<3>() << x * mm, y * mm, z * mm;
@@ -220,9 +219,9 @@ TEST(Table, KnowsWhereItEnds) {
     return out;
   };
   using Ends = std::vector<std::pair<int, double>>;
-  EXPECT_EQ(ends(-70.0, 150.0, 80.0), Ends{});  // no table runs over Y
-  const double first = -70.0 * mm, last = first + 3 * (50.0 * mm);
-  EXPECT_EQ(ends(-70.001, 0.0, 80.001), (Ends{{0, first}, {2, last}}));
+  EXPECT_EQ(ends(-200.0, 300.0, 250.0), Ends{});  // no table runs over Y
+  const double first = belief.lower[0], last = belief.lower[2] + 3 * (150.0 * mm);
+  EXPECT_EQ(ends(-200.001, 0.0, 250.001), (Ends{{0, first}, {2, last}}));
 }
 
 }  // namespace

@@ -24,7 +24,8 @@ std::string causes_help() {
     out += fmt::format("  {:<15}{}\n", info.name, info.help);
   }
   out +=
-      "Each is taken away alone, from the complete case, so that parts do not depend on an order;\n"
+      "Each is taken away alone (measurement first, of all), so that parts do not depend on an "
+      "order;\n"
       "lag is taken from loops without friction, measurement, cutting and delay, which act "
       "through\n"
       "them. What causes do together is in the remainder, which is printed. Quantities that have "
@@ -87,10 +88,13 @@ std::string micrometres(double value) {
   return fmt::format("{:.{}f}", value, size >= 100.0 ? 1 : size >= 10.0 ? 2 : size >= 0.1 ? 3 : 4);
 }
 
+// -0.04 is 0, not -0.
+double rounded(double percent) { return std::round(10.0 * percent) / 10.0 + 0.0; }
+
 void print_line(std::string_view name, double at_place, double share, double rms,
                 std::string_view help) {
   fmt::print("  {:<15} {:>9} um {:>7.1f} % {:>9} um  {}\n", name, micrometres(at_place),
-             100.0 * share, micrometres(rms), help);
+             rounded(100.0 * share), micrometres(rms), help);
 }
 
 void print_budget(const sim::Budget& budget) {
@@ -114,7 +118,8 @@ void print_budget(const sim::Budget& budget) {
     absent += fmt::format("{}{}", absent.empty() ? "" : ", ", sim::info_of(part.cause).name);
   }
   const double sum = budget.sum_at_place();
-  fmt::print("  {:<15} {:>9} um {:>7.1f} %\n", "sum", micrometres(sum), 100.0 * share(sum));
+  fmt::print("  {:<15} {:>9} um {:>7.1f} %\n", "sum", micrometres(sum),
+             rounded(100.0 * share(sum)));
   print_line("remainder", budget.remainder_at_place(), share(budget.remainder_at_place()),
              budget.remainder_rms, "what causes do together, and what is not known");
   print_line("residual", whole, 1.0, budget.residual_rms(), "");
