@@ -104,8 +104,8 @@ TEST(Budget, OfAnIdentificationErrorAlone) {
   const std::string errors = root("polynomial_um = [0.0, 10.0]",
                                   "[errors.belief]\nEYX = { polynomial_um = [0.0, 10.5] }\n");
   const std::string table = "type = \"table\"\naxis = \"X\"\nfrom_mm = -20.0\nto_mm = 100.0\n";
-  for (const std::string& type :
-       {table, std::string("type = \"feedback\"\n"), std::string("type = \"gcode\"\n")}) {
+  for (const std::string& type : {table, std::string("type = \"feedback\"\nmax_um = 2000.0\n"),
+                                  std::string("type = \"gcode\"\n")}) {
     const Budget budget =
         budget_of(errors + one_case(type + "model = \"belief\"\n", "servo = \"ideal\"\n"));
     const double wrong = 0.5 * 80.0;  // um, where the section ends
