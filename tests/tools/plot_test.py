@@ -107,7 +107,9 @@ class Servo(WithFiles):
         self.assertGreater(drawn.stat().st_size, SMALLEST_PNG)
         with results.open_result(budget) as file:
             said = [json.loads(line) for line in printed.splitlines()]
-            self.assertEqual([one.case for one in file.budgets], ["table", "gcode"])
+            self.assertEqual([(one.case, one.sections) for one in file.budgets],
+                             [(line["case"], line["sections"]) for line in said])
+            self.assertEqual({one.case for one in file.budgets}, {"table", "gcode"})
             for one, line in zip(file.budgets, said):
                 self.assertEqual({part.name for part in one.parts}, set(line["parts"]))
                 total = sum(part.signal for part in one.parts) + one.remainder.signal

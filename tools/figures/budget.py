@@ -35,7 +35,7 @@ def _panel(ax, one, budgets):
                 markersize=7)
     widest = max(max(abs(part.at_place), part.rms) for _, part, _ in bars) or 1.0
     for place, (_, part, _) in zip(places, bars):
-        ax.text(1.42 * widest, place, f"{part.at_place:.3g}", ha="right", va="center", fontsize=9.5)
+        ax.text(1.42 * widest, place, f"{round(part.at_place, 4) + 0.0:.3g}", ha="right", va="center", fontsize=9.5)
     ax.axvline(0.0, color=style.BLACK, linewidth=0.8)
     ax.set_xlim(-1.1 * widest, 1.45 * widest)
     ax.set_yticks(places, [name for name, _, _ in bars])
