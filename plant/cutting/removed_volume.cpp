@@ -202,7 +202,8 @@ void RemovedVolume::add_runs(std::uint32_t first_place) {
   const auto last_place = static_cast<std::uint32_t>(places_.size() - 1);
   const auto cutter = static_cast<std::uint32_t>(cutters_.size() - 1);
   for (std::uint32_t first = first_place; first < last_place; first += kRunSteps) {
-    runs_.push_back({first, std::min(first + kRunSteps, last_place), cutter});
+    const std::uint32_t last = std::min(first + kRunSteps, last_place);
+    runs_.push_back({first, last, cutter, places_[first], places_[last]});
   }
 }
 
@@ -353,13 +354,12 @@ RemovedVolume::Part RemovedVolume::bounded(Part part, const Ray& ray, double bey
   const double margin = static_cast<double>(margins_[part.run * kRunMargins + part.node]);
   part.bound = kInfinity;
   if (!std::isfinite(margin)) return part;
-  const CutterPosition &a = places_[part.first], &b = places_[part.last];
+  const Run& run = runs_[part.run];
+  const CutterPosition& a = part.node == 0 ? run.from : places_[part.first];
+  const CutterPosition& b = part.node == 0 ? run.to : places_[part.last];
   const double half = 0.5 * ray.length;
-  const Envelope body =
-      envelope(cutters_[runs_[part.run].cutter], margin + half * chord_of_turn(a, b));
-  const SweptCutter swept_by_all(body, a, b);
-  part.bound =
-      swept_by_all.may_leave(ray, half, beyond) ? swept_by_all.leave(ray, half) : -kInfinity;
+  const Envelope body = envelope(cutters_[run.cutter], margin + half * chord_of_turn(a, b));
+  part.bound = SweptCutter(body, a, b).leave_bound(ray, half, beyond);
   return part;
 }
 

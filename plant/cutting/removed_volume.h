@@ -71,6 +71,7 @@ class RemovedVolume {
   struct Run {
     std::uint32_t first, last;  // steps first .. last - 1
     std::uint32_t cutter;
+    CutterPosition from, to;  // here, too: most runs are looked at no closer
   };
   // A node of the tree over runs: every point that they remove is within `radius` of the box. The
   // left child follows its parent.

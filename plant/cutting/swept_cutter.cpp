@@ -152,19 +152,24 @@ double SweptCutter::leave(const Ray& ray, double s_near) const {
 }
 
 // On its way down, a ray does not leave below the bottom; up to there it is within the radius of
-// the axis only if it is nearly so at once.
-bool SweptCutter::may_leave(const Ray& ray, double s_near, double beyond) const {
+// the axis only if it is nearly so at once. Under the disc, that is where it leaves.
+double SweptCutter::leave_bound(const Ray& ray, double s_near, double beyond) const {
+  constexpr double kSteep = -0.3;
   const Vector3d y = ray.at(beyond) - p_a_, d = ray.direction;
   const Vector3d w = way_of(y + (s_near - beyond) * d);
   const double h_s = k_.dot(d), dh = k_.dot(w);
-  if (h_s >= 0.0) return true;
+  if (h_s >= kSteep) return leave(ray, s_near);
   const double above = k_.dot(y) - std::min(dh, 0.0) - (body_.centre - body_.corner);
-  if (above < 0.0) return false;
+  if (above < 0.0) return -kInfinity;
   const Vector3d P = across(y, k_), dP = across(w, k_);
   const double way = dP.squaredNorm();
   const double t = way > 0.0 ? std::clamp(P.dot(dP) / way, 0.0, 1.0) : 0.0;
-  const double radius = body_.radius() + above / -h_s * across(d, k_).norm();
-  return (P - t * dP).squaredNorm() <= radius * radius;
+  const double to_bottom = above / -h_s,
+               aside = to_bottom * std::sqrt(std::max(1.0 - h_s * h_s, 0.0));
+  const double rho = (P - t * dP).norm();
+  if (rho > body_.radius() + aside) return -kInfinity;
+  if (body_.corner == 0.0 || rho + aside < body_.disc) return beyond + to_bottom;
+  return leave(ray, s_near);
 }
 
 // The heights and 0 <= t <= 1 bound a parallelogram of the plane of s and t, the radius an ellipse:

@@ -63,8 +63,8 @@ class SweptCutter {
   /// - s_near| turn() across the line.
   double leave(const Ray& ray, double s_near) const;
 
-  /// Whether it may be that leave(ray, s_near) > beyond; quickly.
-  bool may_leave(const Ray& ray, double s_near, double beyond) const;
+  /// Quickly a bound of leave(ray, s_near); -infinity if that is not beyond `beyond`.
+  double leave_bound(const Ray& ray, double s_near, double beyond) const;
 
   bool turns() const { return !turn_.isZero(0.0); }
 
