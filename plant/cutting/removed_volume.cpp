@@ -349,7 +349,8 @@ struct RemovedVolume::Advance {
   }
 };
 
-// As the axis turns, the part's body may be off by what a ray's points are away from its middle.
+// As the axis turns, the part's body may be off by what a ray's points are away from the middle of
+// where it may be left: a first bound makes that shorter for a second one.
 RemovedVolume::Part RemovedVolume::bounded(Part part, const Ray& ray, double beyond) const {
   const double margin = static_cast<double>(margins_[part.run * kRunMargins + part.node]);
   part.bound = kInfinity;
@@ -357,9 +358,15 @@ RemovedVolume::Part RemovedVolume::bounded(Part part, const Ray& ray, double bey
   const Run& run = runs_[part.run];
   const CutterPosition& a = part.node == 0 ? run.from : places_[part.first];
   const CutterPosition& b = part.node == 0 ? run.to : places_[part.last];
-  const double half = 0.5 * ray.length;
-  const Envelope body = envelope(cutters_[run.cutter], margin + half * chord_of_turn(a, b));
-  part.bound = SweptCutter(body, a, b).leave_bound(ray, half, beyond);
+  const double turn = chord_of_turn(a, b);
+  double to = ray.length;
+  for (int i = 0; i < 2; ++i) {
+    const double half = 0.5 * (to - beyond), off = turn * half;
+    const SweptCutter body(envelope(cutters_[run.cutter], margin + off), a, b);
+    part.bound = body.leave_bound(ray, beyond + half, beyond);
+    if (off < kNothing || part.bound < beyond || part.bound >= to) break;
+    to = part.bound;
+  }
   return part;
 }
 
