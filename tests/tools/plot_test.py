@@ -456,7 +456,7 @@ class Drawing(WithFiles):
         done = subprocess.run([PLOT, "--list"], capture_output=True, text=True)
         self.assertEqual([line.split()[0] for line in done.stdout.splitlines()],
                          ["figure6", "figure9", "figure10", "figure11", "figure12", "figure14",
-                          "figure15", "probed", "part", "planes", "lag", "curves", "maps", "samples", "circular", "reversals", "nest", "ball_bar",
+                          "figure15", "figure16", "figure17", "figure18", "figure19", "probed", "part", "planes", "lag", "curves", "maps", "samples", "circular", "reversals", "nest", "ball_bar",
                           "li_3_2", "li_3_3", "li_4_1",
                           "five_axis", "deviations", "position", "velocity",
                           "compliance", "compensated", "budget", "step"])
