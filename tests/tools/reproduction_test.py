@@ -162,7 +162,7 @@ def setUpModule():
     WithResults.folder = pathlib.Path(WithResults.held.name)
     small = [one for one in runs.RUNS if one.name in SMALL]
     WithResults.failed = runs.run_all(small, SERVOMILL, WithResults.folder, lambda _: None)
-    WithResults.shared = values.Results(WithResults.folder, SERVOMILL)
+    WithResults.shared = values.Results(WithResults.folder)
 
 
 def tearDownModule():
@@ -172,7 +172,7 @@ def tearDownModule():
 
 class WithResults(unittest.TestCase):
     def other_results(self, folder, failed=None):
-        found = values.Results(folder, SERVOMILL, failed)
+        found = values.Results(folder, failed)
         self.addCleanup(found.close)
         return found
 

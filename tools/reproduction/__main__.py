@@ -25,7 +25,7 @@ def main(arguments):
     folder.mkdir(parents=True, exist_ok=True)
     failed = {} if options.report_only else runs.run_all(runs.RUNS, options.servomill, folder, tell)
     tell("Comparing")
-    results = values.Results(folder, options.servomill, failed)
+    results = values.Results(folder, failed)
     try:
         lines = [report.judged(row, values.find(row, results)) for row in table]
         tell("Drawing the figures")

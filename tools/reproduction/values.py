@@ -1,15 +1,13 @@
-"""Our side of each row: values that `servomill compare` prints, and what is derived from the files."""
+"""Our side of each row: values of the comparison that a run stores, and what is derived from its file."""
 import dataclasses
-import json
 import math
 import pathlib
-import subprocess
 
 from command_line import InputError
 from figures.results import NotInFile, open_result
 from reproduction import derived
 
-MATCHED = ("case", "quantity", "axis", "sections", "statistic")   # keys of a row of `servomill compare --json`
+MATCHED = ("case", "quantity", "axis", "sections", "statistic")   # attributes of a stored row
 
 
 @dataclasses.dataclass(frozen=True)
@@ -21,9 +19,9 @@ class Value:
 class Results:
     """Result files of one folder by the name of their scenario; read when asked for."""
 
-    def __init__(self, folder, servomill, failed=None):
+    def __init__(self, folder, failed=None):
         """failed: {run: why its scenario failed}"""
-        self.folder, self.servomill, self.failed = pathlib.Path(folder), servomill, failed or {}
+        self.folder, self.failed = pathlib.Path(folder), failed or {}
         self._compared, self._opened, self._made = {}, {}, {}
 
     def path(self, run):
@@ -36,13 +34,14 @@ class Results:
         return path
 
     def compared(self, run):
-        """What `servomill compare --json` prints about a run, as dicts. NotInFile where it cannot."""
+        """The rows that a run compared, as dicts. NotInFile where there are none."""
         if run not in self._compared:
-            path = self.path(run)
-            done = subprocess.run([self.servomill, "compare", path, "--json"], capture_output=True, text=True)
-            if done.returncode != 0:
-                raise NotInFile((done.stderr.strip().splitlines() or [f"{path.name} cannot be compared"])[-1])
-            self._compared[run] = [json.loads(line) for line in done.stdout.splitlines()]
+            table = self.opened(run).h5.get("comparison")
+            if table is None:
+                raise NotInFile(f"{run} was left before its comparison was complete")
+            self._compared[run] = [
+                {**{key: str(text) for key, text in row.attrs.items()}, "value": float(row["value"][()]),
+                 "unit": str(row["value"].attrs["units"])} for row in table.values()]
         return self._compared[run]
 
     def opened(self, run):
@@ -77,11 +76,11 @@ def _compared(wanted, results, unit):
         raise NotInFile(f"no value for {what}")
     if len(rows) > 1:
         raise NotInFile(f"{len(rows)} values for {what}")
-    if rows[0]["value"] is None:
-        raise NotInFile(f"the value for {what} is not a number")
+    if not math.isfinite(rows[0]["value"]):
+        raise NotInFile(f"the value for {what} is not a number" + (f": {rows[0]['note']}" if "note" in rows[0] else ""))
     if unit is not None and rows[0]["unit"] != unit:
         raise NotInFile(f"{what} is in {rows[0]['unit']}, not in {unit}")
-    return float(rows[0]["value"])
+    return rows[0]["value"]
 
 
 def _number(wanted, results, unit):
