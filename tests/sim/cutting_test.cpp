@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <numbers>
 
 #include "plant/cutting/cutting_force.h"
 #include "plant/vocabulary/units.h"
+#include "sim/store.h"
 #include "tests/counting_new.h"
 #include "tests/sim/small_scenario.h"
 
@@ -128,6 +131,25 @@ TEST(Cutting, is_felt_by_no_one_in_air) {
   const Scenario with = cutting_scenario(kSlot, one_case("air", "cutting = false\n"));
   EXPECT_EQ(run_case(without, "air").result.servo.data(),
             run_case(with, "air").result.servo.data());
+}
+
+// Of two cases only one has a force to record.
+TEST(Cutting, comes_back_from_its_file_beside_a_case_in_air) {
+  const Scenario scenario =
+      cutting_scenario(kSlot, one_case("cut") + one_case("air", "cutting = false\n") +
+                                  "[[quantity]]\nname = \"cycle_time\"\n");
+  const auto folder = std::filesystem::path(testing::TempDir()) / fmt::format("cut_{}", getpid());
+  std::filesystem::create_directories(folder);
+  const std::string path = folder / "cut.h5";
+  RunStore store(path, false, scenario);
+  for (const char* name : {"cut", "air"}) store.add(run_case(scenario, name));
+  store.commit({});
+  const StoredRun back = read_run(path);
+  std::filesystem::remove_all(folder);
+  ASSERT_EQ(back.cases.size(), 2U);
+  EXPECT_TRUE(back.cases[0].servo->column("cutting_force", 'X').has_value());
+  EXPECT_FALSE(back.cases[1].servo->column("cutting_force", 'X').has_value());
+  EXPECT_EQ(compare(back.quantities, back.cases).size(), 2U);
 }
 
 // An integrating velocity loop leaves nothing of a constant force at the scale.

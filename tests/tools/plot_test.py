@@ -304,6 +304,7 @@ class Drawing(WithFiles):
             "figure12: not drawn, no error functions of Z",
             "figure14: not drawn, no case named generated",
             "figure15: not drawn, no case named generated",
+            *(f"figure{n}: not drawn, no finished case named generated, compensated" for n in (16, 17, 18, 19)),
             *(f"{name}: not drawn, no part was probed ([[probe]] of the scenario)"
               for name in ("probed", "part", "planes")),
             "nest: not drawn, the scenario asks for no radial_ball_deviation",
