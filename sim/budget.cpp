@@ -214,8 +214,7 @@ Causes present(const Causes& causes, const Scenario& scenario, const CaseSpec& o
     if (remove(cause, trial, spec)) out.insert(cause);
   }
   if (one.servo == ServoModel::ideal) {
-    for (const Cause cause : {Cause::friction, Cause::measurement, Cause::cutting})
-      out.erase(cause);
+    for (const Cause cause : {Cause::friction, Cause::measurement}) out.erase(cause);
   }
   return out;
 }

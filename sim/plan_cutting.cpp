@@ -27,6 +27,8 @@ constexpr double kForceTol = 0.5;       // N, at least
 constexpr double kUsualChip = 50 * um;  // feed per tooth at which forces are compared
 constexpr int kFirstParts = 8;          // of a curved move
 constexpr int kMostHalvings = 12;
+constexpr double kOddShare =
+    0.381966;  // where whole turns in a step do not pass for a straight one
 constexpr std::size_t kMostWarnings = 5;
 
 // One move of the program with what turns in the spindle.
@@ -130,16 +132,28 @@ class Planner {
     return plant::RemovedVolume(passes);
   }
 
+  // How far the cutter is from where a straight step would have it, at a share of it.
+  static double departure(const Stage& stage, const plant::CutterPosition& from,
+                          const plant::CutterPosition& to, const plant::CutterPosition& at,
+                          double share) {
+    const double reach = stage.cutter != nullptr ? stage.cutter->length : 0.0;
+    const Vector3d tip = at.tip - (from.tip + share * (to.tip - from.tip));
+    const Vector3d axis = at.axis - (from.axis + share * (to.axis - from.axis)).normalized();
+    return tip.norm() + reach * axis.norm();
+  }
+
   void add_steps(Stage& stage, double end, const plant::CutterPosition& at_end,
                  std::vector<plant::CutterPosition>& positions, int halvings) {
     const plant::CutterPosition from = positions.back();
     if (!stage.is_straight && halvings < kMostHalvings) {
-      const double middle = 0.5 * (stage.shares.back() + end);
-      const plant::CutterPosition at = position(stage, middle);
-      const double reach = stage.cutter != nullptr ? stage.cutter->length : 0.0;
-      const Vector3d tip = at.tip - 0.5 * (from.tip + at_end.tip);
-      const Vector3d axis = at.axis - (from.axis + at_end.axis).normalized();
-      if (tip.norm() + reach * axis.norm() > kChord) {
+      const double begin = stage.shares.back();
+      const auto at_share = [&](double share) {
+        return position(stage, begin + share * (end - begin));
+      };
+      const plant::CutterPosition at = at_share(0.5);
+      if (departure(stage, from, at_end, at, 0.5) > kChord ||
+          departure(stage, from, at_end, at_share(kOddShare), kOddShare) > kChord) {
+        const double middle = 0.5 * (begin + end);
         add_steps(stage, middle, at, positions, halvings + 1);
         add_steps(stage, end, at_end, positions, halvings + 1);
         return;

@@ -612,7 +612,7 @@ CaseOutput PreparedCase::output(CaseResult result) const {
     ProbedPart part =
         probe_part({p.spec.name, out.result.servo, p.program->path, p.scenario.program.cutters,
                     p.program->tips, out.chain, p.scenario.program.work_offset + p.spec.work_offset,
-                    p.imposed.get()},
+                    p.imposed.get(), p.scenario.stock.empty() ? nullptr : &p.scenario.stock},
                    p.scenario.probes, p.scenario.cmm);
     out.probes = std::move(part.features);
     out.notes = std::move(part.notes);

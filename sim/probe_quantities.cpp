@@ -124,6 +124,7 @@ struct Fitted {
 };
 
 constexpr const char* kTooFew = "too few points";
+constexpr double kAcross = 1e-6;  // component of a normal that counts as none
 constexpr const char* kGap =
     "minimum zone needs points all around, no gap of half a turn; fit = \"least_squares\" does not";
 
@@ -220,6 +221,12 @@ Fitted position(const Points& points, char letter) {
     const Vector3d& k = cylinder->direction;
     const double up = (nominal.origin - cylinder->point).dot(k);
     return {(cylinder->point + up * k - nominal.origin)[axis]};
+  }
+  const auto& targets = nominal.targets;
+  if (std::all_of(targets.begin(), targets.end(), [axis](const plant::ProbeTarget& target) {
+        return std::abs(target.normal[axis]) < kAcross;
+      })) {
+    return {{}, fmt::format("no normal of its points has a component along {}", letter)};
   }
   const double mean = mean_position(points, axis);
   if (std::isnan(mean)) return {{}, "needs points on both flanks"};

@@ -21,6 +21,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSameS = 1e-8;          // m; recorded arc lengths are rounded
 constexpr double kPoorChord = 1.0 * um;  // chord errors beyond it are told
 constexpr double kParallel = 1e-9;       // sine of an angle
+constexpr double kBelow = 1.0 * um;      // a surface, where its material is looked for
 
 Vector3d vector_at(const Series& series, std::size_t row, std::size_t first) {
   return {series.at(row, first), series.at(row, first + 1), series.at(row, first + 2)};
@@ -66,32 +67,61 @@ Vector3d tip_that_cuts(const plant::Cutter& cutter, const Vector3d& k,
   return tip;
 }
 
-// Displacement along the normals that the imposed errors ask for where the program cuts the points,
-// with the rotary axes where the work system has them at 0.
-std::vector<double> imposed_on(const PartSource& source, const PartFrame& frame,
-                               const Feature& feature) {
-  std::vector<double> out;
+// The ways of the cutters, and the first feed of each, which says what turned in the spindle.
+struct Ways {
+  std::vector<plant::CutterPass> passes;
+  std::vector<const ProgramPath::Piece*> feeds;  // of each pass; null: it only moves in rapid
+
+  // That of the pass which a position (counted through all of them) belongs to.
+  const ProgramPath::Piece* feed_at(std::size_t position) const {
+    for (std::size_t i = 0; i < passes.size(); ++i) {
+      if (position < passes[i].positions.size()) return feeds[i];
+      position -= passes[i].positions.size();
+    }
+    return nullptr;
+  }
+};
+
+Ways ways_of(const PartSource& source) {
+  const PartFrame frame = work_frame(source.chain, source.work_offset);
+  const Series& servo = source.servo;
+  const std::size_t position = *servo.column("tool_position_true", 'X');
+  const std::size_t axis = *servo.column("tool_axis_true", 'I');
+  PieceOfRow pieces(servo, source.path);
+  Ways out;
+  const plant::Cutter* cutting = nullptr;
+  for (std::size_t row = 0; row < servo.rows(); ++row) {
+    const ProgramPath::Piece& piece = pieces.at(row);
+    const plant::Cutter* cutter = cutter_of(source, piece);
+    if (cutter != nullptr && cutter != cutting) {
+      out.passes.push_back({*cutter, {}});
+      out.feeds.push_back(nullptr);
+    }
+    cutting = cutter;
+    if (cutter == nullptr) continue;
+    if (out.feeds.back() == nullptr && !piece.rapid) out.feeds.back() = &piece;
+    out.passes.back().positions.push_back(
+        {frame.point(vector_at(servo, row, position) * mm),
+         frame.direction(vector_at(servo, row, axis)).normalized()});
+  }
+  return out;
+}
+
+// Displacement along the normal that the imposed errors ask for where a piece of the program cuts
+// the point, with the rotary axes where the work system has them at 0.
+double imposed_at(const PartSource& source, const PartFrame& frame, const ProgramPath::Piece& piece,
+                  const plant::ProbeTarget& target) {
   const plant::MachineChain& chain = source.chain;
   const Joints Q_0 = chain.layout.joints(source.work_offset);
-  const Eigen::Matrix3d J = plant::linear_jacobian(chain, Q_0);
-  for (std::size_t i = 0; i < source.path.size(); ++i) {
-    const ProgramPath::Piece& piece = source.path.piece(i);
-    const plant::Cutter* cutter = cutter_of(source, piece);
-    if (cutter == nullptr || piece.rapid) continue;
-    // the first cutter that works
-    const auto tip = source.tips.find(piece.tool_offset);
-    const Vector3d p_ST = tip == source.tips.end() ? Vector3d::Zero() : tip->second;
-    const Vector3d k = frame.direction(plant::forward(chain, Q_0, p_ST).k_W);
-    for (const plant::ProbeTarget& target : feature.targets) {
-      const Vector3d p_W = frame.in_workpiece(tip_that_cuts(*cutter, k, target));
-      const auto Q = plant::inverse_fixed_rotary(chain, p_W, Q_0, p_ST);
-      out.push_back(
-          Q ? target.normal.dot(frame.direction(J * source.imposed->joint_offset(*Q, p_ST)))
-            : kNone);
-    }
-    return out;
-  }
-  return {};
+  const auto tip = source.tips.find(piece.tool_offset);
+  const Vector3d p_ST = tip == source.tips.end() ? Vector3d::Zero() : tip->second;
+  const Vector3d k = frame.direction(plant::forward(chain, Q_0, p_ST).k_W);
+  const Vector3d p_W = frame.in_workpiece(tip_that_cuts(*cutter_of(source, piece), k, target));
+  const auto Q = plant::inverse_fixed_rotary(chain, p_W, Q_0, p_ST);
+  if (!Q) return kNone;
+  const Vector3d displacement =
+      plant::linear_jacobian(chain, Q_0) * source.imposed->joint_offset(*Q, p_ST);
+  return target.normal.dot(frame.direction(displacement));
 }
 
 std::string place_of(const Vector3d& p) {
@@ -102,38 +132,49 @@ struct Misses {
   std::size_t count = 0, first = 0;
 };
 
-std::string why(Meeting::Kind kind, const Cmm& cmm) {
-  switch (kind) {
+enum class Miss : std::uint8_t { untouched, blocked, through, no_stock };
+
+// What the stylus met is a cut surface only where there was raw material below it.
+std::optional<Miss> miss_of(const Meeting& meeting, const plant::ProbeTarget& target,
+                            const plant::Stock* stock) {
+  switch (meeting.kind) {
     case Meeting::Kind::untouched:
-      return "no cutter came there";
+      return Miss::untouched;
     case Meeting::Kind::blocked:
-      return fmt::format("there is uncut material {:g} mm (cmm.clearance_mm) above it",
-                         cmm.clearance / mm);
-    default:
+      return Miss::blocked;
+    case Meeting::Kind::through:
+      return Miss::through;
+    case Meeting::Kind::met:
+      break;
+  }
+  const Vector3d below = target.point + (meeting.distance - kBelow) * target.normal;
+  if (stock != nullptr && !stock->contains(below)) return Miss::no_stock;
+  return std::nullopt;
+}
+
+std::string why(Miss miss, const Cmm& cmm) {
+  switch (miss) {
+    case Miss::untouched:
+      return "no cutter came there";
+    case Miss::no_stock:
+      return "the raw part ([[part.stock]]) does not reach there";
+    case Miss::blocked:
+      return cmm.probe_radius > 0.0
+                 ? fmt::format("the stylus ball does not fit {:g} mm (cmm.clearance_mm) above it",
+                               cmm.clearance / mm)
+                 : fmt::format("there is uncut material {:g} mm (cmm.clearance_mm) above it",
+                               cmm.clearance / mm);
+    case Miss::through:
       return fmt::format("the cutter took away all down to {:g} mm (cmm.depth_mm) below it",
                          cmm.depth / mm);
   }
+  return "";
 }
 
 }  // namespace
 
 std::vector<plant::CutterPass> cutter_passes(const PartSource& source) {
-  const PartFrame frame = work_frame(source.chain, source.work_offset);
-  const Series& servo = source.servo;
-  const std::size_t position = *servo.column("tool_position_true", 'X');
-  const std::size_t axis = *servo.column("tool_axis_true", 'I');
-  PieceOfRow pieces(servo, source.path);
-  std::vector<plant::CutterPass> passes;
-  const plant::Cutter* cutting = nullptr;
-  for (std::size_t row = 0; row < servo.rows(); ++row) {
-    const plant::Cutter* cutter = cutter_of(source, pieces.at(row));
-    if (cutter != nullptr && cutter != cutting) passes.push_back({*cutter, {}});
-    cutting = cutter;
-    if (cutter == nullptr) continue;
-    passes.back().positions.push_back({frame.point(vector_at(servo, row, position) * mm),
-                                       frame.direction(vector_at(servo, row, axis)).normalized()});
-  }
-  return passes;
+  return ways_of(source).passes;
 }
 
 double chord_error(const Series& servo) {
@@ -153,30 +194,33 @@ double chord_error(const Series& servo) {
 ProbedPart probe_part(const PartSource& source, const std::vector<ProbeSpec>& plan,
                       const Cmm& cmm) {
   const PartFrame frame = work_frame(source.chain, source.work_offset);
-  const plant::MachinedSurface surface(cutter_passes(source));
+  const Ways ways = ways_of(source);
+  const plant::MachinedSurface surface(ways.passes);
   ProbedPart out;
   std::size_t met = 0;
   for (const ProbeSpec& probe : plan) {
     const std::vector<plant::ProbeTarget>& targets = probe.feature.targets;
     ProbedFeature found{probe.name, probe.feature, {}, {}, {}};
-    std::map<Meeting::Kind, Misses> missed;
+    std::map<Miss, Misses> missed;
     const auto meetings = cmm.probe_radius > 0.0
                               ? surface.touch(targets, cmm.probe_radius, cmm.clearance, cmm.depth)
                               : surface.meet(targets, cmm.clearance, cmm.depth);
     for (std::size_t i = 0; i < meetings.size(); ++i) {
-      const bool hit = meetings[i].kind == Meeting::Kind::met;
-      found.deviation.push_back(hit ? meetings[i].distance : kNone);
-      met += hit ? 1 : 0;
-      if (!hit && missed[meetings[i].kind].count++ == 0) missed[meetings[i].kind].first = i;
+      const std::optional<Miss> miss = miss_of(meetings[i], targets[i], source.stock);
+      found.deviation.push_back(miss ? kNone : meetings[i].distance);
+      met += miss ? 0 : 1;
+      if (miss && missed[*miss].count++ == 0) missed[*miss].first = i;
+      if (source.imposed == nullptr) continue;
+      const ProgramPath::Piece* feed = miss ? nullptr : ways.feed_at(meetings[i].position);
+      found.imposed.push_back(feed ? imposed_at(source, frame, *feed, targets[i]) : kNone);
     }
-    for (const auto& [kind, misses] : missed) {
+    for (const auto& [miss, misses] : missed) {
       out.notes.push_back(fmt::format(
           "{}: warning: case {}: {} of {} points of probe '{}' met no cut surface, first at {}: {}",
           to_string(probe.place), source.case_name, misses.count, targets.size(), probe.name,
-          place_of(targets[misses.first].point), why(kind, cmm)));
+          place_of(targets[misses.first].point), why(miss, cmm)));
     }
     found.measured = probe_all(cmm, source.case_name, probe.name, found.deviation);
-    if (source.imposed != nullptr) found.imposed = imposed_on(source, frame, probe.feature);
     out.features.push_back(std::move(found));
   }
   if (met == 0) return out;

@@ -7,6 +7,7 @@
 
 #include "plant/cutting/cutter.h"
 #include "plant/cutting/machined_surface.h"
+#include "plant/cutting/stock.h"
 #include "plant/geometry/volumetric.h"
 #include "sim/metrology/cmm.h"
 #include "sim/program_path.h"
@@ -41,6 +42,7 @@ struct PartSource {
   const plant::MachineChain& chain;                 // the ideal machine
   AxisWords work_offset = AxisWords::Zero();        // m, rad, machine coordinates
   const plant::VolumetricModel* imposed = nullptr;  // or none
+  const plant::Stock* stock = nullptr;              // the raw part; none: it is everywhere
 };
 
 /// The true ways of the cutters in the work frame, one pass from each change of the tool to the

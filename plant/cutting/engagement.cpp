@@ -17,6 +17,7 @@ constexpr double kSameShare = 1e-4;      // of the range of contact, for angles
 constexpr double kMostTurn = 7.5 * deg;  // of the profile's normal within one piece
 constexpr int kPiecesOfFlank = 8;        // at least, of the height that can be in material
 constexpr int kPiecesOfBottom = 6;
+constexpr double kThinnest = 0.5 * mm;  // wall on the flank that is seen in any case
 constexpr int kLevelsOfCorner = 8, kLevelsOfFlank = 14;
 
 // Directions that are looked at, as shares of the range of contact: close to its ends, where
@@ -137,9 +138,18 @@ class Search {
         profile_.of_height(low), profile_.of_height(highest_), {}, range / kPiecesOfFlank};
     for (int i = 0; i < kLevelsOfFlank; ++i) {
       const double share = (i + 0.5) / kLevelsOfFlank;
-      flank.levels.push_back(flank.begin + range * share * share * share);
+      add_level(flank, flank.begin + range * share * share * share);
     }
+    add_level(flank, flank.end - 0.5 * kThinnest);
     sections_.push_back(std::move(flank));
+  }
+
+  // And as many before it as a thin wall needs to be seen.
+  static void add_level(Section& section, double level) {
+    const double before = section.levels.empty() ? section.begin : section.levels.back();
+    if (level <= before) return;
+    const int n = static_cast<int>(std::ceil((level - before) / kThinnest));
+    for (int i = 1; i <= n; ++i) section.levels.push_back(before + (level - before) * i / n);
   }
 
   bool in_material(const Profile::Place& place, double phi) const {

@@ -37,8 +37,8 @@ using IsMaterial = std::function<bool(const Eigen::Vector3d&)>;
 /// The profile is searched at some heights, close to each other near the tip, and directions, close
 /// to each other at the sides; where material begins or ends between two of them is found by
 /// bisection. Material thinner than the steps between them may be missed: steps of the flank grow
-/// from 5e-5 of the height that can be in material at the tip to a fifth of it at the top, those of
-/// the directions from 0.5 deg at the sides to 15 deg in the middle.
+/// from 5e-5 of the height that can be in material at the tip to 0.5 mm, those of the directions
+/// from 0.5 deg at the sides to 15 deg in the middle.
 /// @param within  no material is outside of this box
 std::vector<EngagedArc> engagement(const Cutter& cutter, const CutterMotion& motion,
                                    const IsMaterial& is_material,

@@ -28,7 +28,7 @@ class Words(unittest.TestCase):
     def values(self, name, quantity, statistic="max"):
         """{case: value} of a quantity of a run."""
         done = self.servomill("run", name, "--json")
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.returncode, 0, done.stderr)
         rows = [json.loads(line) for line in done.stdout.splitlines()]
         return {row["case"]: row["value"] for row in rows
                 if row["quantity"] == quantity and row["statistic"] in (None, statistic)}
@@ -78,7 +78,7 @@ class Words(unittest.TestCase):
 
     def test_delays_add_to_the_lag(self):
         done = self.servomill("sweep", "delay.toml", "--quiet")
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.returncode, 0, done.stderr)
         with open(self.out[:-3] + ".csv", encoding="utf-8", newline="") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual(len(rows), 9)

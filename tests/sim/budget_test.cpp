@@ -158,6 +158,23 @@ TEST(Budget, OfWhatNobodyCorrects) {
   expect_nothing_else(budgets[0], {Cause::kinematics}, 0.1);
 }
 
+// An ideal servo stands where the NC wants it, but the structure gives way to the cut.
+TEST(Budget, OfTheCutAlone) {
+  const Scenario scenario = small_scenario(
+      "G17 G90 T1 M6\nG43 H1\nS4775 M3\nG0 X-30 Y0\nZ-2\n(MSG, slot)\nG1 X30 F1394\nM30\n",
+      "[machine_override.axis.Y]\nstructural_stiffness = \"40 N/um\"\n[[program.tool]]\nnumber = "
+      "1\nlength_mm = 110.0\ndiameter_mm = 8.0\nteeth = 4\n[[part.stock]]\nbox = { from_mm = "
+      "[-20.0, -20.0, -20.0], to_mm = [20.0, 20.0, 0.0] }\n[cutting]\nmaterial = \"42CrMo4\"\n"
+      "[[case]]\nname = \"one\"\nservo = \"ideal\"\n"
+      "[[quantity]]\nname = \"tool_deviation\"\naxis = \"Y\"\nsections = [\"slot\"]\n");
+  const auto budgets = find_budgets(scenario, budget_quantities(scenario));
+  ASSERT_EQ(budgets.size(), 1U);
+  const double residual = budgets[0].residual_at_place();
+  EXPECT_GT(std::abs(residual), 1.0);
+  EXPECT_NEAR(part(budgets[0], Cause::cutting).at_place, residual, 1e-6);
+  expect_nothing_else(budgets[0], {Cause::cutting}, 1e-6);
+}
+
 // Experiment 1 of [G], its flank: what strategies leave is accounted for within 10 %.
 TEST(Budget, AddsUpForExperiment1) {
   constexpr const char* kFlank =

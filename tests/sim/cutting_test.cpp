@@ -243,6 +243,31 @@ TEST(Cutting, follows_a_circle_and_leaves_nothing_for_a_second_turn) {
   EXPECT_EQ(second, 0.0);
 }
 
+// Many turns in one block: each removes what it goes through, however even their number is.
+TEST(Cutting, of_a_helix_in_one_block_leaves_nothing_for_a_turn_at_its_bottom) {
+  for (const int turns : {15, 16, 17}) {
+    const std::string bore = fmt::format(
+        "G17 G90 T1 M6\nG43 H1\nS4775 M3\nG0 X11 Y0\nZ1\nG3 I-11 Z-{0} P{0} F1394\n(MSG, "
+        "flat)\nG3 I-11\n(MSG, again)\nG3 I-11\nM30\n",
+        turns);
+    const Scenario scenario = cutting_scenario(bore, one_case("cut"));
+    const CaseOutput out = run_case(scenario, "cut");
+    const Series& servo = out.result.servo;
+    const std::size_t section = *servo.column("section");
+    double again = 0.0, first = 0.0;
+    for (std::size_t n = 0; n < servo.rows(); ++n) {
+      Vector3d F;
+      for (int i = 0; i < 3; ++i) F[i] = servo.at(n, *servo.column("cutting_force", "XYZ"[i]));
+      const std::string& name = out.sections[static_cast<std::size_t>(servo.at(n, section))];
+      if (name == "flat") first = std::max(first, F.norm());
+      if (name == "again") again = std::max(again, F.norm());
+    }
+    EXPECT_EQ(again, 0.0) << turns;
+    // at most what a turn of 1 mm depth leaves, not the whole depth
+    EXPECT_LT(first, 2.0 * slot_force().at(kChip).norm()) << turns;
+  }
+}
+
 // Straight down into the block: the bottom's edges bear it all.
 TEST(Cutting, plunging_is_borne_by_the_bottom) {
   const CaseOutput out =

@@ -166,6 +166,46 @@ TEST(ProbedPart, TellsWhatIsMissed) {
             "Y-4 Z-5: the cutter took away all down to 1 mm (cmm.depth_mm) below it\n");
 }
 
+// What no cutter took away is no part where there was no raw part.
+TEST(ProbedPart, EndsWhereTheRawPartDoes) {
+  const std::string stock =
+      "[[part.stock]]\nbox = { from_mm = [0.0, 0.0, -20.0], to_mm = [61.0, 60.0, 5.0] }\n";
+  const RunOutput output = run(
+      asking({std::string(kFlank) + stock, quantity("straightness", "probe = \"flank\""), "", ""}));
+  EXPECT_EQ(output.comparison[0].note, "31 of 51 points of 'flank'");  // up to X60
+  const std::string& note = output.cases[0].notes.at(0);
+  EXPECT_EQ(note.substr(note.find("warning")),
+            "warning: case one: 20 of 51 points of probe 'flank' met no cut surface, first at X62 "
+            "Y0 Z-5: the raw part ([[part.stock]]) does not reach there");
+}
+
+// The errors of the place where the tool stood that cut the point, not where the first one works.
+TEST(ProbedPart, IsImposedWithTheToolThatCutIt) {
+  constexpr const char* kBore =
+      "G17 G21 G40 G90 G94 G64 P0.0001\nF3000\nT2 M6\nG43 H2\nG0 X0 Y0 Z50\nG1 X1\nT1 M6\nG43 "
+      "H1\nG0 X50 Y50 Z20\nG1 Z-10\nG1 X56\nG3 I-6\nG1 X50\nG0 Z20\nM2\n";
+  const Scenario scenario = small_scenario(
+      kBore, "imposed = \"wave\"\n" + std::string(kTool) +
+                 "[[program.tool]]\nnumber = 2\nlength_mm = 60.0\ndiameter_mm = 25.0\n"
+                 "[errors.wave]\nEXX = { polynomial_um = [0.0, 1.0] }\n"
+                 "[[case]]\nname = \"one\"\nservo = \"ideal\"\n"
+                 "[[case]]\nname = \"wave\"\nservo = \"ideal\"\n[[case.strategy]]\ntype = "
+                 "\"gcode\"\nmodel = \"wave\"\nsign = \"generate\"\n"
+                 "[[probe]]\nname = \"bore\"\ncircle = { centre_mm = [50.0, 50.0, -5.0], "
+                 "radius_mm = 10.0, outside = false, points = 24 }\n" +
+                 quantity("probed_imposed_residual",
+                          "probe = \"bore\"\nbase = \"one\"\ncases = [\"wave\"]"));
+  // um: chords of the rewritten program and the mark of its way in; 30 with the place of tool 2
+  EXPECT_LT(run(scenario).comparison.at(0).value, 0.5);
+}
+
+TEST(ProbedPart, HasNoPositionAlongAnAxisThatNoNormalPointsAlong) {
+  const RunOutput output =
+      run(asking({kFlank, quantity("probed_position", "probe = \"flank\"\naxis = \"X\""), "", ""}));
+  EXPECT_TRUE(std::isnan(output.comparison[0].value));
+  EXPECT_EQ(output.comparison[0].note, "no normal of its points has a component along X");
+}
+
 // Relative to a base case, point by point, also less what the imposed errors ask for.
 TEST(ProbedPart, IsComparedWithABaseCaseAndWithWhatIsImposed) {
   Asked asked{kFlank, "", "", "imposed = \"wave\""};

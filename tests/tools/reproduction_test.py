@@ -394,6 +394,30 @@ class Faults(unittest.TestCase):
                          (2, "reproduction: error: nowhere/servomill does not exist\n"))
 
 
+
+class Compared:
+    """Results in place of files: one row of a comparison."""
+
+    def __init__(self, **row):
+        self.row = {"case": "one", "quantity": "flatness", "unit": "um", "value": 0.0, **row}
+
+    def compared(self, _):
+        return [self.row]
+
+
+class OfAPart(unittest.TestCase):
+    WANTED = {"run": "experiment2", "case": "one", "quantity": "flatness"}
+
+    def test_of_the_points_is_no_value(self):
+        self.assertEqual(values._compared(self.WANTED, Compared(), "um"), 0.0)
+        with self.assertRaisesRegex(files.NotInFile, "4 of 22 points of 'top'"):
+            values._compared(self.WANTED, Compared(note="4 of 22 points of 'top'"), "um")
+
+    def test_over_nothing_is_no_value(self):
+        with self.assertRaisesRegex(files.NotInFile, "is 0"):
+            values._number({**self.WANTED, "over": {"case": "one"}}, Compared(), "%")
+
+
 if __name__ == "__main__":
     SERVOMILL = sys.argv.pop(1)
     unittest.main()

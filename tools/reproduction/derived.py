@@ -36,8 +36,8 @@ def _over_sweep(results, run, case, quantity):
     for one in sweep.quantities:
         if one["case"] == case and one["quantity"] == quantity:
             good = np.isfinite(one["value"])
-            if good.sum() < 2:
-                raise NotInFile(f"{quantity} of {case} stands at fewer than two points of {run}")
+            if good.sum() < 2 or not good.all():
+                raise NotInFile(f"{quantity} of {case} stands at {good.sum()} of {good.size} points of {run}")
             return sweep, good, one["value"][good]
     raise NotInFile(f"{run} holds no {quantity} of {case}")
 
@@ -86,8 +86,8 @@ def probed_residual(results, run, case, axis, feature):
     stands for all of them."""
     run = results.opened(run)
     found = probed_points.notches(run) if feature == "notches" else probed_points.along(run, feature, axis)
-    if case not in found or not np.isfinite(found[case].residual).any():
-        raise NotInFile(f"{feature} of case {case} was not probed")
+    if case not in found or not np.isfinite(found[case].residual).all():
+        raise NotInFile(f"{feature} of case {case} was not probed at all of its points")
     return float(found[case].largest())
 
 

@@ -46,6 +46,8 @@ def run_all(runs, servomill, folder, tell):
             lines = done.stderr.strip().splitlines() or done.stdout.strip().splitlines() or ["printed nothing"]
             failed[one.name] = f"servomill {one.command} ended with {done.returncode}: {lines[-1]}"
             tell(f"      {failed[one.name]}")
+            if result.exists():   # nor may an incomplete one, with --report-only
+                result.replace(folder / f"{one.name}.failed.h5")
         else:
             tell(f"      {time.monotonic() - begin:.1f} s")
     return failed

@@ -78,6 +78,8 @@ def _compared(wanted, results, unit):
         raise NotInFile(f"{len(rows)} values for {what}")
     if not math.isfinite(rows[0]["value"]):
         raise NotInFile(f"the value for {what} is not a number" + (f": {rows[0]['note']}" if "note" in rows[0] else ""))
+    if "points of" in rows[0].get("note", ""):
+        raise NotInFile(f"the value for {what} is that of a part of its points: {rows[0]['note']}")
     if unit is not None and rows[0]["unit"] != unit:
         raise NotInFile(f"{what} is in {rows[0]['unit']}, not in {unit}")
     return rows[0]["value"]
@@ -89,6 +91,8 @@ def _number(wanted, results, unit):
         return derived.FUNCTIONS[wanted["derived"]](results, **arguments)
     if "over" in wanted:   # a ratio of two values; in percent where the row is
         above, below = _compared(wanted, results, None), _compared({"run": wanted["run"], **wanted["over"]}, results, None)
+        if below == 0.0:
+            raise NotInFile("the value that it is compared with is 0")
         return above / below * (100.0 if unit == "%" else 1.0)
     return _compared(wanted, results, unit)
 

@@ -107,10 +107,10 @@ int run_command(const Arguments& arguments) {
 
   bool finished = true;
   for (const sim::CaseOutput& one : output.cases) finished &= one.result.outcome.finished;
+  print_notes(output);
   if (json) {
     for (const auto& row : output.comparison) fmt::print("{}\n", sim::to_json(row));
   } else if (!quiet) {
-    print_notes(output);
     fmt::print("{}\n\n", scenario.title);
     print_outcomes(output);
     fmt::print("\n{}\nwritten to {}\n", sim::format_table(output.comparison), path);

@@ -128,6 +128,18 @@ TEST(Engagement, of_a_shallow_cut_deep_below_the_top_is_found) {
   EXPECT_NEAR(depth_of(arcs), 0.05 * mm, kDepthTol);
 }
 
+// A web on the way of the flank, at any height.
+TEST(Engagement, finds_thin_walls_all_along_the_flank) {
+  for (double bottom = 0.3 * mm; bottom < 26 * mm; bottom += 1.7 * mm) {
+    for (const double thickness : {0.6 * mm, 3 * mm}) {
+      const Stock web({StockBox{{-1.0, -1.0, bottom}, {1.0, -2 * mm, bottom + thickness}},
+                       StockBox{{-1.0, -1.0, 40 * mm}, {1.0, -2 * mm, 41 * mm}}});
+      const auto arcs = arcs_in(web, kFlat, along_x(0.0, 0.0, 0.0));
+      EXPECT_NEAR(depth_of(arcs), thickness, kDepthTol) << bottom;
+    }
+  }
+}
+
 TEST(Engagement, in_air_there_is_none) {
   EXPECT_TRUE(arcs_in(block(1.0, 1.0, 0.0), kFlat, along_x(0.0, 0.0, 1 * mm)).empty());
   EXPECT_TRUE(arcs_in(block(-5 * mm, 1.0, 0.0), kFlat, along_x(0.0, 0.0, -1 * mm)).empty());
