@@ -1,4 +1,4 @@
-# Sourced by tools/demo and tools/check: packages, and installing those that are missing.
+# Sourced by the commands of this folder, from the folder above it: their help, packages, and installing those that are missing.
 
 # libsundials-dev is large (about 310 packages and 240 MB with what it needs): it integrates the
 # equations of the drives, as a reference or where a scenario asks for it.
@@ -13,6 +13,15 @@ FUZZ_PACKAGES=(clang-14 libclang-rt-14-dev)
 # A Slurm cluster of one machine (tools/slurm/local_cluster) and GNU parallel (tools/parallel).
 CLUSTER_PACKAGES=(slurmctld slurmd slurm-client munge)
 PARALLEL_PACKAGES=(parallel)
+
+# The comment at the head of the command, before it does anything.
+help_if_asked() {
+  case "${1:-}" in -h | --help)
+    sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//;p}' "tools/$(basename "$0")"
+    exit 0
+    ;;
+  esac
+}
 
 say() { printf '\n== %s\n' "$*"; }
 
