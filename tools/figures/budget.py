@@ -12,7 +12,7 @@ def draw(budgets):
     """A panel for each budget: signed parts at the place of the largest residual, rms beside."""
     rows = -(-len(budgets.budgets) // COLUMNS)
     columns = min(COLUMNS, len(budgets.budgets))
-    most = max(len(one.parts) for one in budgets.budgets)
+    most = max(len(_acting(one)) for one in budgets.budgets)
     figure, axes = plt.subplots(rows, columns, squeeze=False,
                                 figsize=(6.2 * columns, 0.9 + rows * (1.3 + 0.27 * (most + 2))))
     for ax, one in zip(axes.flat, budgets.budgets):
@@ -23,9 +23,14 @@ def draw(budgets):
     return figure
 
 
+def _acting(one):
+    """Causes that the case has; the others are in the file, and 0."""
+    return [part for part in one.parts if part.at_place != 0.0 or part.rms != 0.0]
+
+
 def _panel(ax, one, budgets):
     colour = style.look_of(budgets, one.case).colour
-    ranked = sorted(one.parts, key=lambda part: -max(abs(part.at_place), part.rms))
+    ranked = sorted(_acting(one), key=lambda part: -max(abs(part.at_place), part.rms))
     bars = [(part.name.replace("_", " "), part, colour) for part in ranked]
     bars += [("remainder", one.remainder, REMAINDER), ("residual", one.residual, WHOLE)]
     places = np.arange(len(bars))[::-1]
@@ -41,8 +46,8 @@ def _panel(ax, one, budgets):
     ax.set_yticks(places, [name for name, _, _ in bars])
     ax.grid(axis="y", visible=False)
     where = f" ({one.sections})" if one.sections else ""
-    ax.set_title(f"{style.spoken(one.case)}: {one.axis}{where}, at s = {one.place:.1f} mm")
-    ax.set_xlabel("µm, where the residual is largest; lines: ± rms along the path")
+    ax.set_title(f"{style.spoken(one.case)}: {one.quantity.replace('_', ' ')} {one.axis}{where}")
+    ax.set_xlabel(f"µm at the largest residual, s = {one.place:.1f} mm; lines: ± rms along the path", fontsize=9.5)
 
 
 def _message(budgets):
