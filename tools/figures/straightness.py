@@ -7,6 +7,7 @@ from figures import probed_points, results, style
 from figures.results import NotInFile
 
 
+WIDTH = 8.4       # inches
 MOST_OVER = 3.0   # times the largest residual of a trajectory in an enlargement: points beyond are left out
 
 
@@ -64,9 +65,11 @@ def draw(run, axis, section):
     found = tracks(run, axis, section)
     groups = enlargements(found)
     heights = [1.3] + [1.0] * len(groups)
-    figure, strip, rows = style.panels(heights, (8.4, 2.15 * sum(heights) + 0.9))
+    looks = [style.IMPOSED] + [one.look for one in found]
+    columns, lines = style.legend_shape(looks, WIDTH)
+    figure, strip, rows = style.panels(heights, (WIDTH, 2.15 * sum(heights) + 0.64 + 0.26 * lines), legend_lines=lines)
     axes = [row[0] for row in rows]
-    style.legend(strip, [style.IMPOSED] + [one.look for one in found])
+    style.legend(strip, looks, columns=columns)
 
     x, imposed = imposed_curve(run, axis, section)
     for one in found:
