@@ -52,10 +52,11 @@ struct BudgetPart {
 /// With R the residual along the path and R(-c) that of a run without the cause c, at equal arc
 /// length:
 ///
-///     part(measurement) = R - R(-m)                                      m = measurement (1)
+///     part(measurement) = R - R(-m)                                      m = measurement  (1)
 ///     part(c)           = R(-m) - R(-m, -c)                              for all others but (2)
-///     part(lag)         = R(-D) - R(-D, -lag) (3) part(kinematics)  = R(- all causes) (4)
-///     remainder         = R - sum of the parts (5)
+///     part(lag)         = R(-D) - R(-D, -lag)                                             (3)
+///     part(kinematics)  = R(- all causes)                                                 (4)
+///     remainder         = R - sum of the parts                                            (5)
 ///
 /// m is taken away first, since the steps of encoders (some 20 nm) would be in every other
 /// difference. D = friction, measurement, cutting, delay: they act through the loops and would go

@@ -617,12 +617,14 @@ CaseOutput PreparedCase::output(CaseResult result) const {
     out.probes = std::move(part.features);
     out.notes = std::move(part.notes);
   }
-  for (const Fault& warning : p.program->warnings) {
-    out.notes.push_back(fmt::format("{}: warning: {}", to_string(warning.place), warning.message));
-  }
-  for (const Fault& warning : p.cutting ? p.cutting->warnings : std::vector<Fault>()) {
-    out.notes.push_back(fmt::format("{}: warning: {}", to_string(warning.place), warning.message));
-  }
+  const auto tell = [&out](const std::vector<Fault>& warnings) {
+    for (const Fault& warning : warnings) {
+      out.notes.push_back(
+          fmt::format("{}: warning: {}", to_string(warning.place), warning.message));
+    }
+  };
+  tell(p.program->warnings);
+  if (p.cutting) tell(p.cutting->warnings);
   for (const auto& slowed : p.motion->slowed) {
     out.notes.push_back(fmt::format("{}:{}: warning: {}", p.scenario.program.file, slowed.line,
                                     to_string(slowed, p.machine().chain.layout)));

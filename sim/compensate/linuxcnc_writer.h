@@ -18,13 +18,12 @@ struct WovenLine;
 /// - A line with one block of motion keeps its form; lines that follow it hold motion only. Codes
 ///   that act behind the motion (M0, M1, M2, M30, M60) come behind the last.
 /// - Expressions become numbers, lines with O-words go, canned cycles and cutter compensation
-/// become
-///   their moves.
+///   become their moves.
 /// - G92 and G10 L10, L11, L20 say where the machine is: they are told where it now stands.
 /// - A line that starts with '/' and moves or changes modes loses it: what follows relies on it.
 ///   One that the interpreter leaves out becomes a comment.
-/// - Rotary axes alone keep their time where X, Y and Z now move by micrometres (G93 for the
-/// block).
+/// - Rotary axes alone keep their time where X, Y and Z now move by micrometres (G93 for
+///   the block).
 class LinuxCncWriter final : public ProgramWriter {
  public:
   /// @param decimals  of millimetres; inches get two more, so that they are no coarser

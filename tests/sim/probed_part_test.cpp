@@ -227,7 +227,7 @@ TEST(ProbedPart, IsComparedWithABaseCaseAndWithWhatIsImposed) {
   EXPECT_NEAR(found[3], 7.0, kPerfect);
 }
 
-TEST(ProbedPart, ComesBackFromItsFileBitForBit) {
+TEST(ProbedPart, ComesBackFromItsFile) {
   const Asked asked{std::string(kFlank) + kPlane,
                     quantity("flatness", "probe = \"plane\"") +
                         quantity("probed_deviation", "probe = \"flank\"\nstatistic = \"rms\""),

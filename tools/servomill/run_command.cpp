@@ -68,7 +68,7 @@ int run_command(const Arguments& arguments) {
                 "threads (default: one a core); results do not depend on it");
   options.add()("force,f", "replaces the result file if it exists");
   options.add()("json", "prints the comparison as one JSON object a line");
-  options.add()("quiet,q", "prints nothing but faults");
+  options.add()("quiet,q", "prints nothing but warnings and faults");
   if (!options.parse(arguments)) return kDone;
 
   const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
