@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -21,6 +22,9 @@ using Vector6 = Eigen::Vector<double, 6>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Columns3 = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 using Columns6 = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+// of one size, so that it is compiled once: it takes g++ its time
+using Symmetric = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
 constexpr int kMostSteps = 200;   // Gauss-Newton takes about five, point to point some dozens
 constexpr double kNoGain = 1e-9;  // of the sum of squares
@@ -69,10 +73,10 @@ std::string in_words(const Vector3d& v) {
 
 // Free motions (shift, rotation about `centre` times `size`; columns, orthonormal) in words.
 std::string free_motions(const Columns6& motions, const Vector3d& centre, double size) {
-  const Eigen::JacobiSVD<Columns3> svd(motions.bottomRows(3), Eigen::ComputeFullV);
-  Eigen::Index turning = 0;
-  for (const double s : svd.singularValues()) turning += s > 0.1 ? 1 : 0;
-  const Columns6 sorted = motions * svd.matrixV();  // those that turn come first
+  const Columns3 rotations = motions.bottomRows(3);
+  const Symmetric eigen(rotations.transpose() * rotations);
+  const Eigen::Index turning = (eigen.eigenvalues().array() > 0.01).count();
+  const Columns6 sorted = motions * eigen.eigenvectors().rowwise().reverse();  // those come first
   std::vector<std::string> words;
   const Columns3 shifts = tidy(sorted.topRows(3).rightCols(motions.cols() - turning));
   for (const auto& shift : shifts.colwise()) words.push_back("a shift along " + in_words(shift));
@@ -101,7 +105,8 @@ Isometry3d closed_form(Points3 from, Points3 to) {
   for (std::size_t i = 0; i < from.size(); ++i) {
     covariance += (to[i] - mean_to) * (from[i] - mean_from).transpose();
   }
-  const Eigen::JacobiSVD<Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Matrix3d, Eigen::NoQRPreconditioner> svd(
+      covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Matrix3d no_mirror = Matrix3d::Identity();
   no_mirror(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
   Isometry3d motion = Isometry3d::Identity();
@@ -148,7 +153,7 @@ struct Linear {
         free;  // orthonormal motions that change distances by less than kUnnoticed of themselves
   };
   Step step() const {
-    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(normal);
+    const Symmetric eigen(normal);
     Eigen::Index free = 0;
     for (const double value : eigen.eigenvalues()) free += value < kUnnoticed * kUnnoticed ? 1 : 0;
     const Columns6 noticed = eigen.eigenvectors().rightCols(6 - free);
