@@ -53,7 +53,7 @@ class BallContact {
       : removed_(removed),
         target_(target),
         radius_(radius),
-        start_(2.0 * radius + clearance),
+        clearance_(clearance),
         depth_(depth),
         U_(target.normal.unitOrthogonal()),
         V_(target.normal.cross(U_)) {}
@@ -65,13 +65,13 @@ class BallContact {
     while (!cells.empty() && cells.top().bound > best.distance + kContactTolerance) {
       const Cell cell = cells.top();
       cells.pop();
-      const FreeWay way = removed_.free_way(line(cell.u, cell.v));
-      const double rho = std::hypot(cell.u, cell.v);
+      const double rho = std::hypot(cell.u, cell.v), start = back(rho);
+      const FreeWay way = removed_.free_way(line(cell.u, cell.v, start));
       if (rho < radius_) {
         if (way.kind == FreeWay::Kind::untouched || way.kind == FreeWay::Kind::blocked) {
           return {rho == 0.0 ? kind_of(way.kind) : Meeting::Kind::blocked, 0.0, 0};
         }
-        const double distance = start_ - way.end - lift(rho);
+        const double distance = start - way.end - lift(rho);
         if (way.kind == FreeWay::Kind::ends && distance > best.distance) {
           best = {Meeting::Kind::met, distance, way.position};
         }
@@ -84,12 +84,18 @@ class BallContact {
   }
 
  private:
-  Ray line(double u, double v) const {
-    return {target_.point + start_ * target_.normal + u * U_ + v * V_, -target_.normal,
-            start_ + depth_ + radius_};
+  // From `start` above the target to where the ball would give up.
+  Ray line(double u, double v, double start) const {
+    return {target_.point + start * target_.normal + u * U_ + v * V_, -target_.normal,
+            start + depth_ + radius_};
   }
 
-  double lift(double rho) const { return radius_ - std::sqrt(radius_ * radius_ - rho * rho); }
+  double half_chord(double rho) const {
+    return std::sqrt(std::max(radius_ * radius_ - rho * rho, 0.0));
+  }
+  double lift(double rho) const { return radius_ - half_chord(rho); }
+  // Of the ball where it starts.
+  double back(double rho) const { return clearance_ + radius_ + half_chord(rho); }
 
   // The latest first: what a neighbour met.
   void remember(const FreeWay& way) {
@@ -118,18 +124,19 @@ class BallContact {
 
   // e of a step over a cell.
   double largest(const FreeWay& way, const Cell& cell) const {
+    const double start = back(0.0);
     double least_way = std::numeric_limits<double>::infinity();
     for (const double u : {cell.u - cell.half, cell.u + cell.half}) {
       for (const double v : {cell.v - cell.half, cell.v + cell.half}) {
-        least_way = std::min(least_way, removed_.leave(way, line(u, v)));
+        least_way = std::min(least_way, removed_.leave(way, line(u, v, start)));
       }
     }
-    return start_ - least_way;
+    return start - least_way;
   }
 
   const RemovedVolume& removed_;
   const ProbeTarget& target_;
-  double radius_, start_, depth_;
+  double radius_, clearance_, depth_;
   Vector3d U_, V_;
   std::vector<FreeWay> ways_;
 };

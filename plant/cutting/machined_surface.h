@@ -60,7 +60,7 @@ class MachinedSurface {
   /// line beside the axis by rho. Cells of lines are divided until none can hold more: over a cell,
   /// e of the step that its middle meets is convex and largest at a corner.
   ///
-  /// blocked: where it starts, the ball has material around it; untouched: as above, on its axis.
+  /// blocked: where it starts, the ball has material in it; untouched: as above, on its axis.
   /// @param radius  r, m, > 0
   Meeting touch(const ProbeTarget& target, double radius, double clearance, double depth) const;
   std::vector<Meeting> touch(std::span<const ProbeTarget> targets, double radius, double clearance,

@@ -194,6 +194,19 @@ TEST(MachinedSurface, lets_a_ball_into_a_wider_groove_but_not_into_a_narrower_on
               -(kProbe - std::sqrt(kProbe * kProbe - edge * edge)), kContact);
 }
 
+// A plunge leaves a bore of the tool's radius R. A ball of radius r starts with its near side a
+// clearance c off the wall, so that its middle lies r + c - R beyond the axis: it fits while that
+// and r are within R, that is up to r = R - c / 2.
+TEST(MachinedSurface, lets_a_ball_into_a_bore_that_is_little_wider) {
+  const double R = kFlat.radius;
+  const MachinedSurface bore({straight(kFlat, {0, 0, 20e-3}, {0, 0, -20e-3})});
+  const ProbeTarget wall = {{R, 0, 0}, -Vector3d::UnitX()};
+  const Meeting fits = bore.touch(wall, R - 0.51 * kClearance, kClearance, kDepth);
+  EXPECT_EQ(fits.kind, Kind::met);
+  EXPECT_NEAR(fits.distance, 0.0, kContact);
+  EXPECT_EQ(bore.touch(wall, R - 0.49 * kClearance, kClearance, kDepth).kind, Kind::blocked);
+}
+
 TEST(MachinedSurface, is_the_same_for_any_number_of_threads) {
   const MachinedSurface surface(raster(kBullNose, 1.5e-3, 9));
   std::vector<ProbeTarget> targets;
