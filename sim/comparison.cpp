@@ -125,7 +125,8 @@ constexpr std::array<QuantityInfo, 38> kQuantities = {{
     {"squareness", "um/m", "the same of features at right angles; positive: more than 90 deg",
      false, "", false, false, false, 0, false, 2},
     {"distortion", "um",
-     "probed points of all features (or those of `probes`) from the nominal faces after best fit",
+     "probed points of all features (or those of `probes`) from the part (`part.stl`; without one "
+     "from the planes through their nominal points) after best fit",
      false, "", true, false, false, 0, false, kEveryProbe},
 }};
 

@@ -10,6 +10,7 @@
 #include "controllers/gcode/printer.h"
 #include "controllers/path/travel.h"
 #include "plant/vocabulary/units.h"
+#include "sim/nominal_part.h"
 #include "sim/plan_cutting.h"
 #include "sim/preparation_cache.h"
 #include "sim/stability_check.h"
@@ -311,6 +312,25 @@ class CaseFaults {
   };
   std::vector<Found> found_;
 };
+
+// Nominal points this far from the mesh are told: its facets stand in for curved faces.
+constexpr double kFacets = 1e-6;  // m
+
+void lay_on_nominal(const std::string& case_name, const NominalPart& part, CaseOutput& out) {
+  auto found = fit_part(out.probes, *part.mesh);
+  if (const NoFit* none = std::get_if<NoFit>(&found)) {
+    out.notes.push_back(
+        fmt::format("warning: case {}: best fit to '{}': {}", case_name, part.file, none->why));
+    return;
+  }
+  out.part_fit = std::get<PartFit>(std::move(found));
+  if (out.part_fit->off > kFacets) {
+    out.notes.push_back(fmt::format(
+        "warning: case {}: nominal points of the probes are up to {:.2g} um off '{}'; distances "
+        "after best fit are as uncertain (write it with smaller facets)",
+        case_name, out.part_fit->off / um, part.file));
+  }
+}
 
 // "part.ngc:12: warning: case one: strategy feedback: virtual displacement of Y saturated ..."
 std::string saturation_note(const Scenario& scenario, const CaseSpec& spec,
@@ -616,6 +636,7 @@ CaseOutput PreparedCase::output(CaseResult result) const {
                    p.scenario.probes, p.scenario.cmm);
     out.probes = std::move(part.features);
     out.notes = std::move(part.notes);
+    if (p.scenario.part) lay_on_nominal(p.spec.name, *p.scenario.part, out);
   }
   const auto tell = [&out](const std::vector<Fault>& warnings) {
     for (const Fault& warning : warnings) {

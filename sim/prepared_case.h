@@ -5,11 +5,13 @@
 #include <atomic>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "sim/comparison.h"
+#include "sim/part_fit.h"
 #include "sim/probed_part.h"
 #include "sim/scenario.h"
 #include "sim/simulate.h"
@@ -28,6 +30,7 @@ struct CaseOutput {
   std::vector<std::string> sections;
   plant::MachineChain chain;          // the ideal machine
   std::vector<ProbedFeature> probes;  // empty: nothing is probed, or the case stopped
+  std::optional<PartFit> part_fit;    // of them, where there is a nominal part
   CaseData data() const;
 };
 

@@ -279,7 +279,8 @@ Fitted evaluate(const QuantitySpec& spec, std::span<const Points> points) {
 
 constexpr const char* kNotProbed = "was not probed";
 
-// Points of all features from the planes through their targets, once they are laid upon them.
+// Points of all features from the nominal part, or from the planes through their targets, once they
+// are laid upon it.
 ProbedDeviations distortion(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
   std::vector<Vector3d> measured, nominal, normals;
   ProbedDeviations out;
@@ -295,7 +296,8 @@ ProbedDeviations distortion(const QuantitySpec& spec, const CaseData& one, const
       normals.push_back(target.normal);
     }
   }
-  const auto fit = best_fit(measured, nominal, normals);
+  const TriangleMesh* part = spec.part->nominal.get();
+  const auto fit = part ? best_fit(measured, *part) : best_fit(measured, nominal, normals);
   if (const NoFit* none = std::get_if<NoFit>(&fit)) return {{}, none->why};
   for (const double distance : std::get<BestFit>(fit).distances) out.d.push_back(distance / um);
   return out;

@@ -61,7 +61,13 @@ plant::Stock read_stock(Reader& part) {
     const bool is_box = solid.has("box"), is_cylinder = solid.has("cylinder");
     if (is_box) solids.emplace_back(read_box(solid.table("box")));
     if (is_cylinder) solids.emplace_back(read_cylinder(solid.table("cylinder")));
-    if (is_box == is_cylinder) solid.fault("must have a table 'box' or a table 'cylinder'");
+    if (is_box != is_cylinder) continue;
+    if (solid.has("stl")) {
+      solid.fault("stl", "a raw part is made of boxes and cylinders; the nominal part is part.stl");
+      solid.skip_rest();
+    } else {
+      solid.fault("must have a table 'box' or a table 'cylinder'");
+    }
   }
   return plant::Stock(std::move(solids));
 }

@@ -11,7 +11,9 @@
 #include "plant/vocabulary/units.h"
 #include "sim/ball_quantities.h"
 #include "sim/comparison.h"
+#include "sim/config/base64.h"
 #include "sim/config/reader.h"
+#include "sim/nominal_part.h"
 #include "sim/probe_quantities.h"
 #include "sim/read_ball.h"
 #include "sim/read_cutter.h"
@@ -90,22 +92,24 @@ class ScenarioReader {
       out_.sweep = read_sweep(sweep);
     }
     root.finish();
+    check_plan();
     read_case_machines();
-    document_.merge(with_program_text());
+    document_.merge(with_contents_of_files());
     out_.resolved = document_.to_toml();
   }
 
  private:
-  // { program = { text = "..." } }: a resolved document needs no other file.
-  Value with_program_text() const {
-    const auto text_value = [](const std::string& key, const std::string& text) {
-      Value value;
-      value.type = Value::Type::text;
-      value.key = key;
-      value.text = text;
-      value.written = quoted_text(text);
-      return value;
-    };
+  static Value text_value(const std::string& key, const std::string& text) {
+    Value value;
+    value.type = Value::Type::text;
+    value.key = key;
+    value.text = text;
+    value.written = quoted_text(text);
+    return value;
+  }
+
+  // { program = { text = "..." }, part = { ... } }: a resolved document needs no other file.
+  Value with_contents_of_files() const {
     Value program;
     program.key = "program";
     program.children.push_back(text_value("text", out_.program.text));
@@ -119,6 +123,13 @@ class ScenarioReader {
     }
     Value root;
     root.children.push_back(std::move(program));
+    if (out_.part) {
+      Value part;
+      part.key = "part";
+      part.children.push_back(text_value("stl", out_.part->file));
+      part.children.push_back(text_value("stl_base64", base64(out_.part->bytes)));
+      root.children.push_back(std::move(part));
+    }
     return root;
   }
 
@@ -313,6 +324,7 @@ class ScenarioReader {
   void read_cut(Reader& root) {
     if (root.has("part")) {
       Reader part = root.table("part");
+      out_.part = read_nominal_part(part, files_);
       out_.stock = read_stock(part);
     }
     if (!root.has("cutting")) return;
@@ -322,6 +334,13 @@ class ScenarioReader {
     if (out_.stock.empty() && cutting.faults() == 0) {
       cutting.fault("needs the raw part: [[part.stock]] with a box or a cylinder");
     }
+  }
+
+  // Only of a plan that is right in itself.
+  void check_plan() const {
+    if (!out_.part) return;
+    auto faults = faults_of_plan(out_.probes, *out_.part);
+    if (!faults.empty()) throw InputError(std::move(faults));
   }
 
   Tick ticks(Reader& table, std::string_view key, double fallback, Tick least) {
@@ -614,6 +633,7 @@ class ScenarioReader {
         must_be_known(table, "probes", name, fmt::format("probe '{}'", name), names);
       }
       if (spec.part->probes.empty()) table.fault("needs a [[probe]]");
+      if (out_.part) spec.part->nominal = out_.part->mesh;
       return;
     }
     for (const char* key : info.probes == 1 ? std::vector{"probe"} : std::vector{"probe", "to"}) {

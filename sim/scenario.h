@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@
 #include "strategies/registry.h"
 
 namespace servomill::sim {
+
+struct NominalPart;  // sim/nominal_part.h
+class TriangleMesh;
 
 struct ProgramSpec {
   std::string file;  // as messages name it
@@ -72,6 +76,7 @@ struct BallSpec {
 struct PartSpec {
   std::vector<std::string> probes;  // features, each the name of a [[probe]]
   bool minimum_zone = true;         // of the fit, where there is a choice; else least squares
+  std::shared_ptr<const TriangleMesh> nominal;  // of a best fit; none: to the faces at the probes
 };
 
 /// One line of the comparison, for one or several cases.
@@ -112,7 +117,8 @@ struct Scenario {
   std::string truth;    // model of the machine's true errors; empty: none
   std::string imposed;  // model whose displacement at the programmed position is recorded; or empty
   FeedbackHardware hardware;
-  plant::Stock stock;  // in work coordinates of the program
+  plant::Stock stock;                       // in work coordinates of the program
+  std::shared_ptr<const NominalPart> part;  // likewise; or none
   std::optional<CuttingSpec> cutting;
   std::vector<CaseSpec> cases;
   std::vector<ProbeSpec> probes;  // measured on the part of every case

@@ -237,7 +237,7 @@ void RunStore::add(const CaseOutput& one) {
   if (one.result.last_ticks.rows() > 0) {
     write_series(group.group("last_ticks"), one.result.last_ticks);
   }
-  if (!one.probes.empty()) write_probes(group.group("probes"), one.probes);
+  if (!one.probes.empty()) write_probes(group.group("probes"), one.probes, one.part_fit);
   group.attribute("outcome", one.result.outcome.reason);
   group.attribute("duration_s", one.duration);
   group.attribute("blocks", one.blocks);

@@ -25,7 +25,29 @@ std::vector<double> counted(std::size_t count) {
   return out;
 }
 
-void write_feature(Hdf5Group group, const ProbedFeature& found) {
+void write_fit(Hdf5Group& group, std::span<const Arrow> arrows) {
+  std::vector<double> places, deviations;
+  for (const Arrow& arrow : arrows) {
+    for (int i = 0; i < 3; ++i) places.push_back(arrow.place[i] / mm);
+    for (int i = 0; i < 3; ++i) deviations.push_back(arrow.deviation[i] / um);
+  }
+  group.table("fit_place", 3, places,
+              {"mm", "point of the nominal part nearest to the probed one after best fit"}, "point",
+              "xyz");
+  group.table("fit_deviation", 3, deviations,
+              {"um", "probed point minus nominal part after best fit"}, "point", "xyz");
+}
+
+void write_motion(Hdf5Group& group, const BestFit& fit) {
+  const Eigen::AngleAxisd turn(fit.motion.linear());
+  const Eigen::Vector3d shift = fit.motion.translation() / um;
+  const Eigen::Vector3d rotation = turn.angle() / urad * turn.axis();
+  group.attribute("fit_shift_um", std::span<const double>(shift.data(), 3));
+  group.attribute("fit_rotation_urad", std::span<const double>(rotation.data(), 3));
+  group.attribute("fit_rms_um", fit.rms / um);
+}
+
+void write_feature(Hdf5Group& group, const ProbedFeature& found) {
   group.attribute("kind", name_of(found.feature.kind));
   group.list("point", counted(found.deviation.size()), {"1", "number of the point"});
   group.list("repetition", counted(found.measured.size()), {"1", "number of the repetition"});
@@ -76,8 +98,14 @@ ProbedFeature read_feature(const InputFile& file, const std::string& group,
 
 }  // namespace
 
-void write_probes(Hdf5Group group, std::span<const ProbedFeature> features) {
-  for (const ProbedFeature& found : features) write_feature(group.group(found.name), found);
+void write_probes(Hdf5Group group, std::span<const ProbedFeature> features,
+                  const std::optional<PartFit>& fit) {
+  if (fit) write_motion(group, fit->fit);
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    Hdf5Group of_feature = group.group(features[i].name);
+    write_feature(of_feature, features[i]);
+    if (fit) write_fit(of_feature, fit->arrows[i]);
+  }
 }
 
 std::vector<ProbedFeature> read_probed(const InputFile& file, const std::string& group,

@@ -1,11 +1,13 @@
 /// Probed features in result files.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "sim/hdf5/hdf5_file.h"
+#include "sim/part_fit.h"
 #include "sim/probed_part.h"
 
 namespace servomill::sim {
@@ -19,9 +21,15 @@ namespace servomill::sim {
 ///     measured (repetition, point) um   along the normal
 ///     sigma    (point)             um   standard deviation of the repetitions
 ///     imposed  (point)             um   displacement along the normal that is asked for, if any
+///     fit_place (point, xyz)       mm   point of the nominal part nearest to the measured one
+///     after
+///                                       best fit, where there is a nominal part
+///     fit_deviation (point, xyz)   um   the measured one minus that
 ///
-/// and the attribute `kind`.
-void write_probes(Hdf5Group group, std::span<const ProbedFeature> features);
+/// and the attribute `kind`. Attributes of the group itself, of the best fit (measured -> nominal):
+/// `fit_shift_um` (of the work zero), `fit_rotation_urad` (rotation vector), `fit_rms_um`.
+void write_probes(Hdf5Group group, std::span<const ProbedFeature> features,
+                  const std::optional<PartFit>& fit);
 
 /// Reads them back, in the order of the plan; nothing if there is no such group.
 /// @throws InputError if what is there does not fit the plan

@@ -162,42 +162,29 @@ def draw_top_plane(run):
 
 @dataclasses.dataclass
 class FittedPart:
-    """Probed points of one part in XY after best fit (mm, um): nominal, normal, distance, sigma, and the fit."""
-    nominal: np.ndarray
-    normal: np.ndarray
-    distance: np.ndarray
+    """Contours of one part in XY after the best fit of all its probed points to the nominal part (mm, um)."""
+    place: np.ndarray       # (point, xy) on the nominal part
+    deviation: np.ndarray   # (point, xy) of the probed point from there; NaN where nothing was met
+    distance: np.ndarray    # (point) the same along the normal
     sigma: np.ndarray
     features: list          # (name, slice)
-    shift: np.ndarray       # um
-    turn: float             # urad
 
     def largest(self):
-        return np.nanmax(np.abs(self.distance))
+        return np.nanmax(np.linalg.norm(self.deviation, axis=1))
 
 
 def best_fit(run, case):
-    """All probed features of a part with normals in XY, moved and turned about Z as one so that the squares of their
-    distances to the nominal part are least: the last step of an iterated closest point (ICP) on flat and round faces, which
-    is linear for micrometres."""
+    """All probed features of a part with normals in XY, as laid on its nominal part (part.stl of the scenario)."""
     features = {name: cases[case] for name, cases in parts.probed(run).items() if case in cases and cases[case].is_level()}
     if not features:
         raise NotInFile(f"no probed feature of case {case} has normals in XY")
-    nominal, normal, d, sigma = (np.concatenate([getattr(one, name) for one in features.values()])
-                                 for name in ("nominal", "normal", "mean", "sigma"))
+    if any(one.fit_place is None for one in features.values()):
+        raise NotInFile(f"the part of case {case} was not laid on a nominal one (part.stl of the scenario)")
+    place, deviation, normal, sigma = (np.concatenate([getattr(one, name) for one in features.values()])
+                                       for name in ("fit_place", "fit_deviation", "normal", "sigma"))
     ends = np.cumsum([len(one.mean) for one in features.values()])
     slices = [(name, np.s_[end - len(one.mean):end]) for end, (name, one) in zip(ends, features.items())]
-    shift, turn, left = rigid_fit(nominal[:, :2], normal[:, :2], d)
-    return FittedPart(nominal[:, :2], normal[:, :2], left, sigma, slices, shift, turn)
-
-
-def rigid_fit(p, n, d):
-    """(shift um, turn urad, what is left um) of distances d (um) along normals n at points p (mm) in a plane."""
-    matrix = np.column_stack([n, (p[:, 0] * n[:, 1] - p[:, 1] * n[:, 0]) / UM_PER_MM])   # um per um, um per urad
-    good = np.isfinite(d)
-    if good.sum() < 3:
-        raise NotInFile("fewer than three points were met")
-    solution = np.linalg.lstsq(matrix[good], d[good], rcond=None)[0]
-    return solution[:2], solution[2], d - matrix @ solution
+    return FittedPart(place[:, :2], deviation[:, :2], (deviation * normal).sum(axis=1), sigma, slices)
 
 
 def draw_quivers(run):
@@ -206,13 +193,13 @@ def draw_quivers(run):
     largest = max(one.largest() for one in fitted.values())
     figure, strip, grid = style.panels([1.0], (13.2, 5.7), columns=3)
     strip.axis("off")
-    factor = magnification(np.ptp(fitted["nominal"].nominal, axis=0).max(), largest, 0.12)
+    factor = magnification(np.ptp(_outline(fitted["nominal"].place), axis=0).max(), largest, 0.12)
     for ax, (name, one) in zip(grid[0], fitted.items()):
         look = style.look_of(run, name)
         for _, part in one.features:
-            ax.plot(*_closed(one.nominal[part]).T, color=style.GREY, linewidth=0.9, zorder=1.9)
-        moved = one.distance[:, None] * one.normal * factor / UM_PER_MM
-        ax.quiver(one.nominal[:, 0], one.nominal[:, 1], moved[:, 0], moved[:, 1], color=look.colour, angles="xy",
+            ax.plot(*_closed(_outline(one.place[part])).T, color=style.GREY, linewidth=0.9, zorder=1.9)
+        moved = one.deviation * factor / UM_PER_MM
+        ax.quiver(*one.place.T, *moved.T, color=look.colour, angles="xy",
                   scale_units="xy", scale=1.0, width=0.004, zorder=3)
         ax.set_aspect("equal", adjustable="datalim")
         ax.margins(0.12)
@@ -221,6 +208,10 @@ def draw_quivers(run):
     grid[0][0].set_ylabel("Y of the part, mm")
     style.headline(figure, f"Distances to the nominal part after best fit, × {factor:.0f}: up to {style.number(largest)} µm")
     return figure
+
+
+def _outline(points):
+    return points[np.isfinite(points).all(axis=1)]
 
 
 def _closed(points):
@@ -236,14 +227,14 @@ def draw_superposed(run):
     ax = grid[0][0]
     nominal = fitted["nominal"]
     for _, part in nominal.features:
-        ax.plot(*_closed(nominal.nominal[part]).T, color="#b5b5b5", linewidth=1.0, zorder=1.9)
+        ax.plot(*_closed(_outline(nominal.place[part])).T, color="#b5b5b5", linewidth=1.0, zorder=1.9)
     looks = [style.Look("nominal part", "#b5b5b5", "-", "", 1.0)]
     for name, one in fitted.items():
         look = dataclasses.replace(style.look_of(run, name), line=style.DASH if name == "compensated" else "-")
         looks.append(look)
-        shown = one.nominal + one.distance[:, None] * one.normal * SUPERPOSED / UM_PER_MM
+        shown = one.place + one.deviation * SUPERPOSED / UM_PER_MM
         for _, part in one.features:
-            style.line(ax, *_closed(shown[part]).T, look, zorder=3.2 if name == "compensated" else 3)
+            style.line(ax, *_closed(_outline(shown[part])).T, look, zorder=3.2 if name == "compensated" else 3)
     style.legend(strip, looks)
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel("X of the part, mm")

@@ -22,6 +22,8 @@ class Feature:
     mean: np.ndarray         # (point) of the repetitions
     sigma: np.ndarray        # (point) standard deviation of a repetition
     imposed: np.ndarray      # (point) asked for along the normal; NaN: nothing
+    fit_place: np.ndarray | None = None      # (point, xyz) on the nominal part, nearest after best fit; None: no nominal part
+    fit_deviation: np.ndarray | None = None  # (point, xyz) from there, um
 
     def minus(self, base):
         """The same relative to a base case; both sides repeat, so their variances add."""
@@ -42,7 +44,8 @@ def probed(run):
             imposed = group["imposed"][:] if "imposed" in group else np.full_like(deviation, np.nan)
             found.setdefault(name, {})[case.name] = Feature(
                 str(group.attrs["kind"]), group["nominal"][:], group["normal"][:], deviation,
-                group["measured"][:].mean(axis=0), group["sigma"][:], imposed)
+                group["measured"][:].mean(axis=0), group["sigma"][:], imposed,
+                *(group[name][:] if name in group else None for name in ("fit_place", "fit_deviation")))
     if not found:
         raise NotInFile("no part was probed ([[probe]] of the scenario)")
     order = [one.get("name") for one in run.scenario.get("probe", [])]

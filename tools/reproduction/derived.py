@@ -105,7 +105,7 @@ def part_minus_trajectory(results, run, case, axis, feature):
 
 
 def largest_after_best_fit(results, run, case):
-    """Largest distance of the probed contours to the nominal part after best fit in XY, um."""
+    """Largest distance of the probed contours to the nominal part after best fit, um."""
     return float(experiment2.best_fit(results.opened(run), case).largest())
 
 

@@ -327,6 +327,39 @@ CUTTING = [
     axis("a structure that gives way to nothing", "structural_stiffness = 0.0"),
 ]
 
+FACE = "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex {} 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+PROBE = '[[probe]]\nname = "top"\npoints_mm = [[5.0, 5.0, 0.0, 0.0, 0.0, 1.0]]\n'
+
+
+def cuboid(x, y, z):
+    """ASCII STL from the origin to x, y, z."""
+    corner = [((i & 1) * x, (i >> 1 & 1) * y, (i >> 2) * z) for i in range(8)]
+    faces = ((0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6), (0, 6, 2),
+             (1, 3, 7), (1, 7, 5))
+    return "solid\n" + "".join(
+        "facet normal 0 0 0\nouter loop\n" + "".join("vertex %g %g %g\n" % corner[i] for i in face) + "endloop\nendfacet\n"
+        for face in faces) + "endsolid\n"
+
+
+def stl(title, content, probe="", about=None):
+    """A scenario with an STL of the nominal part."""
+    shown = {"about": about} if about else {}
+    return {**cut(title, '[part]\nstl = "part.stl"\n' + probe), "write": {"part.stl": content} if content is not None else {}, **shown}
+
+
+PART = [
+    stl("an STL that is not there", None),
+    stl("an STL without triangles", "solid part\nendsolid part\n"),
+    stl("an STL with holes", "solid\n" + FACE.format(1) + "endsolid\n"),
+    stl("a triangle without area", "solid\n" + FACE.format(0) + "endsolid\n"),
+    stl("an STL that breaks off", "solid\n" + FACE.format(1)[:60]),
+    stl("a STEP file for an STL", "ISO-10303-21;\nHEADER;\n"),
+    stl("a binary STL that breaks off", bytes(80) + b"\x02\0\0\0" + bytes(50), about="80 bytes, the number 2, one triangle"),
+    stl("a probe that misses the part", cuboid(10, 10, 10), PROBE, about="a cuboid of 10 mm"),
+    line("an STL that is no name", "[record]", "[part]\nstl = 1\n[record]"),
+    line("a raw part in STL", "[record]", '[[part.stock]]\nstl = "raw.stl"\n[record]'),
+]
+
 
 def sweep(title, text, *commands):
     """A table [sweep] in the scenario."""
@@ -504,4 +537,4 @@ PROBES = [
 ]
 
 WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO + POST + TABLES
-                + COMPENSATE + CUTTING + PROBES)
+                + COMPENSATE + CUTTING + PART + PROBES)

@@ -1,0 +1,27 @@
+/// A probed part laid on the nominal one.
+#pragma once
+
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "sim/metrology/best_fit.h"
+#include "sim/metrology/triangle_mesh.h"
+
+namespace servomill::sim {
+
+struct ProbedFeature;
+
+/// What the best fit of all probed points of a case found.
+struct PartFit {
+  BestFit fit;                             // of all points that were met, feature by feature
+  std::vector<std::vector<Arrow>> arrows;  // feature, point; NaN: nothing was met
+  double off = 0.0;  // m, the largest distance of a nominal point from the mesh: its facets
+};
+
+/// Lays the means of the repetitions on a mesh in the frame of the nominal points.
+std::variant<PartFit, NoFit> fit_part(std::span<const ProbedFeature> features,
+                                      const TriangleMesh& nominal);
+
+}  // namespace servomill::sim
