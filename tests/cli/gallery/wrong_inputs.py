@@ -355,7 +355,8 @@ PART = [
     stl("an STL that breaks off", "solid\n" + FACE.format(1)[:60]),
     stl("a STEP file for an STL", "ISO-10303-21;\nHEADER;\n"),
     stl("a binary STL that breaks off", bytes(80) + b"\x02\0\0\0" + bytes(50), about="80 bytes, the number 2, one triangle"),
-    stl("a probe that misses the part", cuboid(10, 10, 10), PROBE, about="a cuboid of 10 mm"),
+    stl("a probe that faces into the part, and one that misses it", cuboid(10, 10, 10),
+        PROBE + PROBE.replace("top", "middle").replace("0.0, 0.0, 0.0", "5.0, 0.0, 0.0"), about="a cuboid of 10 mm"),
     line("an STL that is no name", "[record]", "[part]\nstl = 1\n[record]"),
     line("a raw part in STL", "[record]", '[[part.stock]]\nstl = "raw.stl"\n[record]'),
 ]
