@@ -120,7 +120,7 @@ def main(arguments):
             ("circle", 110.0, "diameter, mm"), ("circle-depth", 6.0, "of the circle's foot, mm"),
             ("diamond-depth", 12.0, "of the diamond's foot, mm"), ("square-depth", 20.0, "of the square's foot, mm"),
             ("base", 20.0, "height below, mm"), ("tool-diameter", 8.0, "of the end mill, mm"),
-            ("tolerance", 0.0005, "of the circle, mm to both sides")):
+            ("tolerance", 0.0001, "of the circle, mm to both sides")):
         reader.add_argument(f"--{name}", type=float, default=default, metavar="X", help=f"{meaning} (default: {default:g})")
     reader.add_argument("--force", action="store_true", help="overwrite OUT")
     options = reader.parse_args(arguments)
