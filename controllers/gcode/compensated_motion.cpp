@@ -162,7 +162,7 @@ void Interpreter::Machine::compensate(MoveKind kind, const PlaneMove& path, cons
   Compensation::Waiting& waiting = compensation.queue.emplace_back();
   waiting.path = made.move;
   describe(waiting.move, kind);
-  waiting.move.feed = feed;
+  set_feed(waiting.move, feed);
   waiting.move.s_begin = s_begin;
   if (path.is_arc) {
     AxisWords centre = state_.with_plane(AxisWords::Zero(), made.move.centre);

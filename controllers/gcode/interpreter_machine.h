@@ -343,6 +343,8 @@ class Interpreter::Machine {
   Move& emit(MoveKind kind);
   void describe(Move& move, MoveKind kind) const;
   void describe_arc(Move& move, const AxisWords& centre, int turns) const;
+  /// Under G95 also what it comes to at the speed of the spindle.
+  void set_feed(Move& move, double feed) const;
   void move_to(MoveKind kind, const AxisWords& end, double length, double feed);
   void emit_spindle();
 

@@ -268,17 +268,20 @@ void Interpreter::Machine::move_to(MoveKind kind, const AxisWords& end, double l
   state_.s += length;
   state_.position = end;
   Move& move = emit(kind);
-  move.feed = feed;
+  set_feed(move, feed);
   if (move.feed_mode == FeedMode::inverse_time && kind != MoveKind::rapid) {
     const bool is_rotary = !(s_begin + length > s_begin);  // #<_feed> is what it came to
     state_.feed_linear = is_rotary ? feed / deg * state_.unit : feed;
   }
-  if (move.feed_mode == FeedMode::units_per_revolution && kind != MoveKind::rapid) {
-    const bool turns = state_.spindle_direction != 0;
-    move.value = feed;
-    move.feed = turns ? feed * state_.spindle_speed / (2.0 * std::numbers::pi) : 0.0;
-  }
   move.s_begin = s_begin;
+}
+
+void Interpreter::Machine::set_feed(Move& move, double feed) const {
+  move.feed = feed;
+  if (move.feed_mode != FeedMode::units_per_revolution || move.kind == MoveKind::rapid) return;
+  const bool turns = state_.spindle_direction != 0;
+  move.value = feed;
+  move.feed = turns ? feed * state_.spindle_speed / (2.0 * std::numbers::pi) : 0.0;
 }
 
 }  // namespace servomill::controllers

@@ -31,6 +31,16 @@ TEST(FeedPerRevolution, FollowsTheSpeedFromMoveToMove) {
   EXPECT_NEAR(moves[6].value, 0.5e-3, kExact);
 }
 
+// Moves wait there for the corner at their end.
+TEST(FeedPerRevolution, HoldsUnderCutterCompensation) {
+  const auto moves = moves_of("S600 M3\nG95 F0.5\nG41.1 D2 G1 X10\nX20 Y10\nX30\nG40 X40");
+  for (const Move& move : moves) {
+    if (!is_motion(move.kind)) continue;
+    EXPECT_NEAR(move.value, 0.5e-3, kExact) << move.line;
+    EXPECT_NEAR(move.feed, 5e-3, kExact) << move.line;
+  }
+}
+
 TEST(FeedPerRevolution, NeedsASpeed) {
   EXPECT_EQ(fault_of("G95 F1\nG1 X1"),
             "p.nc:2:1: error: G1 under G95 with zero spindle speed; no S is in force");
