@@ -22,7 +22,7 @@ from figures.results import NotInFile, open_result
 FORMATS = ("png", "svg", "pdf")
 # no dates: the same results give the same bytes
 METADATA = {"svg": {"Date": None}, "pdf": {"CreationDate": None, "ModDate": None}}
-PALETTE = 64   # colours of a PNG
+PALETTE = 128  # colours of a PNG
 
 
 def chosen(text, allowed, what):
@@ -45,7 +45,8 @@ def save(drawn, path, ending):
         return
     drawn.canvas.draw()
     picture = Image.fromarray(np.asarray(drawn.canvas.buffer_rgba())[:, :, :3])
-    picture = picture.quantize(PALETTE, dither=Image.Dither.NONE)
+    # by coverage: rare colours, as of a few marks or of a bar of colours, stay what they are
+    picture = picture.quantize(PALETTE, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
     picture.save(path, compress_level=9, dpi=(drawn.dpi, drawn.dpi))
 
 

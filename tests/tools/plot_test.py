@@ -293,6 +293,26 @@ class Looks(WithFiles):
         self.assertGreater(largest.min(), 0.99)
 
 
+class Pictures(WithFiles):
+    PALETTE_TOL = 24   # of 255: colours of a few points and of a bar of colours are still told apart
+
+    def test_a_palette_leaves_rare_colours_what_they_are(self):
+        style.set_up()
+        figure, ax = style.plt.subplots()
+        self.addCleanup(style.plt.close, figure)
+        ax.scatter(range(9), range(9), c=np.linspace(-1.0, 1.0, 9), cmap="RdBu_r", s=9)
+        for look in style.LOOKS.values():
+            ax.plot([0.0, 1.0], [8.0, 8.0], color=look.colour)
+        figure.colorbar(style.matplotlib.cm.ScalarMappable(cmap="RdBu_r"), ax=ax)
+        program.save(figure, self.out / "palette.png", "png")
+        drawn = np.asarray(figure.canvas.buffer_rgba())[:, :, :3].astype(int)
+        with Image.open(self.out / "palette.png") as picture:
+            self.assertEqual(picture.mode, "P")
+            saved = np.asarray(picture.convert("RGB")).astype(int)
+        self.assertLess(np.abs(saved - drawn).max(), self.PALETTE_TOL)
+        self.assertEqual(list(saved[0, 0]), [255, 255, 255])
+
+
 class Drawing(WithFiles):
     def test_all_that_a_run_holds_is_drawn_and_the_rest_explained(self):
         done = plot(self.side, "-o", self.out)
