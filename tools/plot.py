@@ -3,10 +3,11 @@
 `step` and `budget`, and the records of `compensate`.
 
 Figures are named after those of Guevel et al. 2025 that they answer to; `--list` prints all.
-What a file does not hold is told and the rest drawn. Exit status: 0 drawn, 2 a file cannot be read or
-nothing can be drawn, 3 the system failed.
+What a file holds is drawn; why a figure is not is said of those in `--figures`, of all with `--why`. Exit status:
+0 drawn, 2 a file cannot be read or nothing can be drawn, 3 the system failed.
 """
 import argparse
+import dataclasses
 import difflib
 import pathlib
 import sys
@@ -50,9 +51,16 @@ def save(drawn, path, ending):
     picture.save(path, compress_level=9, dpi=(drawn.dpi, drawn.dpi))
 
 
+@dataclasses.dataclass(frozen=True)
+class NotDrawn:
+    figure: object          # of FIGURES
+    reason: str
+    failed: bool = False    # the file holds what it needs, and yet
+
+
 def draw_all(result, named):
-    """Draws what one file holds: {figure: drawn}, {figure: why it is not drawn}."""
-    drawn, missing = {}, {}
+    """Draws what one file holds: {figure: drawn}, [NotDrawn]."""
+    drawn, missing = {}, []
     for case in result.cases.values() if result.kind == "run" else []:
         if not case.finished:
             print(f"case {case.name} stopped ({case.outcome}); it is drawn over time only", file=sys.stderr)
@@ -66,9 +74,9 @@ def draw_all(result, named):
                 raise NotInFile(f"the file holds a {result.kind}, not a {figure.kind}")
             drawn[figure] = figure.draw(result)
         except NotInFile as reason:
-            missing[figure] = f"{reason}"
+            missing.append(NotDrawn(figure, f"{reason}"))
         except Exception as fault:   # one that fails must not cost the others
-            missing[figure] = failure(fault)
+            missing.append(NotDrawn(figure, failure(fault), failed=True))
     return drawn, missing
 
 
@@ -76,15 +84,15 @@ def failure(fault):
     return f"drawing it failed ({type(fault).__name__}: {' '.join(str(fault).split())})"
 
 
-def pages_of(files, named):
+def pages_of(files, named, why):
     """All figures of all files as (stem of the file name, figure), and whether a file could not be read. What is not
-    drawn is explained, unless another kind of file was meant. InputError: nothing can be drawn."""
+    drawn is told, unless another kind of file was meant. InputError: nothing can be drawn."""
     pages, found, missing, unread = [], set(), [], []
     for file in files:
         try:
             with open_result(file) as result:
                 drawn, lost = draw_all(result, named)
-                missing += [(file, figure, result.kind, reason) for figure, reason in lost.items()]
+                missing.append((file, result.kind, lost))
         except InputError as fault:
             unread.append(str(fault))
             continue
@@ -93,17 +101,27 @@ def pages_of(files, named):
         if not named and not drawn:
             unread.append(f"{file}: error: holds nothing that can be drawn")
     if named and not pages:
-        unread += [f"{file}: error: {figure.name}: {reason}" for file, figure, _, reason in missing]
+        unread += [f"{file}: error: {one.figure.name}: {one.reason}" for file, _, lost in missing for one in lost]
     else:
-        for file, figure, kind, reason in missing:
-            if figure.kind == kind or figure not in found:
-                where = f"{file}: " if len(files) > 1 else ""
-                print(f"{where}{figure.name}: not drawn, {reason}", file=sys.stderr)
+        for file, kind, lost in missing:
+            lost = [one for one in lost if one.figure.kind == kind or one.figure not in found]
+            tell_not_drawn(f"{file}: " if len(files) > 1 else "", lost, bool(named) or why)
     if not pages:
         raise InputError("\n".join(unread))
     for line in unread:
         print(line, file=sys.stderr)
     return pages, bool(unread)
+
+
+def tell_not_drawn(where, lost, why):
+    """Says why each is not drawn; else only how many there are, and why of those that failed."""
+    for one in lost:
+        if why or one.failed:
+            print(f"{where}{one.figure.name}: not drawn, {one.reason}", file=sys.stderr)
+    others = sum(not one.failed for one in lost)
+    if others and not why:
+        print(f"{where}{others} other figure{'s' if others > 1 else ''} would need what the file does not hold; see --why",
+              file=sys.stderr)
 
 
 def main(arguments):
@@ -113,6 +131,7 @@ def main(arguments):
     reader.add_argument("-o", metavar="DIR", default=".", help="folder to write to (default: here)")
     reader.add_argument("--format", metavar="png,svg,pdf", default="png", help="default: png")
     reader.add_argument("--figures", metavar="NAME,...", help="default: all that the files hold")
+    reader.add_argument("--why", action="store_true", help="say of every figure that is not drawn why")
     reader.add_argument("--list", action="store_true", help="print the names of all figures")
     reader.add_argument("--force", action="store_true", help="overwrite existing figures")
     options = reader.parse_args(arguments)
@@ -133,7 +152,7 @@ def main(arguments):
     # everything is drawn before anything is written
     style.set_up()
     folder = pathlib.Path(options.o)
-    drawn, unread = pages_of(options.files, named)
+    drawn, unread = pages_of(options.files, named, options.why)
     pages = [(folder / f"{name}.{ending}", figure, ending) for name, figure in drawn for ending in formats]
     for path, _, _ in pages:
         if path.exists() and not options.force:

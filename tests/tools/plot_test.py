@@ -314,8 +314,20 @@ class Pictures(WithFiles):
 
 
 class Drawing(WithFiles):
-    def test_all_that_a_run_holds_is_drawn_and_the_rest_explained(self):
+    def test_all_that_a_run_holds_is_drawn_and_the_rest_counted(self):
         done = plot(self.side, "-o", self.out)
+        self.assertEqual((done.returncode, done.stderr),
+                         (0, "16 other figures would need what the file does not hold; see --why\n"))
+        self.assertEqual(len(self.drawn()), 7)
+
+    def test_of_several_files_each_is_counted(self):
+        done = plot(self.side, self.sweep, "-o", self.out)
+        self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [
+            f"{self.side}: 16 other figures would need what the file does not hold; see --why",
+            f"{self.sweep}: 2 other figures would need what the file does not hold; see --why"]))
+
+    def test_all_that_a_run_holds_is_drawn_and_the_rest_explained_where_one_asks(self):
+        done = plot(self.side, "-o", self.out, "--why")
         self.assertEqual(done.returncode, 0, done.stderr)
         names = ["circular", "deviations", "figure10", "figure11", "figure6", "figure9",
                  "reversals"]
@@ -512,7 +524,7 @@ class Balls(WithFiles):
         for name, figure, other in (("rtest", "nest", "ball_bar"), ("bk4", "ball_bar", "nest")):
             path = self.root / f"{name}.h5"
             servomill("run", HERE.parents[1] / f"scenarios/iso/{name}.toml", "-o", path, "-q")
-            done = plot(path, "-o", self.out)     # all, though the tip of an R-test stands
+            done = plot(path, "-o", self.out, "--why")     # all, though the tip of an R-test stands
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertGreater((self.out / f"{name}-{figure}.png").stat().st_size, SMALLEST_PNG)
             self.assertIn(f"{other}: not drawn, the scenario asks for no ", done.stderr)
@@ -551,6 +563,10 @@ class Mistakes(WithFiles):
             self.assertEqual((done.returncode, done.stderr), (
                 0, "figure9: not drawn, drawing it failed (LinAlgError: SVD did not converge)\n"))
             self.assertEqual(self.drawn(), ["side-figure6.png"])
+            done = plot(self.side, "-o", self.out / "all")
+            self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [   # a failure is told unasked
+                "figure9: not drawn, drawing it failed (LinAlgError: SVD did not converge)",
+                "16 other figures would need what the file does not hold; see --why"]))
 
     def test_a_file_that_cannot_be_read_costs_no_other(self):
         missing = self.root / "missing.h5"
