@@ -118,6 +118,8 @@ class Verdicts(unittest.TestCase):
                 (row(kind="chosen"), 2.0, verdicts.WITHIN),
                 (row(meaning="below", tolerance=0.0), 2.0, verdicts.WITHIN),
                 (row(meaning="below", tolerance=0.0), 2.01, verdicts.NOT_REPRODUCED),
+                (row(meaning="below", tolerance=0.0), -2.0, verdicts.WITHIN),
+                (row(meaning="below", tolerance=0.0), -2.01, verdicts.NOT_REPRODUCED),
                 (row(meaning="above", tolerance=0.0), 1.99, verdicts.NOT_REPRODUCED),
                 (row(meaning="between", value=None, limits=(1.0, 3.0), tolerance=0.0), 3.0, verdicts.WITHIN),
                 (row(kind="given", tolerance=0.0), 2.0, verdicts.GIVEN),
@@ -364,6 +366,8 @@ class Faults(unittest.TestCase):
                    "predicted, chosen, bound, given")
         self.fails(self.GOOD.replace("value = 1.0\n", ""), "rows.toml: row a: error: value is missing; where the paper gives none, "
                    "lacks must say what it lacks")
+        self.fails(self.GOOD.replace("value = 1.0\n", 'meaning = "below"\nvalue = -1.0\n'),
+                   "rows.toml: row a: error: value = -1; must be >= 0 where it limits a magnitude")
         self.fails(self.GOOD.replace('tolerance_reason = "t"\n', ""), "rows.toml: row a: error: tolerance_reason is missing")
         self.fails(self.GOOD.replace('why = "w"\n', ""), "rows.toml: row a: error: why is missing")
         self.fails(self.GOOD + self.GOOD, "rows.toml: row a: error: stands there 2 times")

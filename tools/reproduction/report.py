@@ -38,7 +38,7 @@ def accepted(row):
         return ""
     low, high = verdicts.limits(row)
     if row.meaning == "below":
-        return f"<= {high:g}"
+        return f"magnitude <= {high:g}"
     if row.meaning == "above":
         return f">= {low:g}"
     return f"{low:.5g} to {high:.5g}"

@@ -11,7 +11,8 @@ from command_line import InputError
 ROWS = pathlib.Path(__file__).with_name("rows.toml")
 
 PAPERS = {"G": "Guevel et al. 2025", "L": "Li 2024"}
-# What a paper's number means: the value itself, an upper or lower limit, or limits within which it lies.
+# What a paper's number means: the value itself, an upper limit of the magnitude, a lower limit, or limits within which it
+# lies.
 MEANINGS = ("equal", "below", "above", "between")
 # What our number is worth. identified: a parameter was fixed with the paper's number; predicted: it followed;
 # chosen: it follows from an input that the paper does not give; bound: the model has no cause to reach it; given: an input
@@ -57,6 +58,8 @@ def _row(table, where):
         raise InputError(f"{where}: error: limits must have two numbers")
     if compared and row.meaning != "between" and row.value is None:
         raise InputError(f"{where}: error: value is missing; where the paper gives none, lacks must say what it lacks")
+    if compared and row.meaning == "below" and row.value < 0.0:
+        raise InputError(f"{where}: error: value = {row.value:g}; must be >= 0 where it limits a magnitude")
     if compared and not row.tolerance_reason:
         raise InputError(f"{where}: error: tolerance_reason is missing")
     return row

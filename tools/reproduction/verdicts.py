@@ -12,11 +12,12 @@ ALL = (REPRODUCED, WITHIN, GIVEN, NOT_REPRODUCED, NOT_EXPLAINED, NOT_COMPARED, M
 
 
 def limits(row):
-    """Lowest and highest value that the row's meaning and tolerance accept (infinite where open)."""
+    """Lowest and highest value that the row's meaning and tolerance accept (infinite where open). "below" is said of a
+    magnitude: what lies far on the other side of zero is no less of an error."""
     if row.meaning == "equal":
         low, high = row.value, row.value
     elif row.meaning == "below":
-        low, high = -math.inf, row.value
+        low, high = -row.value, row.value
     elif row.meaning == "above":
         low, high = row.value, math.inf
     else:
