@@ -390,6 +390,35 @@ class Compared:
         return [self.row]
 
 
+class AScenarioSets(unittest.TestCase):
+    """What derived.scenario_key reads of a scenario, and what it refuses."""
+
+    SCENARIO = {"axis": {"Z": {"stiffness": "20 N/um", "teeth": 4, "name": "Z"}},
+                "tool": [{"name": "ball", "diameter_mm": 8.0}, {"diameter_mm": "6"}]}
+
+    def read(self, key, **unit):
+        results = types.SimpleNamespace(opened=lambda _: types.SimpleNamespace(scenario=self.SCENARIO))
+        return derived.scenario_key(results, "r", key, **unit)
+
+    def test_a_number_or_a_text_in_the_unit_asked_for(self):
+        for key, unit, value in (("axis.Z.teeth", {}, 4.0), ("tool.ball.diameter_mm", {}, 8.0), ("tool.1.diameter_mm", {}, 6.0),
+                                 ("axis.Z.stiffness", {"unit": "N/um"}, 20.0)):
+            self.assertEqual(self.read(key, **unit), value)
+
+    def test_nothing_else(self):
+        for key, unit, reason in (
+                ("axis.Z.stiffness", {}, "axis.Z.stiffness of r is 20 N/um, not in the unit of the key"),
+                ("axis.Z.stiffness", {"unit": "N/m"}, "axis.Z.stiffness of r is 20 N/um, not in N/m"),
+                ("axis.Z.teeth", {"unit": "mm"}, "axis.Z.teeth of r is 4, not in mm"),
+                ("axis.Z.name", {}, "axis.Z.name of r is no number"),
+                ("axis.Z.lead_mm", {}, "r sets no axis.Z.lead_mm"),
+                ("axis.Z.teeth.first", {}, "r sets no axis.Z.teeth.first"),
+                ("tool.2.diameter_mm", {}, "r sets no tool.2.diameter_mm")):
+            with self.assertRaises(files.NotInFile) as fault:
+                self.read(key, **unit)
+            self.assertEqual(str(fault.exception), reason)
+
+
 class OfAPart(unittest.TestCase):
     WANTED = {"run": "experiment2", "case": "one", "quantity": "flatness"}
 

@@ -13,22 +13,26 @@ from figures.results import NotInFile
 TABLE31 = pathlib.Path(__file__).resolve().parents[2] / "scenarios" / "li2024" / "table31.csv"
 
 
-def scenario_key(results, run, key):
-    """A number that the scenario sets: what was taken from the paper as an input. Elements of lists by name or place."""
+def scenario_key(results, run, key, unit=""):
+    """A number that the scenario sets: what was taken from the paper as an input. Elements of lists by name or place.
+    unit: that of a text ("20 N/um"); a plain number has the one that its key names."""
     node = results.opened(run).scenario
     for part in key.split("."):
         if isinstance(node, list):
             named = [one for one in node if one.get("name") == part]
             node = named[0] if named else node[int(part)] if part.isdigit() and int(part) < len(node) else None
         else:
-            node = node.get(part)
+            node = node.get(part) if isinstance(node, dict) else None
         if node is None:
             raise NotInFile(f"{run} sets no {key}")
-    text = str(node).split()[0]
+    number, _, written = str(node).partition(" ")
     try:
-        return float(text)
+        value = float(number)
     except ValueError:
         raise NotInFile(f"{key} of {run} is no number") from None
+    if written.strip() != unit:
+        raise NotInFile(f"{key} of {run} is {node}, not in {unit or 'the unit of the key'}")
+    return value
 
 
 def _over_sweep(results, run, case, quantity):
@@ -150,7 +154,7 @@ def _between_parts(results, run, case, base, section):
 
 def stiffness_needed(results, run, case, base, section, um):
     """Structural stiffness of Z (N/um) at which the tool would show `um` between two parts cut with these forces."""
-    return (scenario_key(results, run, "machine.axis.Z.structural_stiffness")
+    return (scenario_key(results, run, "machine.axis.Z.structural_stiffness", "N/um")
             * _between_parts(results, run, case, base, section) / um)
 
 
