@@ -23,7 +23,7 @@ from figures.results import NotInFile, open_result
 FORMATS = ("png", "svg", "pdf")
 # no dates: the same results give the same bytes
 METADATA = {"svg": {"Date": None}, "pdf": {"CreationDate": None, "ModDate": None}}
-PALETTE = 128  # colours of a PNG
+PALETTE = 256  # colours of a PNG
 
 
 def chosen(text, allowed, what):
