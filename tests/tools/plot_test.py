@@ -23,7 +23,7 @@ import numpy as np
 from PIL import Image
 
 import plot as program
-from figures import balls, circular, five_axis, lag, nonlinear, notches, parts, results, straightness, style, sweeps, volumetric
+from figures import balls, circular, five_axis, lag, nonlinear, notches, parts, probed_points, results, straightness, style, sweeps, volumetric
 
 SERVOMILL = ""
 AGREE = 1e-7        # um; `compare` prints nine digits of up to 100 um
@@ -252,6 +252,14 @@ class Looks(WithFiles):
         self.assertEqual(len({look.colour for look in looks}), 4)
         self.assertEqual(len({look.line for look in looks}), 4)
 
+    def test_cases_that_are_not_shown_change_no_look(self):
+        class File:
+            scenario = {"case": [{"name": n, "strategy": [{"type": "none"}]} for n in "abc"]}
+            strategies = results.ResultFile.strategies
+
+        self.assertEqual(style.look_of(File(), "b", "bc").colour, style.BLACK)
+        self.assertEqual(style.look_of(File(), "c", "bc"), dataclasses.replace(style.look_of(File(), "b"), label="c"))
+
     def test_strategies_differ_in_grey_or_in_line(self):
         shown = [style.LOOKS[name] for name in ("nominal", "table", "feedback", "feedback_lead",
                                                 "gcode")]
@@ -264,7 +272,6 @@ class Looks(WithFiles):
             for other in shown[:i]:
                 self.assertTrue(abs(grey(one) - grey(other)) > 20 or one.line != other.line,
                                 f"{one.label} and {other.label}")
-
 
     def test_cases_are_called_alike_in_all_figures(self):
         class File:
@@ -498,23 +505,112 @@ class Drawing(WithFiles):
 class Parts(WithFiles):
     """The part on the virtual CMM."""
 
+    LOST = {"as_it_is": {"front": [3, 20], "notch": [2], "top": [4]}, "compensated": {"front": [30]}}
+
+    @classmethod
+    def setUpClass(cls):
+        cls.block, cls.missed = cls.root / "block.h5", cls.root / "missed.h5"
+        servomill("run", HERE.parents[1] / "scenarios/parts/block.toml", "-o", cls.block, "-q")
+        shutil.copy(cls.block, cls.missed)
+        with h5py.File(cls.missed, "a") as file:
+            for case, features in cls.LOST.items():
+                for feature, points in features.items():
+                    for name in ("deviation", "sigma", "measured"):
+                        for point in points:
+                            file[f"cases/{case}/probes/{feature}/{name}"][..., point] = np.nan
+
+    def drawn_of(self, path, draw):
+        style.set_up()
+        with results.open_result(path) as run:
+            figure = draw(run)
+        self.addCleanup(style.plt.close, figure)
+        return figure
+
+    def crosses(self, axes):
+        """Places that are marked as missed, by colour of the case."""
+        found = {}
+        for line in axes.lines:
+            if line.get_marker() == style.MISSED.marker and len(line.get_xydata()):
+                found.setdefault(line.get_markeredgecolor(), []).extend(tuple(place) for place in line.get_xydata())
+        return found
+
     def test_the_block_is_drawn_and_agrees_with_compare(self):
-        path = self.root / "block.h5"
-        servomill("run", HERE.parents[1] / "scenarios/parts/block.toml", "-o", path, "-q")
-        done = plot(path, "-o", self.out, "--figures", "probed,part,planes")
+        done = plot(self.block, "-o", self.out, "--figures", "probed,part,planes")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(self.drawn(), ["block-part.png", "block-planes.png", "block-probed.png"])
         for drawn in self.out.iterdir():
             self.assertGreater(drawn.stat().st_size, SMALLEST_PNG, drawn)
-        rows = [json.loads(line) for line in servomill("compare", path, "--json").splitlines()]
+        rows = [json.loads(line) for line in servomill("compare", self.block, "--json").splitlines()]
         said = {row["case"]: row["value"] for row in rows if row["quantity"] == "probed_deviation"}
-        with results.open_result(path) as run:
+        with results.open_result(self.block) as run:
             front = parts.relative(run, parts.probed(run)["front"])
         self.assertEqual(list(front), ["as_it_is", "compensated"])
         for case, one in front.items():
             self.assertAlmostEqual(np.abs(one.mean).max(), said[case], delta=AGREE)
             # the bars are those of the scenario: 1.5 um, k = 2, both sides of the difference
             self.assertAlmostEqual(np.sqrt((one.sigma ** 2).mean()), 0.75 * np.sqrt(2.0), delta=0.15)
+
+    def test_a_case_without_strategy_stands_out_where_the_nominal_one_is_left_out(self):
+        with results.open_result(self.block) as run:
+            looks = parts.looks_of(run, ["as_it_is", "compensated"])
+            self.assertEqual((looks["as_it_is"].colour, looks["as_it_is"].line), (style.BLACK, "-"))
+            self.assertNotEqual(style.look_of(run, "as_it_is").colour, style.BLACK)   # beside the nominal one
+        figure = self.drawn_of(self.block, parts.draw_plan)
+        arrows = [style.matplotlib.colors.to_hex(ax.collections[0].get_facecolor()[0]) for ax in figure.axes[1:]]
+        self.assertEqual(arrows, [style.BLACK, style.PURPLE])
+        self.assertNotIn(parts.PALE, arrows)    # nominal places
+
+    def test_points_that_met_nothing_are_marked_and_counted(self):
+        with results.open_result(self.missed) as run:
+            nominal = {name: cases["nominal"].nominal for name, cases in parts.probed(run).items()}
+        at = {name: [tuple(nominal[name][n][:2]) for n in points] for name, points in self.LOST["as_it_is"].items()}
+
+        figure = self.drawn_of(self.missed, parts.draw_plan)
+        strip, as_it_is, compensated = figure.axes
+        self.assertEqual([text.get_text() for text in strip.get_legend().texts], ["nominal place", "met nothing"])
+        self.assertEqual(as_it_is.get_title(loc="left"), "as it is, 3 of 124 points missed")
+        self.assertEqual(compensated.get_title(loc="left"), "compensated, 1 of 124 points missed")
+        self.assertEqual(sorted(self.crosses(as_it_is)[style.BLACK]), sorted(at["front"] + at["notch"]))
+
+        figure = self.drawn_of(self.missed, parts.draw_deviations)
+        front = figure.axes[1]
+        self.assertEqual(front.get_title(loc="left"), "front, minus nominal   as it is: 2 of 41 points missed   "
+                         "compensated: 1 of 41 points missed")
+        self.assertEqual({colour: len(places) for colour, places in self.crosses(front).items()},
+                         {style.BLACK: 2, style.PURPLE: 1})
+        self.assertRegex(figure.axes[-1].get_xlabel(), "crosses below: nothing met")
+
+        figure = self.drawn_of(self.missed, parts.draw_planes)
+        self.assertEqual(figure.axes[0].get_title(loc="left"), "top, as it is, 1 of 33 points missed")
+        self.assertEqual(self.crosses(figure.axes[0]), {style.MISSED.colour: at["top"]})
+        self.assertEqual(self.crosses(figure.axes[1]), {})
+
+    def test_the_scale_of_the_part_follows_from_its_deviations_and_is_told(self):
+        self.assertEqual(self.drawn_of(self.block, parts.draw_plan).texts[0].get_text(),
+                         "Part from above, minus nominal, × 1000: up to 9.1 µm")
+        larger = self.out / "larger.h5"
+        shutil.copy(self.block, larger)
+        with h5py.File(larger, "a") as file:
+            for case in file["cases"].values():
+                for probe in case["probes"].values():
+                    probe["measured"][...] *= 10.0
+        self.assertEqual(self.drawn_of(larger, parts.draw_plan).texts[0].get_text(),
+                         "Part from above, minus nominal, × 100: up to 90.9 µm")
+
+    def test_what_a_figure_leaves_out_is_told(self):
+        self.assertEqual([parts.not_shown(count, "case") for count in (0, 1, 2)],
+                         ["", "; 1 more case not shown", "; 2 more cases not shown"])
+        self.assertEqual(parts.told_largest(np.array([np.nan, -9.06, 1.0])), "up to 9.1 µm")
+        self.assertEqual(parts.told_largest(np.array([np.nan])), "no point was met")
+
+    def test_probed_points_of_a_notch_are_counted_where_they_are_lost(self):
+        with results.open_result(self.missed) as run:
+            (found,) = [probed_points.notches(run)["as_it_is"]]
+            self.assertEqual(list(found.missed), [1])
+            self.assertTrue(np.isfinite(found.displacement).all())     # of the points that are left
+            self.assertEqual(probed_points.told(probed_points.notches(run)), "; crosses: probed, ±2σ; hollow: 1 missed")
+        with results.open_result(self.block) as run:
+            self.assertEqual(probed_points.told(probed_points.notches(run)), "; crosses: probed, ±2σ")
 
 
 class Balls(WithFiles):

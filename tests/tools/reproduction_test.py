@@ -322,6 +322,76 @@ class Parts(unittest.TestCase):
         for at in ("scale", "tool"):
             self.assertEqual(derived.cutting_minus_air(results, "", "generated", at, "circle"), 0.0)
 
+    def changed(self, change):
+        """The run after change(file, the features of the generated part)."""
+        with tempfile.NamedTemporaryFile(suffix=".h5") as copy:
+            path = pathlib.Path(copy.name)
+            path.write_bytes(self.run_.path.read_bytes())
+            with h5py.File(path, "a") as file:
+                change(file, file["cases/generated/probes"])
+            return self.enterContext(files.open_result(path))
+
+    def test_without_a_nominal_part_there_is_no_best_fit(self):
+        def forget(_, features):
+            for feature in features.values():
+                del feature["fit_place"], feature["fit_deviation"]
+
+        def forget_with_stl(file, features):
+            forget(file, features)
+            file["inputs"].attrs["resolved"] = file["inputs"].attrs["resolved"] + '\n[part]\nstl = "m1_part.stl"\n'
+
+        for change, reason in (
+                (forget, "the part of case generated was laid on no nominal one: the scenario names none (part.stl)"),
+                (forget_with_stl, "the part of case generated could not be laid on m1_part.stl")):
+            run = self.changed(change)
+            for draw in (lambda one: experiment2.best_fit(one, "generated"), experiment2.draw_quivers, experiment2.draw_superposed):
+                with self.assertRaises(files.NotInFile) as fault:
+                    draw(run)
+                self.assertEqual(str(fault.exception), reason)
+            self.assertIsNotNone(experiment2.best_fit(run, "nominal"))
+
+    LOST = [0, 10]   # points of the circle
+
+    def lose(self, points):
+        def change(_, features):
+            for point in points:
+                for name in ("deviation", "measured", "sigma"):
+                    features["circle"][name][..., point] = np.nan
+                for name in ("fit_place", "fit_deviation"):
+                    features["circle"][name][point] = np.nan
+        return self.changed(change)
+
+    def test_points_that_met_nothing_are_marked_and_break_the_outline(self):
+        style.set_up()
+        run = self.lose(self.LOST)
+        places = experiment2.best_fit(run, "generated").nominal[self.LOST]
+        for draw, axes in ((experiment2.draw_quivers, 2), (experiment2.draw_superposed, 1)):
+            figure = draw(run)
+            self.addCleanup(style.plt.close, figure)
+            ax = figure.axes[axes]
+            (crosses,) = [line.get_xydata() for line in ax.lines
+                          if line.get_marker() == style.MISSED.marker and len(line.get_xydata())]
+            np.testing.assert_array_equal(crosses, places)
+            self.assertIn("2 of 81 points missed", ax.get_title(loc="left"))
+        outlines = [line.get_xydata() for line in ax.lines if line.get_color() == style.RED]
+        self.assertEqual(sorted(np.isnan(outline[:, 0]).sum() for outline in outlines), [0, 3])  # the first one twice: it is closed
+
+    def test_of_a_part_of_the_points_there_is_no_number(self):
+        results = types.SimpleNamespace(opened=lambda _: self.lose(self.LOST))
+        for number in (lambda: derived.largest_after_best_fit(results, "", "generated"),
+                       lambda: derived.difference_after_best_fit(results, "", "generated", "nominal")):
+            with self.assertRaises(files.NotInFile) as fault:
+                number()
+            self.assertEqual(str(fault.exception), "the part of case generated was not probed at all of its points")
+        with self.assertRaises(files.NotInFile) as fault:
+            experiment2.best_fit(self.changed(lambda _, features: self.lose_all(features)), "generated")
+        self.assertEqual(str(fault.exception), "no point of the contours of case generated was met")
+
+    @staticmethod
+    def lose_all(features):
+        for feature in features.values():
+            feature["measured"][...] = np.nan
+
     def test_figures_are_drawn(self):
         style.set_up()
         for draw in (experiment2.draw_air_and_cutting, experiment2.draw_top_plane, experiment2.draw_quivers,

@@ -148,9 +148,11 @@ def draw_top_plane(run):
             ax.set_xlabel(f"{axis} of the part, mm")
             if column == 0:
                 ax.set_ylabel("Z, µm")
-        about_x, about_y = plane.rotations()
-        grid[0][column].set_title(f"{looks[name].label}: turned about Y by {about_y:.5f}°", fontsize=10.5)
-        grid[1][column].set_title(f"about X by {about_x:.5f}°, flat within {np.ptp(plane.residual):.1f} µm", fontsize=10.5)
+            style.missed_below(ax, one.nominal[one.missed(), number], looks[name])
+        about_x, about_y = (f"{angle:.5f}°".replace("-", "−") for angle in plane.rotations())
+        grid[0][column].set_title(f"{looks[name].label}: about Y by {about_y}", fontsize=10.5)
+        grid[1][column].set_title("\n".join([f"about X by {about_x}, flat within {np.ptp(plane.residual):.1f} µm",
+                                             *parts.told_missed([one])]), fontsize=10.5)
     for row in grid:
         limits = [ax.get_ylim() for ax in row]
         for ax in row:
@@ -163,14 +165,19 @@ def draw_top_plane(run):
 @dataclasses.dataclass
 class FittedPart:
     """Contours of one part in XY after the best fit of all its probed points to the nominal part (mm, um)."""
-    place: np.ndarray       # (point, xy) on the nominal part
-    deviation: np.ndarray   # (point, xy) of the probed point from there; NaN where nothing was met
+    nominal: np.ndarray     # (point, xy) where the CMM probed
+    place: np.ndarray       # (point, xy) on the nominal part; NaN where nothing was met
+    deviation: np.ndarray   # (point, xy) of the probed point from there
     distance: np.ndarray    # (point) the same along the normal
     sigma: np.ndarray
-    features: list          # (name, slice)
+    features: dict          # {name: slice of the points}
+    told_missed: list       # as of parts.told_missed
 
     def largest(self):
         return np.nanmax(np.linalg.norm(self.deviation, axis=1))
+
+    def missed(self):
+        return np.isnan(self.distance)
 
 
 def best_fit(run, case):
@@ -179,12 +186,25 @@ def best_fit(run, case):
     if not features:
         raise NotInFile(f"no probed feature of case {case} has normals in XY")
     if any(one.fit_place is None for one in features.values()):
-        raise NotInFile(f"the part of case {case} was not laid on a nominal one (part.stl of the scenario)")
-    place, deviation, normal, sigma = (np.concatenate([getattr(one, name) for one in features.values()])
-                                       for name in ("fit_place", "fit_deviation", "normal", "sigma"))
+        stl = run.scenario.get("part", {}).get("stl")
+        raise NotInFile(f"the part of case {case} could not be laid on {stl}" if stl else
+                        f"the part of case {case} was laid on no nominal one: the scenario names none (part.stl)")
+    if all(one.missed().all() for one in features.values()):
+        raise NotInFile(f"no point of the contours of case {case} was met")
+    nominal, place, deviation, normal, sigma = (np.concatenate([getattr(one, name) for one in features.values()])
+                                                for name in ("nominal", "fit_place", "fit_deviation", "normal", "sigma"))
     ends = np.cumsum([len(one.mean) for one in features.values()])
-    slices = [(name, np.s_[end - len(one.mean):end]) for end, (name, one) in zip(ends, features.items())]
-    return FittedPart(place[:, :2], deviation[:, :2], (deviation * normal).sum(axis=1), sigma, slices)
+    slices = {name: np.s_[end - len(one.mean):end] for end, (name, one) in zip(ends, features.items())}
+    return FittedPart(nominal[:, :2], place[:, :2], deviation[:, :2], (deviation * normal).sum(axis=1), sigma, slices,
+                      parts.told_missed(features.values()))
+
+
+NOMINAL = style.Look("nominal geometry", parts.PALE, "-", "", 1.0)
+
+
+def _key(fitted):
+    # what a legend says beside the cases
+    return [NOMINAL] + ([style.MISSED] if any(one.missed().any() for one in fitted.values()) else [])
 
 
 def draw_quivers(run):
@@ -192,32 +212,34 @@ def draw_quivers(run):
     fitted = {name: best_fit(run, name) for name in _cases(run, PARTS)}
     largest = max(one.largest() for one in fitted.values())
     figure, strip, grid = style.panels([1.0], (13.2, 5.7), columns=3)
-    strip.axis("off")
-    factor = magnification(np.ptp(_outline(fitted["nominal"].place), axis=0).max(), largest, 0.12)
+    style.legend(strip, _key(fitted), lines=False, points=True)
+    factor = magnification(np.ptp(fitted["nominal"].nominal, axis=0).max(), largest, 0.12)
     for ax, (name, one) in zip(grid[0], fitted.items()):
         look = style.look_of(run, name)
-        for _, part in one.features:
-            ax.plot(*_closed(_outline(one.place[part])).T, color=style.GREY, linewidth=0.9, zorder=1.9)
-        moved = one.deviation * factor / UM_PER_MM
-        ax.quiver(*one.place.T, *moved.T, color=look.colour, angles="xy",
+        _draw_outline(ax, one)
+        met = ~one.missed()
+        ax.quiver(*one.place[met].T, *one.deviation[met].T * factor / UM_PER_MM, color=look.colour, angles="xy",
                   scale_units="xy", scale=1.0, width=0.004, zorder=3)
+        style.missed(ax, *one.nominal[~met].T, look)
         ax.set_aspect("equal", adjustable="datalim")
         ax.margins(0.12)
-        ax.set_title(f"{look.label}: up to {style.number(one.largest())} µm (σ {np.nanmean(one.sigma):.2f} µm)")
+        ax.set_title("\n".join([f"{look.label}: up to {style.number(one.largest())} µm (σ {np.nanmean(one.sigma):.2f} µm)",
+                                *one.told_missed]))
         ax.set_xlabel("X of the part, mm")
     grid[0][0].set_ylabel("Y of the part, mm")
     style.headline(figure, f"Distances to the nominal part after best fit, × {factor:.0f}: up to {style.number(largest)} µm")
     return figure
 
 
-def _outline(points):
-    return points[np.isfinite(points).all(axis=1)]
+def _draw_outline(ax, part):
+    for points in part.features.values():
+        style.line(ax, *_closed(part.nominal[points], part.nominal[points]).T, NOMINAL, zorder=1.9)
 
 
-def _closed(points):
+def _closed(points, nominal):
     # a full circle of points is drawn closed
-    step = np.linalg.norm(points[1] - points[0])
-    return np.vstack([points, points[:1]]) if np.linalg.norm(points[-1] - points[0]) < 1.5 * step else points
+    apart = np.linalg.norm(nominal - nominal[0], axis=1)
+    return np.vstack([points, points[:1]]) if len(apart) > 2 and apart[-1] < 1.5 * apart[1] else points
 
 
 def draw_superposed(run):
@@ -225,21 +247,20 @@ def draw_superposed(run):
     fitted = {name: best_fit(run, name) for name in _cases(run, PARTS)}
     figure, strip, grid = style.panels([1.0], (8.6, 8.8))
     ax = grid[0][0]
-    nominal = fitted["nominal"]
-    for _, part in nominal.features:
-        ax.plot(*_closed(_outline(nominal.place[part])).T, color="#b5b5b5", linewidth=1.0, zorder=1.9)
-    looks = [style.Look("nominal part", "#b5b5b5", "-", "", 1.0)]
+    _draw_outline(ax, fitted["nominal"])
+    looks = {name: dataclasses.replace(style.look_of(run, name), line=style.DASH if name == "compensated" else "-", marker="")
+             for name in fitted}
     for name, one in fitted.items():
-        look = dataclasses.replace(style.look_of(run, name), line=style.DASH if name == "compensated" else "-")
-        looks.append(look)
         shown = one.place + one.deviation * SUPERPOSED / UM_PER_MM
-        for _, part in one.features:
-            style.line(ax, *_closed(_outline(shown[part])).T, look, zorder=3.2 if name == "compensated" else 3)
-    style.legend(strip, looks)
+        for points in one.features.values():
+            style.line(ax, *_closed(shown[points], one.nominal[points]).T, looks[name], zorder=3.2 if name == "compensated" else 3)
+        style.missed(ax, *one.nominal[one.missed()].T, looks[name])
+    style.legend(strip, [*_key(fitted), *looks.values()], lines=False, points=True)
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel("X of the part, mm")
     ax.set_ylabel("Y of the part, mm")
-    ax.set_title(f"Distances × {SUPERPOSED:.0f}, after best fit")
-    apart = np.nanmax(np.abs(fitted["compensated"].distance - nominal.distance))
-    style.headline(figure, f"Nominal and compensated part differ by up to {style.number(apart)} µm, as probed")
+    missed = [f"{looks[name].label}: {told}" for name, one in fitted.items() for told in one.told_missed]
+    ax.set_title("\n".join([f"Distances × {SUPERPOSED:.0f}, after best fit", *missed]))
+    apart = np.abs(fitted["compensated"].distance - fitted["nominal"].distance)
+    style.headline(figure, f"Probed after best fit, nominal and compensated part: {parts.told_largest(apart)} apart")
     return figure

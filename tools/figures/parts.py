@@ -10,6 +10,10 @@ from figures.volumetric import magnification
 
 COVERAGE = 2.0     # bars are so many standard deviations of a repetition
 MOST_PANELS = 6
+MOST_MAPS = 4      # beside each other
+WIDTH = 8.4        # inches, of deviations along features
+PANEL, LABELS = 4.6, 0.9   # inches, of a part seen from above; of which labels and title take so much
+PALE = "#b5b5b5"   # nominal places: paler than any case
 
 
 @dataclasses.dataclass
@@ -29,6 +33,10 @@ class Feature:
         """The same relative to a base case; both sides repeat, so their variances add."""
         return dataclasses.replace(self, deviation=self.deviation - base.deviation, mean=self.mean - base.mean,
                                    sigma=np.hypot(self.sigma, base.sigma))
+
+    def missed(self):
+        """(point) whether nothing was met there."""
+        return np.isnan(self.mean)
 
     def is_level(self):
         """Whether all normals lie in XY."""
@@ -84,46 +92,71 @@ def along(feature):
     return np.arange(len(p), dtype=float), "number of the point"
 
 
+def looks_of(run, names):
+    """{case: its look} in a figure of these cases."""
+    return {name: style.look_of(run, name, names) for name in names}
+
+
+def minus(run, base):
+    """", minus nominal" for a title, or nothing."""
+    return f", minus {style.look_of(run, base).label}" if base else ""
+
+
+def told_missed(features):
+    """["3 of 41 points missed"] of some features of a case, or nothing."""
+    missed = sum(int(one.missed().sum()) for one in features)
+    return [f"{missed} of {sum(len(one.mean) for one in features)} points missed"] if missed else []
+
+
+def told_largest(values):
+    """"up to 9.1 µm" of all that was met."""
+    met = np.abs(values)[np.isfinite(values)]
+    return f"up to {style.number(met.max())} µm" if len(met) else "no point was met"
+
+
+def not_shown(count, what):
+    """"; 1 more case not shown", or nothing."""
+    return f"; {count} more {what}{'s' if count > 1 else ''} not shown" if count > 0 else ""
+
+
 def draw_deviations(run):
     """One panel a feature: measured points with bars, the surface under them, what was imposed."""
-    features = probed(run)
-    shown = dict(list(features.items())[:MOST_PANELS])
     base = base_of(run)
-    names = list(dict.fromkeys(name for cases in shown.values() for name in relative(run, cases)))
-    looks = {name: style.look_of(run, name) for name in names}
+    features = {name: relative(run, cases) for name, cases in probed(run).items()}
+    # planes last: the figure `planes` shows them better
+    order = sorted(features, key=lambda name: next(iter(features[name].values())).kind == "plane")
+    shown = {name: features[name] for name in order[:MOST_PANELS]}
+    looks = looks_of(run, list(dict.fromkeys(case for cases in shown.values() for case in cases)))
     with_imposed = base is not None and any(
         np.isfinite(one.imposed).any() for cases in shown.values() for one in cases.values())
     legend = ([style.IMPOSED] if with_imposed else []) + list(looks.values())
-    figure, strip, rows = style.panels([1.0] * len(shown), (8.4, 1.2 + 2.5 * len(shown)))
-    style.legend(strip, legend, points=True)
-    worst = 0.0
+    columns, lines = style.legend_shape(legend, WIDTH)
+    figure, strip, rows = style.panels([1.0] * len(shown), (WIDTH, 0.94 + 0.26 * lines + 2.5 * len(shown)), legend_lines=lines)
+    style.legend(strip, legend, points=True, columns=columns)
     for ax, (name, cases) in zip((row[0] for row in rows), shown.items()):
-        cases = relative(run, cases)
         x, label = along(next(iter(cases.values())))
         shift = 0.12 * np.ptp(x) / max(len(x), 8)
         if with_imposed:
             one = next(iter(cases.values()))
             _curve(ax, one.kind, x, one.imposed, style.IMPOSED, linewidth=1.6)
+        title = [name + minus(run, base)]
         for number, (case, one) in enumerate(cases.items()):
             look = looks[case]
             _curve(ax, one.kind, x, one.deviation, look, linewidth=1.0, alpha=0.8)
             at = x + shift * (number - (len(cases) - 1) / 2)   # bars side by side
             ax.errorbar(at, one.mean, yerr=COVERAGE * one.sigma, color=look.colour, marker=look.marker, markersize=3.5,
                         markerfacecolor=style.face(look), linestyle="none", elinewidth=1.0, capsize=1.8, zorder=3)
-            if np.isfinite(one.mean).any():
-                worst = max(worst, np.nanmax(np.abs(one.mean)))
-        missed = {case: int(np.isnan(one.mean).sum()) for case, one in cases.items() if np.isnan(one.mean).any()}
-        told = "".join(f"   {style.spoken(case)}: {count} of {len(x)} points missed" for case, count in missed.items())
-        ax.set_title(f"{name}" + (f", minus {style.spoken(base)}" if base else "") + told)
-        ax.axhline(0.0, color=style.BLACK, linewidth=0.8, zorder=1.5)
+            style.missed_below(ax, at[one.missed()], look)
+            title += [f"{look.label}: {told}" for told in told_missed([one])]
+        ax.set_title("   ".join(title))
+        ax.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.5)
         ax.set_ylabel("deviation, µm")
         ax.set_xlabel(label)
-    rest = len(features) - len(shown)
-    note = f"   bars: ±{COVERAGE:g} standard deviations of a repetition" + (
-        f"; {rest} more features not shown" if rest else "")
-    rows[-1][0].set_xlabel(rows[-1][0].get_xlabel() + note)
-    what = f"minus {style.spoken(base)} " if base else ""
-    style.headline(figure, f"Part on the CMM {what}up to {style.number(worst)} µm along the normals")
+    crosses = ", crosses below: nothing met" if any(one.missed().any() for cases in shown.values() for one in cases.values()) else ""
+    rows[-1][0].set_xlabel(rows[-1][0].get_xlabel() + f"   (bars: ±{COVERAGE:g} standard deviations of a repetition{crosses}"
+                           f"{not_shown(len(features) - len(shown), 'feature')})")
+    every = np.concatenate([one.mean for cases in features.values() for one in cases.values()])
+    style.headline(figure, f"Part on the CMM{minus(run, base)}: {told_largest(every)} along the normals")
     return figure
 
 
@@ -142,37 +175,41 @@ def draw_plan(run):
     level = {name: cases for name, cases in features.items() if next(iter(cases.values())).is_level()}
     if not level:
         raise NotInFile("no probed feature has normals in XY")
-    names = list(dict.fromkeys(name for cases in level.values() for name in cases))[:MOST_PANELS]
-    every = [cases[name] for cases in level.values() for name in names if name in cases]
-    points = np.concatenate([one.nominal[:, :2] for one in every])
-    largest = max((np.nanmax(np.abs(one.mean)) for one in every if np.isfinite(one.mean).any()), default=0.0)
-    scale = magnification(np.ptp(points, axis=0).max(), largest, 0.1)
-    columns = 1 if len(names) == 1 else 2
-    lines = -(-len(names) // columns)
-    figure, strip, rows = style.panels([1.0] * lines, (4.6 * columns + 0.4, 4.4 * lines + 0.8), columns=columns)
-    style.legend(strip, [style.look_of(run, name) for name in names], lines=False, points=True)
+    every = list(dict.fromkeys(case for cases in level.values() for case in cases))
+    of_case = {case: [cases[case] for cases in level.values() if case in cases] for case in every[:MOST_PANELS]}
+    looks = looks_of(run, list(of_case))
+    points = np.concatenate([one.nominal[:, :2] for features in of_case.values() for one in features])
+    means = np.concatenate([one.mean for features in of_case.values() for one in features])
+    extent = np.ptp(points, axis=0)
+    scale = magnification(extent.max(), np.max(np.abs(means[np.isfinite(means)]), initial=0.0), 0.1)
+    columns = 1 if len(of_case) == 1 else 2
+    lines = -(-len(of_case) // columns)
+    height = (PANEL - LABELS) * min(1.0, max(0.4, extent[1] / extent[0])) + LABELS
+    figure, strip, rows = style.panels([1.0] * lines, (PANEL * columns + 0.4, height * lines + 0.8), columns=columns)
+    key = [style.Look("nominal place", PALE, "", ".")] + ([style.MISSED] if np.isnan(means).any() else [])
+    style.legend(strip, key, lines=False, points=True)
     axes = [ax for row in rows for ax in row]
-    for ax in axes[len(names):]:
+    for ax in axes[len(of_case):]:
         ax.axis("off")
-    for ax, case in zip(axes, names):
-        look = style.look_of(run, case)
-        for name, cases in level.items():
-            if case not in cases:
-                continue
-            one = cases[case]
-            moved = one.mean[:, None] * one.normal[:, :2] * scale / UM_PER_MM
-            ax.plot(one.nominal[:, 0], one.nominal[:, 1], ".", color=style.GREY, markersize=2.5, zorder=2)
-            ax.quiver(one.nominal[:, 0], one.nominal[:, 1], moved[:, 0], moved[:, 1], color=look.colour,
-                      angles="xy", scale_units="xy", scale=1.0, width=0.004, zorder=3)
+    for ax, (case, features) in zip(axes, of_case.items()):
+        for one in features:
+            draw_arrows(ax, one.nominal[:, :2], one.mean[:, None] * one.normal[:, :2] * scale / UM_PER_MM, looks[case])
         ax.set_aspect("equal", adjustable="datalim")
         ax.margins(0.12)
-        ax.set_title(style.spoken(case))
+        ax.set_title(", ".join([looks[case].label, *told_missed(features)]))
         ax.set_xlabel("X of the part, mm")
         ax.set_ylabel("Y of the part, mm")
-    base = base_of(run)
-    what = f" minus {style.spoken(base)}" if base else ""
-    style.headline(figure, f"Part from above{what}, × {scale:.0f}: up to {style.number(largest)} µm")
+    style.headline(figure, f"Part from above{minus(run, base_of(run))}, × {scale:.0f}: {told_largest(means)}"
+                   + not_shown(len(every) - len(of_case), "case"))
     return figure
+
+
+def draw_arrows(ax, places, moved, look):
+    """Arrows from places (mm) by what they are moved on the picture; a cross where that is NaN."""
+    met = np.isfinite(moved).all(axis=1)
+    ax.plot(*places[met].T, ".", color=PALE, markersize=2.5, zorder=2)
+    ax.quiver(*places[met].T, *moved[met].T, color=look.colour, angles="xy", scale_units="xy", scale=1.0, width=0.004, zorder=3)
+    style.missed(ax, *places[~met].T, look)
 
 
 def draw_planes(run):
@@ -182,36 +219,37 @@ def draw_planes(run):
     if not planes:
         raise NotInFile("no plane was probed")
     planes = dict(list(planes.items())[:MOST_PANELS])
-    names = list(dict.fromkeys(name for cases in planes.values() for name in cases))[:4]
-    values = np.concatenate([cases[name].mean for cases in planes.values() for name in names if name in cases])
-    largest = np.nanmax(np.abs(values)) if np.isfinite(values).any() else 0.0
-    norm = matplotlib.colors.Normalize(-max(largest, 1e-3), max(largest, 1e-3))
-    figure, strip, rows = style.panels([1.0] * len(planes), (3.6 * len(names) + 1.4, 3.0 * len(planes) + 0.8),
-                                       columns=len(names))
-    strip.set_visible(False)
-    for row, (feature, cases) in zip(rows, planes.items()):
-        for ax, case in zip(row, names):
+    every = list(dict.fromkeys(case for cases in planes.values() for case in cases))
+    looks = looks_of(run, every[:MOST_MAPS])
+    values = np.concatenate([cases[case].mean for cases in planes.values() for case in looks if case in cases])
+    largest = max(np.max(np.abs(values[np.isfinite(values)]), initial=0.0), 1e-3)
+    norm = matplotlib.colors.Normalize(-largest, largest)
+    figure, axes = style.plt.subplots(len(planes), len(looks), squeeze=False,
+                                      figsize=(3.6 * len(looks) + 1.4, 3.0 * len(planes) + 0.5))
+    for row, (feature, cases) in zip(axes, planes.items()):
+        for ax, (case, look) in zip(row, looks.items()):
             if case not in cases:
                 ax.axis("off")
                 continue
             one = cases[case]
             i, j = np.sort(np.argsort(np.ptp(one.nominal, axis=0))[-2:])   # the directions in which it extends
-            map_ = ax.tricontourf if _is_grid(one.nominal[:, [i, j]], one.mean) else None
-            if map_ is not None:
-                map_(one.nominal[:, i], one.nominal[:, j], one.mean, levels=np.linspace(norm.vmin, norm.vmax, 21),
-                     cmap="RdBu_r", norm=norm, extend="both")
-            ax.scatter(one.nominal[:, i], one.nominal[:, j], c=one.mean, cmap="RdBu_r", norm=norm, s=16,
+            ax.use_sticky_edges = False   # points at the edge are not cut
+            if _is_grid(one.nominal[:, [i, j]], one.mean):
+                ax.tricontourf(one.nominal[:, i], one.nominal[:, j], one.mean, levels=np.linspace(norm.vmin, norm.vmax, 21),
+                               cmap="RdBu_r", norm=norm, extend="both")
+            met = ~one.missed()
+            ax.scatter(one.nominal[met, i], one.nominal[met, j], c=one.mean[met], cmap="RdBu_r", norm=norm, s=16,
                        edgecolors=style.BLACK, linewidths=0.5, zorder=3)
+            style.missed(ax, one.nominal[~met, i], one.nominal[~met, j], style.MISSED)
             ax.margins(0.06)
-            ax.set_title(f"{feature}, {style.spoken(case)}")
+            ax.set_title(", ".join([feature, look.label, *told_missed([one])]))
             ax.set_xlabel(f"{'XYZ'[i]} of the part, mm")
             ax.set_ylabel(f"{'XYZ'[j]}, mm")
-    bar = figure.colorbar(matplotlib.cm.ScalarMappable(norm, "RdBu_r"), ax=[ax for row in rows for ax in row],
-                          shrink=0.85)
+    bar = figure.colorbar(matplotlib.cm.ScalarMappable(norm, "RdBu_r"), ax=axes, shrink=0.85)
     bar.set_label("deviation along the normal, µm")
-    base = base_of(run)
-    what = f" minus {style.spoken(base)}" if base else ""
-    style.headline(figure, f"Probed planes{what}: within ±{style.number(largest)} µm")
+    crosses = " (crosses: nothing met)" if np.isnan(values).any() else ""
+    style.headline(figure, f"Probed planes{minus(run, base_of(run))}: {told_largest(values)}{crosses}"
+                   + not_shown(len(every) - len(looks), "case"))
     return figure
 
 

@@ -3,7 +3,7 @@ import dataclasses
 
 import numpy as np
 
-from figures import parts
+from figures import parts, style
 from figures.results import NotInFile
 
 COVERAGE = parts.COVERAGE
@@ -17,6 +17,7 @@ class Points:
     displacement: np.ndarray
     residual: np.ndarray      # the same minus the imposed displacement
     sigma: np.ndarray         # standard deviation of a repetition, of both sides
+    missed: np.ndarray        # how many of the points of each met nothing
 
     def largest(self):
         return np.nanmax(np.abs(self.residual), initial=0.0)
@@ -29,6 +30,7 @@ class Points:
         every = np.s_[::-(-len(self.x) // MOST_SHOWN)]
         ax.errorbar(self.x[every] + shift, values[every], yerr=COVERAGE * self.sigma[every], color=look.colour, marker="x",
                     markersize=4.5, linestyle="none", elinewidth=0.9, capsize=1.8, zorder=3.2)
+        style.missed_below(ax, self.x[self.missed > 0] + shift, look)
 
 
 def _features(run, wanted):
@@ -48,7 +50,7 @@ def along(run, name, axis):
     """{case: Points} of the probed line of that name; displacements in an axis."""
     number = "XYZ".index(axis)
     return {case: Points(one.nominal[:, 0] + _offset(run), one.mean * one.normal[:, number],
-                         (one.mean - one.imposed) * one.normal[:, number], one.sigma)
+                         (one.mean - one.imposed) * one.normal[:, number], one.sigma, one.missed().astype(int))
             for cases in _features(run, lambda feature: feature == name).values() for case, one in cases.items()}
 
 
@@ -63,16 +65,21 @@ def notches(run):
 
 def _centre(one, offset):
     across = one.normal[:, 0]
-    left, right = across > 0.0, across < 0.0
 
     def middle(values):   # of the flanks, each its mean
-        return 0.5 * (np.nanmean(values[left]) + np.nanmean(values[right]))
+        return 0.5 * (_mean(values[across > 0.0]) + _mean(values[across < 0.0]))
 
-    count = np.isfinite(one.mean).sum()
+    met = np.count_nonzero(~one.missed())
     return (middle(one.nominal[:, 0]) + offset, middle(one.mean * across), middle((one.mean - one.imposed) * across),
-            np.sqrt(np.nanmean(one.sigma**2) / max(count, 1)))
+            np.sqrt(_mean(one.sigma**2) / max(met, 1)), len(one.mean) - met)
+
+
+def _mean(values):
+    good = values[np.isfinite(values)]
+    return good.mean() if len(good) else np.nan
 
 
 def told(probed):
     """For a title, where there are points."""
-    return f"; crosses: probed, ±{COVERAGE:g}σ" if probed else ""
+    missed = sum(int(points.missed.sum()) for points in probed.values())
+    return f"; crosses: probed, ±{COVERAGE:g}σ" + (f"; hollow: {missed} missed" if missed else "") if probed else ""

@@ -40,14 +40,15 @@ IMPOSED = Look("imposed curve", BLACK, "-", "", 3.0)   # lies under the cases
 SPARE = ["#00876c", "#b8860b", "#4d4d4d", "#8c564b"]   # strategies that have no colour yet
 
 
-def look_of(result, case):
+def look_of(result, case, shown=None):
     """The look of a case of a result file. Of several cases with one strategy the first has the
-    look of the strategy, the next are paler and have other lines."""
+    look of the strategy, the next are paler and have other lines.
+    shown: the cases of the figure, where it leaves some out: those count for nothing"""
     look = _strategy_look(result, case)
     names = [one.get("name") for one in result.scenario.get("case", [])]
     earlier = names[:names.index(case)] if case in names else []
-    twins = sum(_strategy_look(result, name).colour == look.colour and
-                _strategy_look(result, name).line == look.line for name in earlier)
+    twins = sum(_strategy_look(result, name).colour == look.colour
+                for name in earlier if shown is None or name in shown)
     if twins == 0:
         return look
     rgb = np.array(matplotlib.colors.to_rgb(look.colour))
@@ -123,6 +124,23 @@ def plain_log_ticks(axis):
 def face(look):
     """Inside of a marker: white for the dashed looks, so that what lies below shows."""
     return "white" if look.line == DASH else look.colour
+
+
+MISSED = Look("met nothing", GREY, DASH, "X")   # where the CMM probed and found no surface
+
+
+def missed(axes, x, y, look, **more):
+    """Marks places at which a case has no value, so that they are not taken for good ones."""
+    axes.plot(x, y, linestyle="none", marker=MISSED.marker, markersize=8, markerfacecolor="white",
+              markeredgecolor=look.colour, markeredgewidth=1.3, zorder=4, **more)
+
+
+EDGE = 0.04   # of the height of the axes: where such marks stand under a curve
+
+
+def missed_below(axes, x, look):
+    """The same at the lower edge of axes, for a quantity over x."""
+    missed(axes, x, np.full(len(x), EDGE), look, transform=axes.get_xaxis_transform())
 
 
 LETTER, MARGIN = 0.082, 0.3   # inches: of a legend, about; beside the axes

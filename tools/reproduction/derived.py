@@ -85,13 +85,22 @@ def volumetric_error(results, run, case):
 
 # Parts ----------------------------------------------------------------------------------------------------------------
 
+def _met_everywhere(missed, what):
+    # what was measured of a part of its points is no value
+    if np.any(missed):
+        raise NotInFile(f"{what} was not probed at all of its points")
+
+
 def probed_residual(results, run, case, axis, feature):
     """Largest distance of probed points to the imposed curve, relative to the nominal side, um. The feature "notches"
     stands for all of them."""
     run = results.opened(run)
     found = probed_points.notches(run) if feature == "notches" else probed_points.along(run, feature, axis)
-    if case not in found or not np.isfinite(found[case].residual).all():
-        raise NotInFile(f"{feature} of case {case} was not probed at all of its points")
+    if case not in found:
+        raise NotInFile(f"{feature} of case {case} was not probed")
+    _met_everywhere(found[case].missed, f"{feature} of case {case}")
+    if not np.isfinite(found[case].residual).all():
+        raise NotInFile(f"no error is imposed on {feature} of case {case}")
     return float(found[case].largest())
 
 
@@ -102,21 +111,28 @@ def part_minus_trajectory(results, run, case, axis, feature):
     track = [one for one in straightness.tracks(run, axis, feature) if one.case.name == case]
     if points is None or not track:
         raise NotInFile(f"{feature} of case {case} was not probed")
+    _met_everywhere(points.missed, f"{feature} of case {case}")
     x, difference, _ = track[0].passes[0]
     order = np.argsort(x, kind="stable")
     apart = points.displacement - np.interp(points.x, x[order], difference[order])
-    return float(np.sqrt(np.nanmean(apart**2)))
+    return float(np.sqrt(np.mean(apart**2)))
+
+
+def _best_fit(results, run, case):
+    fitted = experiment2.best_fit(results.opened(run), case)
+    _met_everywhere(fitted.missed(), f"the part of case {case}")
+    return fitted
 
 
 def largest_after_best_fit(results, run, case):
     """Largest distance of the probed contours to the nominal part after best fit, um."""
-    return float(experiment2.best_fit(results.opened(run), case).largest())
+    return float(_best_fit(results, run, case).largest())
 
 
 def difference_after_best_fit(results, run, case, base):
     """Largest difference of these distances between two parts, um."""
-    one, other = (experiment2.best_fit(results.opened(run), name) for name in (case, base))
-    return float(np.nanmax(np.abs(one.distance - other.distance)))
+    one, other = (_best_fit(results, run, name) for name in (case, base))
+    return float(np.abs(one.distance - other.distance).max())
 
 
 def _cutting_and_air(run, case):
