@@ -182,6 +182,15 @@ class Agreement(WithFiles):
                 self.assertEqual((turn.label, turn.plane), ("circle", "XY"))
                 self.assertAlmostEqual(extreme(turn.dr), row["value"], delta=AGREE)
 
+    def test_circles_of_one_direction_show_no_other_and_no_empty_table(self):
+        for draw in (circular.draw, circular.draw_reversals):
+            with results.Run(self.side) as run:
+                figure = draw(run)
+            self.addCleanup(style.plt.close, figure)
+            labels = [text.get_text() for text in figure.axes[0].get_legend().texts]
+            self.assertEqual(labels, ["circle", "cw"])
+            self.assertNotIn("G(b), µm", [text.get_text() for ax in figure.axes for text in ax.texts])
+
     def test_divisions_are_round_and_two_hold_the_largest_deviation(self):
         for largest, unit in ((0.29, 0.2), (25.3, 20.0), (2.0, 1.0), (4.1, 5.0), (100.0, 50.0)):
             self.assertAlmostEqual(circular.division(largest), unit)

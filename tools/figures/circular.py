@@ -13,6 +13,7 @@ from figures.results import NotInFile
 
 ROUND = 0.01          # mm: how far the nominal path of a circle may be off one
 WHOLE = 2.0           # deg: how far a turn may be off 360
+LINES = {1: "-", -1: (0, (4, 2.5))}   # of a turn by its sense
 SHADES = ["#8fc1e3", style.BLUE, style.PURPLE, style.BLACK, style.RED, style.GREY]
 BEFORE, BEHIND = 10.0, 20.0   # deg about a reversal: where friction shows
 
@@ -131,17 +132,22 @@ def draw(run):
     units = divisions({name: max(np.abs(turn.dr).max() for turn in of_case)
                        for name, of_case in turns.items()})
     rows = -(-len(turns) // columns)
-    height = WIDTH * (top() - bottom(colours)) / (2.0 * SIDE) + 0.3     # with the title
+    both, mean = (numbers(run, quantity) for quantity in (
+        "bidirectional_circular_deviation", "mean_bidirectional_radial_deviation"))
+    listed = colours if both or mean else {}     # below each picture
+    height = WIDTH * (top() - bottom(listed)) / (2.0 * SIDE) + 0.3     # with the title
     figure, strip, grid = style.panels([1.0] * rows, (WIDTH * columns + 0.1, height * rows + 0.75),
                                        columns=columns)
     panels = [ax for row in grid for ax in row]
     for ax, (name, of_case) in zip(panels, turns.items()):
         _polar(ax, of_case, colours, units[name])
-        _table(ax, run, name, colours)
+        if listed:
+            _table(ax, both, mean, name, listed)
+        ax.set_ylim(bottom(listed), top())
         ax.set_title(name.replace("_", " "), loc="center", fontweight="bold")
     for ax in panels[len(turns):]:
         ax.axis("off")
-    _legend(strip, colours, 0.012)
+    _legend(strip, colours, turns, 0.012)
     first = next(iter(turns.values()))[0]
     style.headline(figure, f"Circular test in {first.plane}, R {first.radius:.4g} mm: "
                            "radial deviation, magnified")
@@ -194,17 +200,14 @@ def _polar(ax, turns, colours, unit):
         keep = slice(None, None, max(1, len(theta) // 4000))
         ax.plot((radius * np.cos(theta))[keep], (radius * np.sin(theta))[keep],
                 color=colours[turn.label], linewidth=1.4,
-                linestyle="-" if turn.sense > 0 else (0, (4, 2.5)), zorder=3)
+                linestyle=LINES[turn.sense], zorder=3)
     plane = turns[0].plane
     ax.text(REACH + 0.15, 0.0, plane[0], ha="left", va="center", color=style.GREY)
     ax.text(0.0, REACH + 0.1, plane[1], ha="center", va="bottom", color=style.GREY)
-    ax.set_ylim(bottom(colours), top())
 
 
-def _table(ax, run, case, colours):
+def _table(ax, both, mean, case, colours):
     """Lines below the picture: what the comparison says of each label."""
-    both, mean = (numbers(run, quantity) for quantity in (
-        "bidirectional_circular_deviation", "mean_bidirectional_radial_deviation"))
     columns = [(1.4, "G(b)", both, style.number), (4.6, "D", mean, signed)]
     y = -REACH - 1.0
     for x, title, _, _ in columns:
@@ -218,12 +221,12 @@ def _table(ax, run, case, colours):
                     ha="right", va="center", fontsize=9.5)
 
 
-def _legend(strip, colours, left=-0.01):
+def _legend(strip, colours, turns, left=-0.01):
     handles = [style.plt.Line2D([], [], color=colour, linewidth=1.8, label=label)
                for label, colour in colours.items()]
-    handles += [style.plt.Line2D([], [], color=style.GREY, linewidth=1.6, label="ccw"),
-                style.plt.Line2D([], [], color=style.GREY, linewidth=1.6, label="cw",
-                                 linestyle=(0, (4, 2.5)))]
+    senses = {turn.sense for of_case in turns.values() for turn in of_case}
+    handles += [style.plt.Line2D([], [], color=style.GREY, linewidth=1.6, label=label, linestyle=LINES[sense])
+                for sense, label in ((1, "ccw"), (-1, "cw")) if sense in senses]
     box = strip.legend(handles=handles, loc="center left", bbox_to_anchor=(left, 0.5),
                        ncol=len(handles), handlelength=2.0, columnspacing=1.3, borderpad=0,
                        handletextpad=0.6)
@@ -241,7 +244,7 @@ def draw_reversals(run):
             for turn in of_case:
                 behind, dr = around_reversal(turn, 90.0 * quadrant)
                 ax.plot(behind, dr, color=colours[turn.label], linewidth=1.4,
-                        linestyle="-" if turn.sense > 0 else (0, (4, 2.5)))
+                        linestyle=LINES[turn.sense])
                 extent = [min(extent[0], dr.min()), max(extent[1], dr.max())]
             ax.axvline(0.0, color=style.GREY, linewidth=1.0, zorder=1.5)
             ax.set_xlim(-BEFORE, BEHIND)
@@ -260,7 +263,7 @@ def draw_reversals(run):
     figure.align_ylabels([row[0] for row in grid])
     for ax in grid[-1]:
         ax.set_xlabel("behind the reversal, deg")
-    _legend(strip, colours)
+    _legend(strip, colours, turns)
     style.headline(figure, "Deviation from the least-squares circle where the axes reverse")
     return figure
 

@@ -7,6 +7,7 @@ from figures import style
 from figures.results import NotInFile
 
 FEED_KEY = "program.feed_override"
+WIDTH = 10.2   # inches
 
 
 def feeds(sweep):
@@ -39,9 +40,11 @@ def draw(sweep):
         raise NotInFile("the sweep holds neither imposed_curve_residual nor response_time")
     shown = [q for q in ("imposed_curve_residual", "response_time")
              if curves(sweep, q)]
-    figure, strip, grid = style.panels([1.0], (10.2, 4.6), columns=len(shown))
     cases = dict.fromkeys(case for case, _ in [*residual, *delay])
-    style.legend(strip, [style.look_of(sweep, case) for case in cases], points=True)
+    looks = [style.look_of(sweep, case) for case in cases]
+    columns, lines = style.legend_shape(looks, WIDTH)
+    figure, strip, grid = style.panels([1.0], (WIDTH, 4.34 + 0.26 * lines), columns=len(shown), legend_lines=lines)
+    style.legend(strip, looks, points=True, columns=columns)
     order = np.argsort(feed)
     for ax, quantity in zip(grid[0], shown):
         for (case, _), q in curves(sweep, quantity).items():

@@ -7,6 +7,8 @@ import numpy as np
 from figures import probed_points, results, style
 from figures.results import NotInFile
 
+WIDTH = 8.4   # inches
+
 
 @dataclasses.dataclass
 class Notches:
@@ -47,9 +49,11 @@ def draw(run):
     run.need_errors_of_only("X")
     found = notches(run)
     bound = _bound(run)
-    figure, strip, rows = style.panels([1.25, 1.0, 1.0], (8.4, 9.0))
+    looks = [style.IMPOSED] + [one.look for one in found]
+    columns, lines = style.legend_shape(looks, WIDTH)
+    figure, strip, rows = style.panels([1.25, 1.0, 1.0], (WIDTH, 8.74 + 0.26 * lines), legend_lines=lines)
     axes = [row[0] for row in rows]
-    style.legend(strip, [style.IMPOSED] + [one.look for one in found], lines=False, points=True)
+    style.legend(strip, looks, lines=False, points=True, columns=columns)
 
     x = found[0].x
     reach = 0.12 * np.ptp(x) if np.ptp(x) > 0 else 5.0

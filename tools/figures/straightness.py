@@ -87,8 +87,7 @@ def draw(run, axis, section):
             continue
         points.draw(axes[0], points.displacement, one.look)
         for ax, group in zip(axes[1:], groups):
-            # noise or back-cutting must not hide the curves that an enlargement is about
-            if ax is axes[1] or one in group and points.largest() < MOST_OVER * group[-1].largest():
+            if ax is axes[1] or one in group and _fit(points, group):
                 points.draw(ax, points.residual, one.look)
 
     axes[0].set_title(f"(a) Trajectory of {axis} minus nominal, and what was imposed" + probed_points.told(probed))
@@ -96,7 +95,9 @@ def draw(run, axis, section):
     axes[0].set_ylabel(f"{axis} displacement, µm")
     for letter, ax, group in zip("cdefgh", axes[2:], groups[1:]):
         names = [one.look.label for one in found if one in group]
-        ax.set_title(f"({letter}) Enlarged: " + ", ".join(names))
+        left_out = [one for one in group if one.case.name in probed and not _fit(probed[one.case.name], group)]
+        beyond = "   (probed points lie beyond)" if left_out else ""
+        ax.set_title(f"({letter}) Enlarged: " + ", ".join(names) + beyond)
     for ax in axes[1:]:
         ax.axhline(0.0, color=style.BLACK, linewidth=1.0, zorder=1.5)
         ax.set_ylabel("residual, µm")
@@ -107,8 +108,14 @@ def draw(run, axis, section):
     axes[-1].set_xlabel(_x_label(found))
     missing = ", ".join(f"{one.look.label} {style.number(one.largest())} µm"
                         for one in found if "lead" not in one.look.label)
-    style.headline(figure, f"{axis} misses the imposed curve by: {missing}")
+    what = f"Trajectory of {axis}" if probed else axis   # the part may miss it by more
+    style.headline(figure, f"{what} misses the imposed curve by: {missing}")
     return figure
+
+
+def _fit(points, group):
+    # noise or back-cutting must not hide the curves that an enlargement is about
+    return points.largest() < MOST_OVER * group[-1].largest()
 
 
 def _pass(ax, x, y, look, number):

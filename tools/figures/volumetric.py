@@ -99,7 +99,7 @@ def draw_plane(run):
             for k in _every(s, at, 75):
                 picture.plot(*_oblique(np.stack([flat[k], shown[k]])), color=look.colour,
                              linewidth=0.8, zorder=2.5)
-    _oblique_scales(picture, flat, scale)
+    _oblique_scales(picture, flat, scale, np.nanmax(moved[:, 0]))
     picture.set_title(f"Seen obliquely, Z {level:.0f} mm; differences drawn × {scale:.0f}")
     _per_direction(run, side, base, found)
     style.headline(figure, _message("Top plane", found))
@@ -111,18 +111,19 @@ def _oblique(points):
     return points[:, 0] + 0.35 * points[:, 1], points[:, 2] + 0.90 * points[:, 1]
 
 
-def _oblique_scales(ax, flat, scale):
-    # the passes are named by their Y, the front one by its X; a bar tells what a height means
+def _oblique_scales(ax, flat, scale, to_the_right):
+    # the passes are named by their Y beside the curves, the front one by its X; a bar tells what a height means
     ends = np.flatnonzero(np.isnan(flat[:, 0]))
     starts = np.concatenate([[0], ends[:-1] + 1])
     low, high = np.nanmin(flat[:, 0]), np.nanmax(flat[:, 0])
     gap = 0.04 * (high - low)
+    beside = high + gap + max(to_the_right, 0.0) * scale / results.UM_PER_MM
     fronts = []
     for start, end in zip(starts, ends):
         y = np.mean(flat[start:end, 1])
         fronts.append(y)
     for y in fronts[::-(-len(fronts) // MOST_NAMED_PASSES)]:
-        u, v = _oblique(np.array([[high + gap, y, 0.0]]))
+        u, v = _oblique(np.array([[beside, y, 0.0]]))
         ax.text(u[0], v[0], f"Y {y:.0f} mm".replace("-", "−"), va="center")
     for x in (low, high):
         u, v = _oblique(np.array([[x, min(fronts), 0.0]]))
