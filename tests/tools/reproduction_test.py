@@ -226,6 +226,14 @@ class Values(WithResults):
                 self.assertIn(f"| {wanted} |", report.markdown([line], [], ""))
 
 
+class Accepted(unittest.TestCase):
+    def test_is_told_by_meaning(self):
+        for one, text in ((row(), "1.5 to 2.5"), (row(tolerance=0.0), "2"), (row(meaning="below", tolerance=0.0), "magnitude <= 2"),
+                          (row(meaning="above", tolerance=0.0), ">= 2"), (row(lacks="its unit"), ""),
+                          (row(meaning="between", value=None, limits=(1.0, 3.0), tolerance=0.0), "1 to 3")):
+            self.assertEqual(report.accepted(one), text)
+
+
 class Report(WithResults):
     def setUp(self):
         self.all = self.lines(lambda one: True)

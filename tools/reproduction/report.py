@@ -41,7 +41,7 @@ def accepted(row):
         return f"magnitude <= {high:g}"
     if row.meaning == "above":
         return f">= {low:g}"
-    return f"{low:.5g} to {high:.5g}"
+    return f"{low:.5g} to {high:.5g}" if low < high else f"{low:.5g}"
 
 
 def summary(lines):
