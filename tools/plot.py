@@ -46,8 +46,8 @@ def save(drawn, path, ending):
         return
     drawn.canvas.draw()
     picture = Image.fromarray(np.asarray(drawn.canvas.buffer_rgba())[:, :, :3])
-    # by coverage: rare colours, as of a few marks or of a bar of colours, stay what they are
-    picture = picture.quantize(PALETTE, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    # by coverage rare colours, as of a few marks or of a bar of colours, stay what they are; refined, common ones, too
+    picture = picture.quantize(PALETTE, method=Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.NONE)
     picture.save(path, compress_level=9, dpi=(drawn.dpi, drawn.dpi))
 
 
