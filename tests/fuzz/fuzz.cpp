@@ -42,7 +42,7 @@ void out_of_time(int) {
   std::abort();
 }
 
-#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION  // as -fsanitize=fuzzer has it
+#ifdef SERVOMILL_INSTRUMENTED
 constexpr int kAllowed = kMostSeconds * kInstrumentedFactor;
 #else
 constexpr int kAllowed = kMostSeconds;
