@@ -190,7 +190,7 @@ def draw_way(run):
         style.line(enlarged, shown[:, i], shown[:, j], looks[case.name])
     style.line(enlarged, segments.post_exact[wide][:, i], segments.post_exact[wide][:, j],
                style.Look("", style.GREY, style.DOT, "", 2.6))
-    for ax, title in ((whole, "Way of the axes"), (enlarged, f"Enlarged, deviations x {ENLARGED:g}")):
+    for ax, title in ((whole, "Way of the axes"), (enlarged, f"Enlarged, deviations × {ENLARGED:g}")):
         ax.set_xlabel(f"{'XYZ'[i]} of the machine, mm")
         ax.set_ylabel(f"{'XYZ'[j]} of the machine, mm")
         ax.set_title(title)
