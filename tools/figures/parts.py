@@ -134,30 +134,37 @@ def draw_deviations(run):
     figure, strip, rows = style.panels([1.0] * len(shown), (WIDTH, 0.94 + 0.26 * lines + 2.5 * len(shown)), legend_lines=lines)
     style.legend(strip, legend, points=True, columns=columns)
     for ax, (name, cases) in zip((row[0] for row in rows), shown.items()):
-        x, label = along(next(iter(cases.values())))
-        shift = 0.12 * np.ptp(x) / max(len(x), 8)
-        if with_imposed:
-            one = next(iter(cases.values()))
-            _curve(ax, one.kind, x, one.imposed, style.IMPOSED, linewidth=1.6)
-        title = [name + minus(run, base)]
-        for number, (case, one) in enumerate(cases.items()):
-            look = looks[case]
-            _curve(ax, one.kind, x, one.deviation, look, linewidth=1.0, alpha=0.8)
-            at = x + shift * (number - (len(cases) - 1) / 2)   # bars side by side
-            ax.errorbar(at, one.mean, yerr=COVERAGE * one.sigma, color=look.colour, marker=look.marker, markersize=3.5,
-                        markerfacecolor=style.face(look), linestyle="none", elinewidth=1.0, capsize=1.8, zorder=3)
-            style.missed_below(ax, at[one.missed()], look)
-            title += [f"{look.label}: {told}" for told in told_missed([one])]
-        ax.set_title("   ".join(title))
-        ax.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.5)
-        ax.set_ylabel("deviation, µm")
-        ax.set_xlabel(label)
-    crosses = ", crosses below: nothing met" if any(one.missed().any() for cases in shown.values() for one in cases.values()) else ""
+        title = [name + minus(run, base), *_draw_feature(ax, cases, looks, with_imposed)]
+        ax.set_title("\n".join("   ".join(title[i:i + 3]) for i in range(0, len(title), 3)))
+    missed = any(one.missed().any() for cases in shown.values() for one in cases.values())
+    crosses = ", crosses below: nothing met" if missed else ""
     rows[-1][0].set_xlabel(rows[-1][0].get_xlabel() + f"   (bars: ±{COVERAGE:g} standard deviations of a repetition{crosses}"
                            f"{not_shown(len(features) - len(shown), 'feature')})")
     every = np.concatenate([one.mean for cases in features.values() for one in cases.values()])
     style.headline(figure, f"Part on the CMM{minus(run, base)}: {told_largest(every)} along the normals")
     return figure
+
+
+def _draw_feature(ax, cases, looks, with_imposed):
+    """One feature of all cases; what was missed, for the title."""
+    first = next(iter(cases.values()))
+    x, label = along(first)
+    shift = 0.12 * np.ptp(x) / max(len(x), 8)
+    told = []
+    if with_imposed:
+        _curve(ax, first.kind, x, first.imposed, style.IMPOSED, linewidth=1.6)
+    for number, (case, one) in enumerate(cases.items()):
+        look = looks[case]
+        _curve(ax, one.kind, x, one.deviation, look, linewidth=1.0, alpha=0.8)
+        at = x + shift * (number - (len(cases) - 1) / 2)   # bars side by side
+        ax.errorbar(at, one.mean, yerr=COVERAGE * one.sigma, color=look.colour, marker=look.marker, markersize=3.5,
+                    markerfacecolor=style.face(look), linestyle="none", elinewidth=1.0, capsize=1.8, zorder=3)
+        style.missed_below(ax, at[one.missed()], look)
+        told += [f"{look.label}: {missed}" for missed in told_missed([one])]
+    ax.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.5)
+    ax.set_ylabel("deviation, µm")
+    ax.set_xlabel(label)
+    return told
 
 
 def _curve(ax, kind, x, y, look, **more):
