@@ -3,19 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/printer.h"
 #include "controllers/path/travel.h"
 #include "plant/vocabulary/units.h"
-#include "sim/nominal_part.h"
+#include "sim/case_faults.h"
+#include "sim/case_notes.h"
 #include "sim/plan_cutting.h"
 #include "sim/preparation_cache.h"
 #include "sim/stability_check.h"
 #include "sim/subroutine_files.h"
-#include "sim/uncorrected.h"
 
 namespace servomill::sim {
 namespace {
@@ -104,44 +103,6 @@ Place place_in(const StrategySpec& spec, const std::string& complaint) {
   return place;
 }
 
-// Most strategies displace axes; these moves are not of the axes. None knows more than one tool.
-void refuse_tip_moves(const StrategySpec& spec, const strategies::Strategy& strategy,
-                      const InterpretedProgram& program, const std::string& file,
-                      const std::string& case_name) {
-  const Move* move = program.first_tip_move();
-  if (move == nullptr) return;
-  if (!strategy.rewrites_tip_moves()) {
-    throw InputError(spec.place,
-                     fmt::format("case {}: strategy {}: cannot rewrite moves under "
-                                 "tool-centre-point control or in a tilted work plane ({}:{})",
-                                 case_name, spec.entry->name, file, move->line));
-  }
-  for (const Move& other : program.moves) {
-    const bool is_tip = is_motion(other.kind) && other.tool_control != ToolControl::none;
-    if (!is_tip || program.tips.at(other.tool_offset) == program.first_tip) continue;
-    throw InputError(
-        spec.place,
-        fmt::format("case {}: strategy {}: rewrites moves under tool-centre-point control for one "
-                    "tool, the first that the program works with; here is another ({}:{})",
-                    case_name, spec.entry->name, file, other.line));
-  }
-}
-
-// A displaced scale moves nothing where the motor closes the position loop.
-void refuse_unread_scale(const StrategySpec& spec, const strategies::Strategy& strategy,
-                         const MachineSettings& machine, const std::string& case_name) {
-  if (!strategy.displaces_feedback()) return;
-  for (const int j : machine.joints()) {
-    const auto& feedback = machine.nc.functions[static_cast<std::size_t>(j)].position_feedback;
-    if (j >= kLinearJoints && !strategy.displaces_rotary()) continue;
-    if (feedback.kind != controllers::PositionFeedback::motor) continue;
-    throw InputError(
-        spec.place, fmt::format("case {}: strategy feedback: displaces the scale of axis {}, whose "
-                                "position loop reads the motor (position_feedback = \"motor\")",
-                                case_name, machine.chain.layout.letter_of(j)));
-  }
-}
-
 const plant::ErrorModel& errors_of(const Scenario& scenario, const std::string& model) {
   static const plant::ErrorModel kNone;
   const auto found = scenario.errors.find(model);
@@ -186,167 +147,6 @@ void add(MemoKey& key, const std::map<int, plant::Cutter>& cutters) {
     key.add(teeth);
     for (const double value : {radius, corner_radius, length, helix}) key.add(value);
   }
-}
-
-// Words of axes that the machine lacks would have no effect.
-void refuse_absent_axes(const InterpretedProgram& program, const Scenario& scenario) {
-  std::vector<Fault> faults;
-  for (const Axis axis : kAllAxes) {
-    const int line = program.first_line[static_cast<std::size_t>(axis)];
-    if (scenario.machine.chain.layout.joint_of(axis) || line == 0) continue;
-    faults.push_back({{scenario.program.file, line},
-                      fmt::format("moves {0}; the machine has no axis {0}", letter(axis))});
-  }
-  if (!faults.empty()) throw InputError(std::move(faults));
-}
-
-// A feed per revolution of a spindle that stands still moves nothing, for ever.
-void refuse_standing_spindle(const InterpretedProgram& program, const Scenario& scenario) {
-  for (const Move& move : program.moves) {
-    const bool is_fed = move.kind == MoveKind::feed || move.kind == MoveKind::arc;
-    if (!is_fed || move.feed_mode != FeedMode::units_per_revolution || move.feed > 0.0) continue;
-    throw InputError({scenario.program.file, move.line},
-                     "feed per revolution (G95) while the spindle stands still; it would never "
-                     "end: start the spindle (M3 S...) or use G94");
-  }
-}
-
-// Under tool control X Y Z do not turn with the work offset, so that the coordinates of the program
-// are not those of the probes.
-void refuse_turned_tip(const InterpretedProgram& program, const Scenario& scenario,
-                       const CaseSpec& spec) {
-  const AxisWords offset = scenario.program.work_offset + spec.work_offset;
-  const Move* tip = program.first_tip_move();
-  if (scenario.probes.empty() || tip == nullptr || offset.tail<3>().isZero(0.0)) return;
-  throw InputError(scenario.probes.front().place,
-                   fmt::format("case {}: a part is probed in the coordinates of its program; with "
-                               "tool-centre-point control ({}:{}) these do not turn with the "
-                               "work_offset of a rotary axis: leave that at 0",
-                               spec.name, scenario.program.file, tip->line));
-}
-
-void refuse_start_outside(const Scenario& scenario, const MachineSettings& machine,
-                          const Joints& start) {
-  std::vector<Fault> faults;
-  for (int j = 0; j < kJoints; ++j) {
-    if (!machine.chain.layout.has(j)) continue;
-    if (start[j] >= machine.nc.lower[j] && start[j] <= machine.nc.upper[j]) continue;
-    const bool linear = j < kLinearJoints;
-    const double unit = linear ? mm : deg;
-    faults.push_back(
-        {scenario.program.start_place,
-         fmt::format("program.start: {} = {:.4f} {} with all work offsets, outside the travel; "
-                     "must be >= {:.4f} and <= {:.4f}",
-                     machine.chain.layout.letter_of(j), start[j] / unit, linear ? "mm" : "deg",
-                     machine.nc.lower[j] / unit, machine.nc.upper[j] / unit)});
-  }
-  if (!faults.empty()) throw InputError(std::move(faults));
-}
-
-// A slip of the unit can make a program last for years.
-void refuse_endless(const Scenario& scenario, double duration) {
-  constexpr double kMostSamples = 1e8;  // of some 500 bytes: more than most machines hold
-  const double period = scenario.machine.nc.periods.seconds(scenario.record_period);
-  const double samples = (duration + scenario.settle_time) / period;
-  if (samples <= kMostSamples) return;
-  throw InputError({scenario.program.file},
-                   fmt::format("takes {:.3g} s: {:.3g} samples at record.period_ms = {:g}; must be "
-                               "<= {:g}; check feeds, feed_override and the limits of the axes",
-                               duration, samples, period / ms, kMostSamples));
-}
-
-// Sections that quantities name, among those that the program has.
-void refuse_absent_sections(const Scenario& scenario, const std::vector<std::string>& sections) {
-  std::vector<std::string_view> known;
-  for (const std::string& name : sections) {
-    if (!name.empty()) known.push_back(name);
-  }
-  std::vector<Fault> faults;
-  for (const QuantitySpec& quantity : scenario.quantities) {
-    for (const std::string& name : quantity.sections) {
-      if (std::find(sections.begin(), sections.end(), name) != sections.end()) continue;
-      const std::string near = did_you_mean(name, known);
-      faults.push_back(
-          {quantity.sections_place,
-           fmt::format("{} has no section '{}'{}", scenario.program.file, name,
-                       !near.empty()   ? near
-                       : known.empty() ? "; a comment (MSG, NAME) begins one"
-                                       : fmt::format("; there are: {}", fmt::join(known, ", ")))});
-    }
-  }
-  if (!faults.empty()) throw InputError(std::move(faults));
-}
-
-// Faults of several cases, each said once; with the case if not all cases have it.
-class CaseFaults {
- public:
-  void add(const std::string& case_name, const InputError& error) {
-    for (const Fault& fault : error.faults()) {
-      const auto same = std::find_if(found_.begin(), found_.end(), [&](const Found& other) {
-        return other.fault.place == fault.place && other.fault.message == fault.message;
-      });
-      if (same == found_.end()) {
-        found_.push_back({fault, {case_name}});
-      } else {
-        same->cases.push_back(case_name);
-      }
-    }
-  }
-  void report(std::size_t cases) {
-    if (found_.empty()) return;
-    std::vector<Fault> faults;
-    for (Found& one : found_) {
-      const std::string who = fmt::format("case {}: ", fmt::join(one.cases, ", "));
-      if (one.cases.size() < cases && !one.fault.message.starts_with(who)) {
-        one.fault.message = who + one.fault.message;
-      }
-      faults.push_back(std::move(one.fault));
-    }
-    throw InputError(std::move(faults));
-  }
-
- private:
-  struct Found {
-    Fault fault;
-    std::vector<std::string> cases;
-  };
-  std::vector<Found> found_;
-};
-
-// Nominal points this far from the mesh are told: its facets stand in for curved faces.
-constexpr double kFacets = 1e-6;  // m
-
-void lay_on_nominal(const std::string& case_name, const NominalPart& part, CaseOutput& out) {
-  auto found = fit_part(out.probes, *part.mesh);
-  if (const NoFit* none = std::get_if<NoFit>(&found)) {
-    out.notes.push_back(
-        fmt::format("warning: case {}: best fit to '{}': {}", case_name, part.file, none->why));
-    return;
-  }
-  out.part_fit = std::get<PartFit>(std::move(found));
-  if (out.part_fit->off > kFacets) {
-    out.notes.push_back(fmt::format(
-        "warning: case {}: nominal points of the probes are up to {:.2g} um off '{}'; distances "
-        "after best fit are as uncertain (write it with smaller facets)",
-        case_name, out.part_fit->off / um, part.file));
-  }
-}
-
-// "part.ngc:12: warning: case one: strategy feedback: virtual displacement of Y saturated ..."
-std::string saturation_note(const Scenario& scenario, const CaseSpec& spec,
-                            const controllers::Trajectory& trajectory,
-                            const strategies::Saturation& held) {
-  controllers::Trajectory::Cursor cursor{};
-  const int line = trajectory.at(held.first, cursor).line;
-  const bool linear = held.joint < kLinearJoints;
-  return fmt::format(
-      "{}:{}: warning: case {}: strategy feedback: {} of {} saturated at {:g} {}{}, first here, "
-      "{:.2f} s in all",
-      scenario.program.file, line, spec.name,
-      held.of_rate ? "rate of the virtual displacement" : "virtual displacement",
-      scenario.machine.chain.layout.letter_of(held.joint),
-      held.limit / (linear ? held.of_rate ? mm : um : 1e-3),
-      linear ? held.of_rate ? "mm" : "um" : "mrad", held.of_rate ? "/s" : "", held.time);
 }
 
 controllers::PathOptions path_options(const Scenario& scenario, const MachineSettings& machine) {
@@ -546,6 +346,7 @@ struct PreparedCase::Parts {
   SharedModel truth, imposed;
   SharedCutting cutting;
   const MachineSettings& machine() const { return scenario.machine_of(spec); }
+  NotedCase noted() const { return {scenario, spec, *program, *motion, cutting.get(), strategies}; }
   Joints machine_start;
 };
 
@@ -636,66 +437,12 @@ CaseOutput PreparedCase::output(CaseResult result) const {
                    p.scenario.probes, p.scenario.cmm);
     out.probes = std::move(part.features);
     out.notes = std::move(part.notes);
-    if (p.scenario.part) lay_on_nominal(p.spec.name, *p.scenario.part, out);
-  }
-  const auto tell = [&out](const std::vector<Fault>& warnings) {
-    for (const Fault& warning : warnings) {
-      out.notes.push_back(
-          fmt::format("{}: warning: {}", to_string(warning.place), warning.message));
+    if (p.scenario.part) {
+      out.part_fit = lay_on_nominal(p.spec.name, *p.scenario.part, out.probes, out.notes);
     }
-  };
-  tell(p.program->warnings);
-  if (p.cutting) tell(p.cutting->warnings);
-  for (const auto& slowed : p.motion->slowed) {
-    out.notes.push_back(fmt::format("{}:{}: warning: {}", p.scenario.program.file, slowed.line,
-                                    to_string(slowed, p.machine().chain.layout)));
   }
-  for (const strategies::Saturation& held : out.result.saturations) {
-    out.notes.push_back(saturation_note(p.scenario, p.spec, p.motion->trajectory, held));
-  }
-  return out;
-}
-
-std::vector<std::string> PreparedCase::uncorrectable() const {
-  const Parts& p = *parts_;
-  const plant::InverseKinematics inverse(p.machine().chain);
-  std::vector<std::string> out;
-  for (std::size_t k = 0; k < p.strategies.size(); ++k) {
-    const strategies::Strategy& strategy = *p.strategies[k];
-    const auto found = uncorrected(p.program->path, strategy, inverse, p.program->first_tip);
-    if (!found) continue;
-    std::vector<std::string> left;
-    if (found->left.tip > kUncorrected.tip) {
-      left.push_back(fmt::format("{:.2f} um of the tip", found->left.tip / um));
-    }
-    if (found->left.axis > kUncorrected.axis) {
-      left.push_back(fmt::format("{:.1f} urad of the tool axis", found->left.axis / urad));
-    }
-    const bool is_near =
-        strategy.displaces_rotary() && found->singular_angle < controllers::kNearSingular;
-    out.push_back(fmt::format(
-        "{}:{}: warning: case {}: strategy {} cannot correct {} here{}, the most found",
-        p.scenario.program.file, found->line, p.spec.name, p.spec.strategies[k].entry->name,
-        fmt::join(left, " and "),
-        is_near ? fmt::format(", {:.2f} deg from a singular direction", found->singular_angle / deg)
-                : ""));
-  }
-  return out;
-}
-
-std::vector<std::string> PreparedCase::beyond_tables() const {
-  const Parts& p = *parts_;
-  const JointLayout& layout = p.machine().chain.layout;
-  std::vector<std::string> out;
-  for (const SharedStrategy& strategy : p.strategies) {
-    for (const LeftTable& left : left_tables(p.program->path, *strategy, layout)) {
-      const char axis = layout.letter_of(left.table.joint);
-      out.push_back(fmt::format(
-          "{}:{}: warning: case {}: strategy table: the table over {} ends at {:.4f} mm, the "
-          "program goes on to {:.4f} mm; from here on the last value stays",
-          p.scenario.program.file, left.line, p.spec.name, axis, left.table.end / mm,
-          left.farthest / mm));
-    }
+  for (std::string& note : notes_of_run(p.noted(), out.result.saturations)) {
+    out.notes.push_back(std::move(note));
   }
   return out;
 }
@@ -703,8 +450,9 @@ std::vector<std::string> PreparedCase::beyond_tables() const {
 CaseOutput PreparedCase::run(const StopFlag& stop, std::atomic<float>& progress) const {
   CaseInputs given = inputs();
   CaseOutput out = output(simulate(given, stop, progress));
-  for (std::string& note : uncorrectable()) out.notes.push_back(std::move(note));
-  for (std::string& note : beyond_tables()) out.notes.push_back(std::move(note));
+  const NotedCase noted = parts_->noted();
+  for (std::string& note : notes_of_uncorrectable(noted)) out.notes.push_back(std::move(note));
+  for (std::string& note : notes_of_left_tables(noted)) out.notes.push_back(std::move(note));
   progress = 1.0F;
   return out;
 }

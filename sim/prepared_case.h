@@ -62,13 +62,7 @@ class PreparedCase {
   /// What there is to say about a run of `inputs()`.
   CaseOutput output(CaseResult result) const;
 
-  /// What strategies of this case cannot correct, one line for each (sim/uncorrected.h).
-  std::vector<std::string> uncorrectable() const;
-
-  /// Where the program goes beyond the points of compensation tables, one line for each end.
-  std::vector<std::string> beyond_tables() const;
-
-  /// output(simulate(inputs())), and what is uncorrectable and beyond tables among its notes
+  /// output(simulate(inputs())), and all notes of sim/case_notes.h
   CaseOutput run(const StopFlag& stop, std::atomic<float>& progress) const;
 
  private:

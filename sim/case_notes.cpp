@@ -1,0 +1,119 @@
+#include "sim/case_notes.h"
+
+#include <fmt/format.h>
+
+#include "controllers/path/slowed_motion.h"
+#include "plant/kinematics/inverse.h"
+#include "plant/vocabulary/units.h"
+#include "sim/nominal_part.h"
+#include "sim/probed_part.h"
+#include "sim/uncorrected.h"
+
+namespace servomill::sim {
+namespace {
+
+// Nominal points this far from the mesh are told: its facets stand in for curved faces.
+constexpr double kFacets = 1e-6;  // m
+
+const plant::MachineChain& chain_of(const NotedCase& one) {
+  return one.scenario.machine_of(one.spec).chain;
+}
+
+std::string note_of(const Fault& warning) {
+  return fmt::format("{}: warning: {}", to_string(warning.place), warning.message);
+}
+
+// "part.ngc:12: warning: case one: strategy feedback: virtual displacement of Y saturated ..."
+std::string note_of(const NotedCase& one, const strategies::Saturation& held) {
+  controllers::Trajectory::Cursor cursor{};
+  const int line = one.motion.trajectory.at(held.first, cursor).line;
+  const bool linear = held.joint < kLinearJoints;
+  return fmt::format(
+      "{}:{}: warning: case {}: strategy feedback: {} of {} saturated at {:g} {}{}, first here, "
+      "{:.2f} s in all",
+      one.scenario.program.file, line, one.spec.name,
+      held.of_rate ? "rate of the virtual displacement" : "virtual displacement",
+      one.scenario.machine.chain.layout.letter_of(held.joint),
+      held.limit / (linear ? held.of_rate ? mm : um : 1e-3),
+      linear ? held.of_rate ? "mm" : "um" : "mrad", held.of_rate ? "/s" : "", held.time);
+}
+
+}  // namespace
+
+std::vector<std::string> notes_of_run(const NotedCase& one,
+                                      std::span<const strategies::Saturation> held) {
+  std::vector<std::string> out;
+  for (const Fault& warning : one.program.warnings) out.push_back(note_of(warning));
+  if (one.cutting != nullptr) {
+    for (const Fault& warning : one.cutting->warnings) out.push_back(note_of(warning));
+  }
+  for (const auto& slowed : one.motion.slowed) {
+    out.push_back(note_of(
+        {{one.scenario.program.file, slowed.line}, to_string(slowed, chain_of(one).layout)}));
+  }
+  for (const strategies::Saturation& saturation : held) out.push_back(note_of(one, saturation));
+  return out;
+}
+
+std::vector<std::string> notes_of_uncorrectable(const NotedCase& one) {
+  const plant::InverseKinematics inverse(chain_of(one));
+  std::vector<std::string> out;
+  for (std::size_t k = 0; k < one.strategies.size(); ++k) {
+    const strategies::Strategy& strategy = *one.strategies[k];
+    const auto found = uncorrected(one.program.path, strategy, inverse, one.program.first_tip);
+    if (!found) continue;
+    std::vector<std::string> left;
+    if (found->left.tip > kUncorrected.tip) {
+      left.push_back(fmt::format("{:.2f} um of the tip", found->left.tip / um));
+    }
+    if (found->left.axis > kUncorrected.axis) {
+      left.push_back(fmt::format("{:.1f} urad of the tool axis", found->left.axis / urad));
+    }
+    const bool is_near =
+        strategy.displaces_rotary() && found->singular_angle < controllers::kNearSingular;
+    out.push_back(fmt::format(
+        "{}:{}: warning: case {}: strategy {} cannot correct {} here{}, the most found",
+        one.scenario.program.file, found->line, one.spec.name, one.spec.strategies[k].entry->name,
+        fmt::join(left, " and "),
+        is_near ? fmt::format(", {:.2f} deg from a singular direction", found->singular_angle / deg)
+                : ""));
+  }
+  return out;
+}
+
+std::vector<std::string> notes_of_left_tables(const NotedCase& one) {
+  const JointLayout& layout = chain_of(one).layout;
+  std::vector<std::string> out;
+  for (const auto& strategy : one.strategies) {
+    for (const LeftTable& left : left_tables(one.program.path, *strategy, layout)) {
+      const char axis = layout.letter_of(left.table.joint);
+      out.push_back(fmt::format(
+          "{}:{}: warning: case {}: strategy table: the table over {} ends at {:.4f} mm, the "
+          "program goes on to {:.4f} mm; from here on the last value stays",
+          one.scenario.program.file, left.line, one.spec.name, axis, left.table.end / mm,
+          left.farthest / mm));
+    }
+  }
+  return out;
+}
+
+std::optional<PartFit> lay_on_nominal(const std::string& case_name, const NominalPart& part,
+                                      std::span<const ProbedFeature> probes,
+                                      std::vector<std::string>& notes) {
+  auto found = fit_part(probes, *part.mesh);
+  if (const NoFit* none = std::get_if<NoFit>(&found)) {
+    notes.push_back(
+        fmt::format("warning: case {}: best fit to '{}': {}", case_name, part.file, none->why));
+    return std::nullopt;
+  }
+  auto fit = std::get<PartFit>(std::move(found));
+  if (fit.off > kFacets) {
+    notes.push_back(fmt::format(
+        "warning: case {}: nominal points of the probes are up to {:.2g} um off '{}'; distances "
+        "after best fit are as uncertain (write it with smaller facets)",
+        case_name, fit.off / um, part.file));
+  }
+  return fit;
+}
+
+}  // namespace servomill::sim
