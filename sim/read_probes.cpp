@@ -267,9 +267,9 @@ std::vector<ProbeSpec> read_probes(Reader& root, bool has_cutter) {
     const std::size_t before = probe.faults();
     spec.name = probe.text("name");
     if (probe.faults() == before) check_name(probe, spec.name, out);
-    const auto kind = kind_of(probe);
-    if (!kind) continue;
-    if (auto feature = read_kind(probe, *kind)) spec.feature = std::move(*feature);
+    if (const auto kind = kind_of(probe)) {
+      if (auto feature = read_kind(probe, *kind)) spec.feature = std::move(*feature);
+    }
     if (!has_cutter && out.empty()) {
       probe.fault("has nothing to probe: no [[program.tool]] has a diameter_mm, so nothing is cut");
     }

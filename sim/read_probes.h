@@ -11,6 +11,8 @@ namespace servomill::sim {
 Cmm read_cmm(Reader& root);
 
 /// All [[probe]]: a name and one of line, plane, circle, cylinder, notch, points_mm.
+/// With a fault a probe has no name, or a feature without targets, so that what refers to it can
+/// still be read.
 /// @param has_cutter  whether a tool has a diameter: without one nothing is cut
 std::vector<ProbeSpec> read_probes(Reader& root, bool has_cutter);
 

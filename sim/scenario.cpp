@@ -627,10 +627,11 @@ class ScenarioReader {
     spec.part.emplace();
     std::vector<std::string> names;
     for (const ProbeSpec& one : out_.probes) names.push_back(one.name);
+    const bool all_named = std::find(names.begin(), names.end(), "") == names.end();
     if (info.probes == kEveryProbe) {
       spec.part->probes = table.texts_or("probes", names);
       for (const std::string& name : spec.part->probes) {
-        must_be_known(table, "probes", name, fmt::format("probe '{}'", name), names);
+        if (all_named) must_be_known(table, "probes", name, fmt::format("probe '{}'", name), names);
       }
       if (spec.part->probes.empty()) table.fault("needs a [[probe]]");
       if (out_.part) spec.part->nominal = out_.part->mesh;
@@ -640,9 +641,12 @@ class ScenarioReader {
       const std::size_t before = table.faults();
       const std::string name = table.text(key);
       spec.part->probes.push_back(name);
-      if (table.faults() > before || !must_be_known(table, key, name, "probe", names)) continue;
+      if (table.faults() > before || !all_named) continue;
+      if (!must_be_known(table, key, name, "probe", names)) continue;
       const auto probe = std::find(names.begin(), names.end(), name) - names.begin();
-      const FeatureKind kind = out_.probes[static_cast<std::size_t>(probe)].feature.kind;
+      const Feature& feature = out_.probes[static_cast<std::size_t>(probe)].feature;
+      if (feature.targets.empty()) continue;  // its fault has been told
+      const FeatureKind kind = feature.kind;
       const auto kinds = kinds_of(spec.name);
       if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) continue;
       std::vector<std::string_view> wanted;

@@ -505,6 +505,8 @@ TABLES = [
 CASES = '[[case]]\nname = "nominal"'
 LINE = 'line = { from_mm = [0, 0, -1], to_mm = [50, 0, -1], normal = [0, -1, 0], points = 6 }'
 
+OTHER = '[[quantity]]\nname = "imposed_curve_residual"\naxis = "Y"'
+
 
 def probed(title, probes, *quantities, diameter="\ndiameter_mm = 8.0"):
     """A scenario with these tables before its cases, and quantities behind them."""
@@ -533,6 +535,10 @@ PROBES = [
            + probe("cylinder = { centre_mm = [0, 0, 0], radius_mm = 5, outside = true, points = [8, 2], to_mm = 0 }", "three")),
     probed("points that are none", probe("points_mm = [[0, 0, 0, 0, 0, 1], [0, 0, 0, 0, 0, 0]]")),
     probed("a CMM that is none", probe(LINE) + "[cmm]\nuncertainty_um = -1\nrepetitions = 0\nprobe_radius = 1"),
+    probed("quantities of probes that are wrong themselves", probe(LINE.replace("points = 6", "points = 1"))
+           + probe(LINE.replace("[0, -1, 0]", "[0, 0, 0]"), "side") + probe("", "top"),
+           'name = "straightness"\nprobe = "flank"\n[[quantity]]\nname = "angle"\nprobe = "side"\nto = "top"\n' + OTHER),
+    probed("quantities where a probe has no name", probe(LINE, ""), 'name = "straightness"\nprobe = "flank"\n' + OTHER),
     probed("a quantity of a probe that is not there", probe(LINE), 'name = "straightness"\nprobe = "flnak"'),
     probed("a quantity of another kind of probe", probe(LINE), 'name = "flatness"\nprobe = "flank"'),
 ]
