@@ -45,7 +45,9 @@ std::vector<std::string> notes_of_run(const NotedCase& one,
   std::vector<std::string> out;
   for (const Fault& warning : one.program.warnings) out.push_back(note_of(warning));
   if (one.cutting != nullptr) {
-    for (const Fault& warning : one.cutting->warnings) out.push_back(note_of(warning));
+    for (const auto& [place, message] : one.cutting->warnings) {
+      out.push_back(note_of({place, fmt::format("case {}: {}", one.spec.name, message)}));
+    }
   }
   for (const auto& slowed : one.motion.slowed) {
     out.push_back(note_of(

@@ -21,6 +21,7 @@ using Eigen::Vector3d;
 constexpr double kCoarse = 2 * mm, kFinest = 0.25 * mm;  // between rows of the table
 constexpr double kChord = 0.05 * um;    // between the path and the straight steps that remove
 constexpr double kBehind = 10 * um;     // of a cutter, material that it meets is not yet removed
+constexpr double kRubbed = 20 * um;     // of material that a tool rubs, thickness not told
 constexpr double kTangent = 1 * um;     // over which the direction of feed is taken
 constexpr double kForceShare = 0.02;    // of the larger force, by which linear may be wrong,
 constexpr double kForceTol = 0.5;       // N, at least
@@ -45,6 +46,12 @@ struct Stage {
   Eigen::AlignedBox3d tips = {};  // in G
 };
 
+// Where a tool is deepest in material, beyond its flutes.
+struct Shank {
+  int line = 0;
+  double flutes = 0.0, depth = 0.0;  // m; depth 0: nowhere
+};
+
 class Planner {
  public:
   explicit Planner(const CuttingPlanInputs& in)
@@ -59,6 +66,7 @@ class Planner {
     removed_ = &removed;
     for (const Stage& stage : stages_) add_rows(stage);
     if (!touches_) refuse_untouched();
+    warn_of_shanks();
     if (rapids_ > kMostWarnings) {
       plan_.warnings.push_back(
           {{in_.file},
@@ -188,6 +196,7 @@ class Planner {
     }
     if (stage.cutter != nullptr && meets_ && p.rapid) warn_of_rapid(p.line);
     meets_ = false;
+    rapid_depth_ = 0.0;
   }
 
   // Rows between a, which is in the table, and b, and b.
@@ -256,9 +265,14 @@ class Planner {
     }
     if (tangent.norm() < 1e-9) return row;  // the tip stands
     const plant::CutterMotion motion{here, tangent.normalized(), stage.clockwise};
+    look_at_shank(stage, motion, is_material);
     const auto arcs = plant::engagement(*stage.cutter, motion, is_material, in_.stock.bounds());
     if (arcs.empty()) return row;
     if (stage.turns <= 0.0) refuse_standing(stage);
+    if (p.rapid) {
+      rapid_depth_ =
+          std::max({rapid_depth_, plant::engaged_height(arcs), depth_of_rapid(stage, motion)});
+    }
     const plant::CutterFrame frame = plant::frame_of(motion);
     const plant::CuttingForce force =
         plant::average_force(in_.coefficients, stage.cutter->teeth, frame.feed, arcs);
@@ -269,9 +283,76 @@ class Planner {
     return row;
   }
 
+  // Height of the stock above the tip, along the tool.
+  double stock_above(const plant::CutterPosition& at) const {
+    const Eigen::AlignedBox3d bounds = in_.stock.bounds();
+    const Vector3d farthest = (at.axis.array() > 0.0).select(bounds.max(), bounds.min());
+    return at.axis.dot(farthest - at.tip);
+  }
+
+  // Of a straight piece of a tool that looks for material, inside of finished walls.
+  static double body_radius(const plant::Cutter& cutter) {
+    return std::max(cutter.radius - kRubbed, 0.5 * cutter.radius);
+  }
+
+  // How far up from its lower end such a piece would be in material (m).
+  double height_in_material(double radius, const plant::CutterMotion& lower_end,
+                            const plant::IsMaterial& is_material) const {
+    const plant::Cutter body{.radius = radius, .length = stock_above(lower_end.position)};
+    return plant::engaged_height(
+        plant::engagement(body, lower_end, is_material, in_.stock.bounds()));
+  }
+
+  // Material beside the tool above its flutes, which they have left there.
+  void look_at_shank(const Stage& stage, const plant::CutterMotion& motion,
+                     const plant::IsMaterial& is_material) {
+    const double flutes = stage.cutter->length;
+    Shank& shank = shanks_[stage.tool];
+    if (stock_above(motion.position) <= std::max(flutes, shank.depth + kRubbed)) return;
+    plant::CutterMotion above = motion;
+    above.position.tip += flutes * motion.position.axis;
+    const double rubbed = height_in_material(body_radius(*stage.cutter), above, is_material);
+    if (rubbed <= 0.0 || flutes + rubbed <= shank.depth + kRubbed) return;
+    shank = {path_.piece(stage.piece).line, flutes, flutes + rubbed};
+  }
+
+  void warn_of_shanks() {
+    for (const auto& [tool, shank] : shanks_) {
+      if (shank.depth <= 0.0) continue;
+      plan_.warnings.push_back(
+          {{in_.file, shank.line},
+           fmt::format("tool {} cuts {:.4g} mm deep with flutes of {:.4g} mm, here the most: its "
+                       "shank rubs, and no force of that is computed",
+                       tool, shank.depth / mm, shank.flutes / mm)});
+    }
+  }
+
+  // How far the tip is below the top of what was there before the move: beside the tool where it
+  // goes and, where it only plunges, around and below it.
+  double depth_of_rapid(const Stage& stage, const plant::CutterMotion& motion) const {
+    const std::size_t n = stage.counts.front();
+    const plant::IsMaterial was_material = [&](const Vector3d& x) {
+      return in_.stock.contains(x) && !removed_->contains(x, n);
+    };
+    const double radius = body_radius(*stage.cutter);
+    const plant::CutterFrame frame = plant::frame_of(motion);
+    if (frame.feed.across > 0.0) return height_in_material(radius, motion, was_material);
+    double deepest = 0.0;
+    for (const double share : {1.0, 0.5, 0.1}) {
+      for (const double sense : {1.0, -1.0}) {
+        plant::CutterMotion beside = motion;
+        beside.feed = sense * frame.axes.col(0);
+        deepest = std::max(deepest, height_in_material(share * radius, beside, was_material));
+      }
+    }
+    return deepest;
+  }
+
   void warn_of_rapid(int line) {
     if (++rapids_ > kMostWarnings) return;
-    plan_.warnings.push_back({{in_.file, line}, "rapid move through material"});
+    plan_.warnings.push_back(
+        {{in_.file, line},
+         fmt::format("rapid move through material, {:.2f} mm deep", rapid_depth_ / mm)});
   }
 
   [[noreturn]] void refuse_standing(const Stage& stage) const {
@@ -315,6 +396,8 @@ class Planner {
   std::vector<CuttingTable::Row> rows_;
   bool cut_before_ = false, meets_ = false, touches_ = false;
   std::size_t rapids_ = 0;
+  double rapid_depth_ = 0.0;     // m, of the present move
+  std::map<int, Shank> shanks_;  // by tool
   PlannedCutting plan_;
 };
 

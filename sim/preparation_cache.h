@@ -67,7 +67,8 @@ struct SectionsOfMotion {
 struct PlannedCutting {
   std::shared_ptr<const InterpretedProgram> program;
   CuttingTable table;
-  std::vector<Fault> warnings;  // rapid moves through material
+  std::vector<Fault>
+      warnings;  // rapid moves through material, shanks in it; of every case that cuts it so
 };
 
 /// One for all points of a sweep, for any number of threads. What is taken from it is what would

@@ -269,4 +269,13 @@ std::vector<EngagedArc> engagement(const Cutter& cutter, const CutterMotion& mot
   return Search(cutter, motion, is_material, within).arcs();
 }
 
+double engaged_height(std::span<const EngagedArc> arcs) {
+  double top = 0.0;
+  for (const EngagedArc& arc : arcs) {
+    const double climb = arc.width * std::sin(arc.kappa);
+    if (climb > 0.0) top = std::max(top, arc.height + 0.5 * climb);
+  }
+  return top;
+}
+
 }  // namespace servomill::plant

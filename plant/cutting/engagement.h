@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "plant/cutting/cutter.h"
@@ -43,5 +44,9 @@ using IsMaterial = std::function<bool(const Eigen::Vector3d&)>;
 std::vector<EngagedArc> engagement(const Cutter& cutter, const CutterMotion& motion,
                                    const IsMaterial& is_material,
                                    const Eigen::AlignedBox3d& within);
+
+/// Height above the tip (m) up to which these pieces reach, on a corner to 0.3 % of its radius; 0
+/// for those of a flat bottom.
+double engaged_height(std::span<const EngagedArc> arcs);
 
 }  // namespace servomill::plant

@@ -363,15 +363,54 @@ TEST(Cutting, bends_the_structure_of_an_ideal_machine_too) {
               1e-3 * std::abs(expected));
 }
 
-TEST(Cutting, rapid_moves_through_material_are_told) {
-  const std::string rapid =
-      "G17 G90 T1 M6\nG43 H1\nS4775 M3\nG0 X-30 Y0\nG1 Z-0.1 F1394\nG0 X30\nM30\n";
-  const Scenario scenario = cutting_scenario(rapid, one_case("cut"));
-  const CaseOutput out = run_case(scenario, "cut");
-  ASSERT_EQ(out.notes.size(), 1U);
-  EXPECT_NE(out.notes.front().find("small.ngc:6: warning: rapid move through material"),
-            std::string::npos)
-      << out.notes.front();
+// What is said of a case that cuts, without the folder of the program.
+std::vector<std::string> notes_of(const std::string& program, const std::string& tool) {
+  const Scenario scenario = small_scenario(program, tool + kBlock + kSteel + one_case("cut"));
+  std::vector<std::string> notes = run_case(scenario, "cut").notes;
+  for (std::string& note : notes) note.erase(0, note.find("small.ngc"));
+  return notes;
+}
+
+using Notes = std::vector<std::string>;
+
+const std::string kBegin = "G17 G90 T1 M6\nG43 H1\nS4775 M3\n";
+
+TEST(Cutting, rapid_moves_through_material_are_told_with_their_depth) {
+  EXPECT_EQ(notes_of(kBegin + "G0 X-30 Y0\nG1 Z-0.1 F1394\nG0 X30\nM30\n", kTool),
+            Notes{"small.ngc:6: warning: case cut: rapid move through material, 0.10 mm deep"});
+}
+
+// Straight down nothing is cut by the flank.
+TEST(Cutting, rapid_moves_into_material_are_told_with_their_depth) {
+  EXPECT_EQ(notes_of(kBegin + "G0 X-30 Y0\nZ3\nX0\nZ-5\nG1 X1 F1394\nM30\n", kTool),
+            Notes{"small.ngc:7: warning: case cut: rapid move through material, 5.00 mm deep"});
+  EXPECT_EQ(
+      notes_of(kBegin + "G0 X-30 Y0\nZ3\nX0\nG1 Z-5 F300\nZ3\nG0 Z-6\nG1 X1 F1394\nM30\n", kTool),
+      Notes{"small.ngc:9: warning: case cut: rapid move through material, 1.00 mm deep"})
+      << "what a hole of 5 mm left";
+  EXPECT_EQ(
+      notes_of(kBegin + "G0 X-30 Y0\nZ3\nX0\nG1 Z-5 F300\nZ3\nG0 Z-5\nG1 X1 F1394\nM30\n", kTool),
+      Notes{})
+      << "down a hole";
+}
+
+// Flutes of 2 mm in slots as deep as they are, deeper, and deeper in two steps.
+TEST(Cutting, shanks_that_rub_are_told_with_their_depth) {
+  const std::string tool = kTool + "flute_length_mm = 2.0\n";
+  const auto slots = [](const std::vector<double>& depths) {
+    std::string out = kBegin + "G0 X-30 Y0\n";
+    for (const double depth : depths) out += fmt::format("G0 Z-{}\nG1 X30 F1394\nG1 X-30\n", depth);
+    return out + "M30\n";
+  };
+  EXPECT_EQ(notes_of(slots({2.0}), tool), Notes{});
+  EXPECT_EQ(notes_of(slots({2.0, 4.0}), tool), Notes{}) << "the shank is in the first slot";
+  EXPECT_EQ(
+      notes_of(slots({2.5}), tool),
+      Notes{"small.ngc:6: warning: case cut: tool 1 cuts 2.5 mm deep with flutes of 2 mm, here "
+            "the most: its shank rubs, and no force of that is computed"});
+  EXPECT_EQ(notes_of(slots({2.0, 5.0}), tool),
+            Notes{"small.ngc:9: warning: case cut: tool 1 cuts 3 mm deep with flutes of 2 mm, here "
+                  "the most: its shank rubs, and no force of that is computed"});
 }
 
 TEST(CuttingErrors, tell_what_is_missing) {

@@ -48,6 +48,28 @@ TEST(Engagement, is_half_a_turn_in_a_slot_as_deep_as_the_slot) {
   }
 }
 
+// A piece of a corner turns by 7.5 deg at most: its middle is off that of its heights by
+// r (1 - cos 3.75 deg).
+constexpr double kPieceOfCorner = 0.0022;
+
+// Of whatever profile, in whatever direction it goes: up to the top of the block.
+TEST(Engagement, reaches_to_the_top_of_what_is_cut) {
+  for (const double corner : {0.0, 1 * mm, 4 * mm}) {
+    Cutter cutter = kFlat;
+    cutter.corner_radius = corner;
+    for (const double depth : {0.3 * mm, 2 * mm, 25 * mm}) {
+      for (const double slope : {0.0, -0.2, 0.2}) {
+        CutterMotion motion = along_x(0.0, 0.0, -depth);
+        motion.feed = Eigen::Vector3d(1.0, 0.0, slope).normalized();
+        EXPECT_NEAR(engaged_height(arcs_in(block(1.0, 1.0, 0.0), cutter, motion)), depth,
+                    kDepthTol + kPieceOfCorner * corner)
+            << corner << " " << slope;
+      }
+    }
+  }
+  EXPECT_EQ(engaged_height({}), 0.0);
+}
+
 // Material on the right of a cutter that turns clockwise: climb milling, it leaves at 180 degrees.
 TEST(Engagement, of_a_shoulder_follows_from_its_width) {
   for (const double ae : {0.02 * mm, 0.1 * mm, 1 * mm, 4 * mm, 6 * mm, 7.9 * mm}) {
