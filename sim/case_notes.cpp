@@ -38,12 +38,26 @@ std::string note_of(const NotedCase& one, const strategies::Saturation& held) {
       linear ? held.of_rate ? "mm" : "um" : "mrad", held.of_rate ? "/s" : "", held.time);
 }
 
+// Probes and stock stay where the work_offset has them, whatever the program does to its zero.
+std::optional<Fault> shifted_program(const NotedCase& one) {
+  const Move* move = one.program.first_shifted_feed();
+  std::vector<std::string_view> unshifted;
+  if (!one.scenario.probes.empty()) unshifted.push_back("[[probe]]");
+  if (!one.scenario.stock.empty()) unshifted.push_back("[[part.stock]]");
+  if (move == nullptr || unshifted.empty()) return std::nullopt;
+  return Fault{{one.scenario.program.file, move->line},
+               fmt::format("feeds in coordinates shifted by G52, G92, G10 or another work system "
+                           "than G54, which does not shift {}",
+                           fmt::join(unshifted, " and "))};
+}
+
 }  // namespace
 
 std::vector<std::string> notes_of_run(const NotedCase& one,
                                       std::span<const strategies::Saturation> held) {
   std::vector<std::string> out;
   for (const Fault& warning : one.program.warnings) out.push_back(note_of(warning));
+  if (const auto shifted = shifted_program(one)) out.push_back(note_of(*shifted));
   if (one.cutting != nullptr) {
     for (const auto& [place, message] : one.cutting->warnings) {
       out.push_back(note_of({place, fmt::format("case {}: {}", one.spec.name, message)}));

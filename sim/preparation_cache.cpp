@@ -91,6 +91,14 @@ const Move* InterpretedProgram::first_tip_move() const {
   return found == moves.end() ? nullptr : &*found;
 }
 
+const Move* InterpretedProgram::first_shifted_feed() const {
+  const auto is_shifted_feed = [](const Move& move) {
+    return (move.kind == MoveKind::feed || move.kind == MoveKind::arc) && move.is_shifted;
+  };
+  const auto found = std::find_if(moves.begin(), moves.end(), is_shifted_feed);
+  return found == moves.end() ? nullptr : &*found;
+}
+
 InterpretedProgram::InterpretedProgram(std::vector<Move> moves_in, std::vector<Fault> warnings_in,
                                        const controllers::ProgramSetup& setup)
     : moves(std::move(moves_in)),

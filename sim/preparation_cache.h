@@ -32,6 +32,9 @@ struct InterpretedProgram {
   /// The first move that controls the tip; nullptr: none does.
   const Move* first_tip_move() const;
 
+  /// The first feed in coordinates that the program has shifted; nullptr: none is.
+  const Move* first_shifted_feed() const;
+
   std::vector<Move> moves;
   std::vector<Fault> warnings;
   std::map<int, Eigen::Vector3d> tips;                  // p_ST (m) by tool offset number

@@ -98,6 +98,8 @@ class Interpreter::Machine {
                                                    setup_.work_system, kWorkSystems));
     }
     state_.tool = setup_.tool;
+    load_work_system(1);
+    zero_at_start_ = state_.zero();
     load_work_system(setup_.work_system);
     load_stored_shift();
     state_.position = state_.from_account(setup_.start);
@@ -363,6 +365,7 @@ class Interpreter::Machine {
   FlowState flow_;
   Block block_;
   Request request_;
+  WorkZero zero_at_start_;  // of G54
   ModalState state_;
   ModalState before_;              // the block
   std::vector<SavedLevel> saved_;  // by level of calls

@@ -30,6 +30,13 @@ AxisWords to_plane(const WorkPlane* plane, AxisWords p) {
 
 }  // namespace
 
+bool WorkZero::is_at(const WorkZero& other) const {
+  constexpr double kRounding = 1e-9;  // m, rad
+  return (origin - other.origin).cwiseAbs().maxCoeff() <= kRounding &&
+         std::abs(cos_rotation - other.cos_rotation) <= kRounding &&
+         std::abs(sin_rotation - other.sin_rotation) <= kRounding;
+}
+
 void ModalState::set_rotation(double angle) {
   cos_rotation = std::cos(angle);
   sin_rotation = std::sin(angle);

@@ -38,6 +38,15 @@ struct Compensation {
   const HeldMove& front() const { return queue.empty() ? last_front : queue.front().path; }
 };
 
+/// Where work coordinates lie in others, and how X and Y are turned.
+struct WorkZero {
+  AxisWords origin = AxisWords::Zero();  // m, rad
+  double cos_rotation = 1.0, sin_rotation = 0.0;
+
+  /// But for rounding of offsets that a program sets to what they are.
+  bool is_at(const WorkZero& other) const;
+};
+
 /// Positions are SI. Machine coordinates = R (position + shift) + work_offset + tool_offset, where
 /// R turns X and Y by the rotation of the work system.
 ///
@@ -110,6 +119,9 @@ struct ModalState {
   WorkPlane plane_in_workpiece() const;
   /// Direction in W of one that the program gives.
   Eigen::Vector3d direction_in_workpiece(const Eigen::Vector3d& v) const;
+
+  /// Where work coordinates lie in those of the machine, tool offset and tilted plane left out.
+  WorkZero zero() const { return {rotated(shift) + work_offset, cos_rotation, sin_rotation}; }
 
   AxisWords rotated(const AxisWords& v) const;
   AxisWords unrotated(const AxisWords& v) const;

@@ -248,6 +248,7 @@ void Interpreter::Machine::describe(Move& move, MoveKind kind) const {
   move.path_tolerance = state_.path_tolerance;
   move.feed_mode = state_.feed_mode;
   move.work_offset = state_.work_system;
+  move.is_shifted = !state_.zero().is_at(zero_at_start_);
   move.tool_offset = state_.tool_offset_number;
   move.s_begin = move.s_end = state_.s;
   move.tool_control = state_.tool_control;

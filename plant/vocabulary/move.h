@@ -78,9 +78,11 @@ struct Move {
   double value = 0.0;  // dwell: s; spindle: rad/s; feed per revolution: m or rad a revolution
   int number = 0;
   ToolControl tool_control = ToolControl::none;
-  int direction = 0;    // spindle: 1 clockwise (M3), -1 (M4), 0 off
-  int work_offset = 1;  // 1 is G54, 9 is G59.3
-  int tool_offset = 0;  // H of G43; 0: none (G49)
+  int direction = 0;        // spindle: 1 clockwise (M3), -1 (M4), 0 off
+  int work_offset = 1;      // 1 is G54, 9 is G59.3
+  bool is_shifted = false;  // work coordinates lie elsewhere than those of G54 when the program
+                            // began: G52, G92, G10, or another work system
+  int tool_offset = 0;      // H of G43; 0: none (G49)
   Eigen::Vector3d tool_axis = Eigen::Vector3d::UnitZ();  // G43.5: k_W at the end
   std::shared_ptr<const WorkPlane> plane;  // arcs in a tilted plane: where `arc` and `end` lie
   std::string text;

@@ -373,6 +373,9 @@ std::vector<std::string> notes_of(const std::string& program, const std::string&
 
 using Notes = std::vector<std::string>;
 
+const std::string kCorner =
+    "[[probe]]\nname = \"floor\"\npoints_mm = [[0.0, 0.0, -2.0, 0.0, 0.0, 1.0]]\n";
+
 const std::string kBegin = "G17 G90 T1 M6\nG43 H1\nS4775 M3\n";
 
 TEST(Cutting, rapid_moves_through_material_are_told_with_their_depth) {
@@ -392,6 +395,19 @@ TEST(Cutting, rapid_moves_into_material_are_told_with_their_depth) {
       notes_of(kBegin + "G0 X-30 Y0\nZ3\nX0\nG1 Z-5 F300\nZ3\nG0 Z-5\nG1 X1 F1394\nM30\n", kTool),
       Notes{})
       << "down a hole";
+}
+
+// The stock stays; once for all feeds, and not where all is as the work_offset has it.
+TEST(Cutting, shifted_programs_are_told_that_the_stock_stays) {
+  const std::string there = "G0 X-30 Y0\nZ-2\nG1 X30 F1394\nX-30\nM30\n";
+  EXPECT_EQ(notes_of(kBegin + "G52 X5\n" + there, kTool),
+            Notes{"small.ngc:7: warning: feeds in coordinates shifted by G52, G92, G10 or another "
+                  "work system than G54, which does not shift [[part.stock]]"});
+  EXPECT_EQ(notes_of(kBegin + "G52 X5\n" + there, kTool + kCorner),
+            Notes{"small.ngc:7: warning: feeds in coordinates shifted by G52, G92, G10 or another "
+                  "work system than G54, which does not shift [[probe]] and [[part.stock]]"});
+  EXPECT_EQ(notes_of(kBegin + "G55\n" + there, kTool), Notes{}) << "at machine zero as G54 is";
+  EXPECT_EQ(notes_of(kBegin + there, kTool), Notes{});
 }
 
 // Flutes of 2 mm in slots as deep as they are, deeper, and deeper in two steps.

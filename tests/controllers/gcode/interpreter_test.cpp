@@ -124,6 +124,24 @@ TEST(Offsets, ChangingThemDoesNotMoveTheMachine) {
   }
 }
 
+// By whatever word: what counts is where the coordinates lie.
+TEST(Offsets, MovesTellThatTheyAreShifted) {
+  const auto is_shifted = [](const std::string& program) {
+    ProgramSetup setup = usual_setup();
+    setup.work_offset = {axes(10, 20, 30, 40), axes(10, 20, 30, 40), axes(10, 20, 30)};
+    return last_move("G0 X1 Y2 Z3\n" + program + "\nG1 X5 F100", setup).is_shifted;
+  };
+  for (const char* shift : {"G52 X0.001", "G92 C7", "G10 L2 P1 Y20.001", "G10 L2 P1 R1",
+                            "G10 L20 P0 X0", "G56", "G55\nG10 L2 P2 X0"}) {
+    EXPECT_TRUE(is_shifted(shift)) << shift;
+  }
+  for (const char* none :
+       {"G54", "G55", "G56\nG54", "G52 X0", "G92 X1 Y2", "G92 X3\nG92.1", "G10 L2 P1 X10 A40",
+        "G10 L20 P1 X1 Y2 Z3", "G10 L2 P3 X0", "G43 H3", "G53 G0 X2", "G91", "G20"}) {
+    EXPECT_FALSE(is_shifted(none)) << none;
+  }
+}
+
 TEST(Offsets, G53IsInMachineCoordinates) {
   ProgramSetup setup = usual_setup();
   setup.work_offset[0] = axes(100, 200, 300, 10);
