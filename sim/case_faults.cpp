@@ -34,12 +34,14 @@ void refuse_turned_tip(const InterpretedProgram& program, const Scenario& scenar
                        const CaseSpec& spec) {
   const AxisWords offset = scenario.program.work_offset + spec.work_offset;
   const Move* tip = program.first_tip_move();
-  if (scenario.probes.empty() || tip == nullptr || offset.tail<3>().isZero(0.0)) return;
-  throw InputError(scenario.probes.front().place,
-                   fmt::format("case {}: a part is probed in the coordinates of its program; with "
+  const bool is_probed = !scenario.probes.empty();
+  if (tip == nullptr || offset.tail<3>().isZero(0.0) || !(is_probed || spec.cutting)) return;
+  throw InputError(is_probed ? scenario.probes.front().place : scenario.cutting->place,
+                   fmt::format("case {}: a part is {} in the coordinates of its program; with "
                                "tool-centre-point control ({}:{}) these do not turn with the "
                                "work_offset of a rotary axis: leave that at 0",
-                               spec.name, scenario.program.file, tip->line));
+                               spec.name, is_probed ? "probed" : "cut from [[part.stock]]",
+                               scenario.program.file, tip->line));
 }
 
 void refuse_start_outside(const Scenario& scenario, const MachineSettings& machine,

@@ -22,8 +22,8 @@ void refuse_absent_axes(const InterpretedProgram& program, const Scenario& scena
 void refuse_standing_spindle(const InterpretedProgram& program, const Scenario& scenario);
 
 /// Under tool control X Y Z do not turn with the work offset, so that the coordinates of the
-/// program are not those of the probes.
-/// @throws InputError at the first probe
+/// program are not those of the probes and the stock.
+/// @throws InputError at the first probe; without one, if the case feels its cut, at [cutting]
 void refuse_turned_tip(const InterpretedProgram& program, const Scenario& scenario,
                        const CaseSpec& spec);
 

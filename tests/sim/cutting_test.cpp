@@ -429,6 +429,23 @@ TEST(Cutting, shanks_that_rub_are_told_with_their_depth) {
                   "the most: its shank rubs, and no force of that is computed"});
 }
 
+// The tip is programmed in the workpiece as it stands with the table at zero.
+TEST(CuttingErrors, tell_of_stock_that_turns_without_its_program) {
+  const std::string program = "T1 M6\nG43.4 H1\nM3 S4775\nG0 X-30 Y0 Z-2\nG1 X30 F1394\nM30\n";
+  const std::string turned = "work_offset = { C_deg = 90.0 }\n";
+  const auto message = [&](const std::string& keys) {
+    return message_of(program, kTool + kBlock + kSteel + one_case("cut", keys));
+  };
+  EXPECT_NE(message(turned).find(
+                ": case cut: a part is cut from [[part.stock]] in the coordinates of its program; "
+                "with tool-centre-point control (small.ngc:4) these do not turn with the "
+                "work_offset of a rotary axis: leave that at 0\n"),
+            std::string::npos)
+      << message(turned);
+  EXPECT_EQ(message(turned + "cutting = false\n"), "") << "in air";
+  EXPECT_EQ(message("work_offset = { X_mm = 5.0 }\n"), "");
+}
+
 TEST(CuttingErrors, tell_what_is_missing) {
   const std::string all = kTool + kBlock + kSteel + one_case("cut");
   EXPECT_EQ(message_of("T1 M6\nG43 H1\nG0 X-30\nZ-2\nG1 X30 F100\nM30\n", all),
