@@ -4,10 +4,21 @@
 
 #include <algorithm>
 
+#include "controllers/gcode/modal_state.h"
 #include "plant/vocabulary/units.h"
 #include "sim/preparation_cache.h"
 
 namespace servomill::sim {
+
+void refuse_unnumbered_tools(std::span<const Move> moves, const std::string& file) {
+  const auto found = std::find_if(moves.begin(), moves.end(), [](const Move& move) {
+    return is_motion(move.kind) && move.tool_offset == controllers::kOtherToolOffset;
+  });
+  if (found == moves.end()) return;
+  throw InputError({file, found->line},
+                   "moves with a tool offset of G43.1 or G43.2; a simulation takes the tool from "
+                   "[[program.tool]]: use G43 H");
+}
 
 void refuse_absent_axes(const InterpretedProgram& program, const Scenario& scenario) {
   std::vector<Fault> faults;

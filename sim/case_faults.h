@@ -1,17 +1,24 @@
 /// Faults of cases: what refuses a case before it runs, and how the faults of several are told.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/move.h"
 #include "sim/scenario.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim {
 
 struct InterpretedProgram;
+
+/// A simulation knows tools by their numbers: those of G43.1 and G43.2 have none.
+/// @param file  of the program
+/// @throws InputError at the first motion with such a tool offset
+void refuse_unnumbered_tools(std::span<const Move> moves, const std::string& file);
 
 /// Words of axes that the machine lacks would have no effect.
 /// @throws InputError for each such axis, where the program first moves it

@@ -181,6 +181,7 @@ class Preparation {
     return cache_.programs.get(key, [&] {
       std::vector<Fault> warnings;
       std::vector<Move> moves = read_program(scenario_, spec_, &warnings);
+      refuse_unnumbered_tools(moves, scenario_.program.file);
       return InterpretedProgram(std::move(moves), std::move(warnings), setup);
     });
   }
