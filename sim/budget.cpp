@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -27,7 +30,9 @@ constexpr std::array<CauseInfo, kCauses> kInfos = {{
     {"measurement", "encoders and, where the motor is read, screws"},
     {"cutting", "forces of the cut"},
     {"interpolation", "chords, path tolerance and filter of the NC"},
-    {"kinematics", "what is left without all others"},
+    {"uncorrected", "errors that no strategy of the case corrects, or brings out"},
+    {"uncorrectable", "what the axes of the strategies cannot do"},
+    {"imposed", "errors that strategies bring out on purpose"},
 }};
 
 constexpr double kFine = 0.01;        // share of tolerances that are taken away
@@ -35,7 +40,12 @@ constexpr double kLeastChord = 1e-9;  // m
 constexpr double kOutOfReach = 1e3;   // m, rad and these per s
 
 using Causes = std::set<Cause>;
-const Causes kThroughLoops = {Cause::friction, Cause::measurement, Cause::cutting, Cause::delay};
+// What the signal goes through, in this order.
+constexpr std::array kChain = {Cause::interpolation, Cause::lag, Cause::delay};
+// What adds to it, beside measurement.
+constexpr std::array kAdding = {Cause::table,          Cause::saturation, Cause::one_step,
+                                Cause::identification, Cause::friction,   Cause::cutting,
+                                Cause::uncorrected};
 
 MachineSettings& own_machine(const Scenario& scenario, CaseSpec& one) {
   if (!one.machine) one.machine = scenario.machine;
@@ -114,16 +124,6 @@ bool remove_saturation(CaseSpec& one) {
   return any;
 }
 
-// Cases know forces of the cut only where there is a model of them.
-template <class Case>
-bool remove_cutting(Case& one) {
-  if constexpr (requires { one.cutting; }) {
-    return std::exchange(one.cutting, false);
-  } else {
-    return false;
-  }
-}
-
 // A word of a parameter, in all strategies that know it.
 bool set_word(CaseSpec& one, std::string_view name, std::string_view word) {
   bool any = false;
@@ -136,9 +136,20 @@ bool set_word(CaseSpec& one, std::string_view name, std::string_view word) {
   return any;
 }
 
+const std::string& truth_of(const Scenario& scenario, const CaseSpec& one) {
+  return one.truth ? *one.truth : scenario.truth;
+}
+
+// Whether strategies of a case know errors, to correct or to generate them.
+bool has_strategy(const CaseSpec& one, strategies::Sign sign) {
+  return std::any_of(one.strategies.begin(), one.strategies.end(), [&](const StrategySpec& spec) {
+    return spec.entry->reads_errors && spec.sign == sign;
+  });
+}
+
 bool remove_identification(const Scenario& scenario, CaseSpec& one) {
   bool any = set_word(one, "rewritten_for", "case");
-  const std::string& truth = one.truth ? *one.truth : scenario.truth;
+  const std::string& truth = truth_of(scenario, one);
   for (StrategySpec& strategy : one.strategies) {
     if (!strategy.entry->reads_errors) continue;
     const bool corrects_truth = strategy.sign == strategies::Sign::correct && !truth.empty();
@@ -148,6 +159,12 @@ bool remove_identification(const Scenario& scenario, CaseSpec& one) {
     any = true;
   }
   return any;
+}
+
+bool remove_uncorrected(const Scenario& scenario, CaseSpec& one) {
+  if (truth_of(scenario, one).empty() || has_strategy(one, strategies::Sign::correct)) return false;
+  one.truth = "";
+  return true;
 }
 
 bool remove_interpolation(const Scenario& scenario, CaseSpec& one) {
@@ -189,20 +206,40 @@ bool remove(Cause cause, Scenario& scenario, CaseSpec& one) {
     case Cause::measurement:
       return remove_measurement(own_machine(scenario, one));
     case Cause::cutting:
-      return remove_cutting(one);
+      return std::exchange(one.cutting, false);
     case Cause::interpolation:
       return remove_interpolation(scenario, one);
-    case Cause::kinematics:
+    case Cause::uncorrected:
+      return remove_uncorrected(scenario, one);
+    case Cause::uncorrectable:
+    case Cause::imposed:
       break;
   }
   return false;
 }
 
-Causes without_kinematics() {
-  Causes out;
-  for (std::size_t c = 0; c < kCauses; ++c) out.insert(static_cast<Cause>(c));
-  out.erase(Cause::kinematics);
+// All that can be removed.
+Causes all_causes() {
+  Causes out = {Cause::measurement};
+  out.insert(kAdding.begin(), kAdding.end());
+  out.insert(kChain.begin(), kChain.end());
   return out;
+}
+
+// What stays without all others; none of what begins behind the strategies.
+// @param base  the case it is compared with, or nullptr
+std::optional<Cause> rest_of(const QuantitySpec& quantity, const CaseSpec& one,
+                             const CaseSpec* base) {
+  if (quantity.name == "following_error") return std::nullopt;
+  const auto has = [&](strategies::Sign sign) {
+    return has_strategy(one, sign) || (base != nullptr && has_strategy(*base, sign));
+  };
+  const bool generates = has(strategies::Sign::generate);
+  const bool takes_imposed_off = quantity.name == "imposed_curve_residual";
+  if (generates && !takes_imposed_off) return Cause::imposed;
+  if (generates || has(strategies::Sign::correct)) return Cause::uncorrectable;
+  if (takes_imposed_off) return Cause::uncorrected;
+  return std::nullopt;
 }
 
 // Of these, what a case has. An ideal servo has nothing that goes through loops.
@@ -219,8 +256,7 @@ Causes present(const Causes& causes, const Scenario& scenario, const CaseSpec& o
   return out;
 }
 
-// The cases that a variation changes, changed; the others are as they were.
-// @param already  causes that are taken away of a run that is known: alone, they make no other one
+// The cases that have a cause to be removed that another run has not removed already, without it.
 Scenario without(const Scenario& scenario, const Causes& removed, const Causes& already,
                  const std::map<std::string, Causes>& present_in) {
   Scenario out = scenario;
@@ -243,12 +279,6 @@ Scenario without(const Scenario& scenario, const Causes& removed, const Causes& 
     out.hardware.model_period = 1;
   }
   return out;
-}
-
-const CaseOutput* find(const RunOutput& run, const std::string& name) {
-  const auto found = std::find_if(run.cases.begin(), run.cases.end(),
-                                  [&](const CaseOutput& one) { return one.name == name; });
-  return found == run.cases.end() ? nullptr : &*found;
 }
 
 // Values of a signal at other places; constant beyond its ends.
@@ -275,13 +305,15 @@ double rms(const std::vector<double>& values) {
   return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
+using Runs = std::map<std::string, std::shared_ptr<const CaseOutput>>;  // by case
+
 // The budgets of all quantities, filled run by run.
 class Accounts {
  public:
   Accounts(const Scenario& scenario, std::span<const QuantitySpec> quantities,
            const BudgetControl& control)
       : scenario_(scenario), control_(control) {
-    const Causes all = without_kinematics();
+    const Causes all = all_causes();
     for (const QuantitySpec& quantity : quantities) {
       Budget budget;
       budget.quantity = quantity;
@@ -295,118 +327,94 @@ class Accounts {
   }
 
   std::vector<Budget> find() {
-    const Causes all = without_kinematics();
-    total_ = static_cast<double>(all.size() + 2);
-    if (!run_complete()) return {};
+    const Runs complete = run({}, {}, {});
+    if (stopped()) return {};
+    for (Budget& budget : budgets_) start(budget, complete);
+    // what adds to the signal
     const Causes steps = {Cause::measurement};
-    RunOutput smooth;
-    if (!run(steps, {}, smooth)) return {};
-    subtract(Cause::measurement, complete_, smooth);
-    for (const Cause cause : all) {
-      if (cause == Cause::lag || cause == Cause::measurement) continue;
-      if (!take_away(cause, steps, smooth)) return {};
+    const Runs smooth = run(steps, {}, complete);
+    subtract(Cause::measurement, complete, smooth);
+    Causes removed = steps;
+    for (const Cause cause : kAdding) {
+      subtract(cause, smooth, run({Cause::measurement, cause}, steps, smooth));
+      removed.insert(cause);
     }
-    // the lag, of loops through which nothing else acts
-    RunOutput loops;
-    if (!run(kThroughLoops, steps, loops)) return {};
-    add_missing(loops, smooth);
-    if (!take_away(Cause::lag, kThroughLoops, loops)) return {};
-    // what is left
-    RunOutput none;
-    if (!run(all, {}, none)) return {};
-    for (Budget& budget : budgets_) {
-      if (!budget.note.empty()) continue;
-      take(budget, Cause::kinematics, signal(budget, none, complete_), true);
+    // what it goes through, from behind
+    Runs with = run(removed, steps, smooth);
+    for (const Cause cause : kChain | std::views::reverse) {
+      const Causes already = removed;
+      removed.insert(cause);
+      Runs less = run(removed, already, with);
+      subtract(cause, with, less);
+      with = std::move(less);
     }
-    for (Budget& budget : budgets_) close(budget);
-    return std::move(budgets_);
+    for (Budget& budget : budgets_) finish(budget, with);
+    return stopped() ? std::vector<Budget>{} : std::move(budgets_);
   }
 
  private:
-  // Runs the cases that have a cause to be removed which another run has not removed already.
-  bool run(const Causes& removed, const Causes& already, RunOutput& out) {
+  bool stopped() const { return control_.stop != nullptr && *control_.stop; }
+
+  // Runs the cases that have a cause to be removed which `former` has not removed already; the
+  // others are those of `former`.
+  Runs run(const Causes& removed, const Causes& already, const Runs& former) {
+    Runs out = former;
     const Scenario changed = without(scenario_, removed, already, present_);
-    if (!changed.cases.empty()) {
+    if (!changed.cases.empty() && !stopped()) {
       RunControl control;
       control.threads = control_.threads;
       control.stop = control_.stop;
       control.cache = &cache_;
       control.progress = [&](double share) {
-        if (control_.progress) control_.progress((runs_ + share) / total_);
+        if (control_.progress) control_.progress((runs_ + share) / kRuns);
       };
-      out = run_scenario(changed, control);
+      for (CaseOutput& one : run_scenario(changed, control).cases) {
+        const std::string name = one.name;
+        out[name] = std::make_shared<const CaseOutput>(std::move(one));
+      }
     }
     runs_ += 1.0;
-    return control_.stop == nullptr || !*control_.stop;
+    return out;
   }
 
-  // Cases that a run did not change, as another one has them.
-  static void add_missing(RunOutput& run, const RunOutput& other) {
-    for (const CaseOutput& one : other.cases) {
-      if (sim::find(run, one.name) == nullptr) run.cases.push_back(one);
-    }
-  }
-
-  bool run_complete() {
-    if (!run({}, {}, complete_)) return false;
-    for (Budget& budget : budgets_) {
-      const auto of_case = outputs(budget, complete_, complete_);
-      for (const CaseOutput* one : {of_case.first, of_case.second}) {
-        if (one == nullptr || one->result.outcome.finished || !budget.note.empty()) continue;
-        budget.note = fmt::format("case {} stopped: {}", one->name, one->result.outcome.reason);
+  // The residual of a run; why there is none, otherwise.
+  static std::pair<PathSignal, std::string> residual(const Budget& budget, const Runs& runs,
+                                                     const char* stops) {
+    const QuantitySpec& quantity = budget.quantity;
+    std::vector<CaseData> compared;
+    for (const std::string& name : {quantity.cases.front(), quantity.base}) {
+      if (name.empty()) continue;
+      const CaseOutput& one = *runs.at(name);
+      const Outcome& outcome = one.result.outcome;
+      if (!outcome.finished) {
+        return {{}, fmt::format("case {} {}: {}", name, stops, outcome.reason)};
       }
-      if (!budget.note.empty()) continue;
-      const CaseData one = of_case.first->data();
-      const std::optional<CaseData> base = data_of(of_case.second);
-      PathSignal residual = path_signal(budget.quantity, one, base ? &*base : nullptr);
-      if (residual.value.empty()) {
-        budget.note = "no samples";
-        continue;
-      }
-      budget.s = std::move(residual.s);
-      budget.residual = std::move(residual.value);
-      const auto largest =
-          std::max_element(budget.residual.begin(), budget.residual.end(),
-                           [](double a, double b) { return std::abs(a) < std::abs(b); });
-      budget.place = static_cast<std::size_t>(largest - budget.residual.begin());
+      compared.push_back(one.data());
     }
-    return true;
+    const CaseData* base = compared.size() > 1 ? &compared.back() : nullptr;
+    PathSignal found = path_signal(quantity, compared.front(), base);
+    if (found.value.empty()) return {{}, "no samples"};
+    return {std::move(found), ""};
   }
 
-  // The case and the one that it is compared with: of a run, or of another one where the run did
-  // not change it.
-  std::pair<const CaseOutput*, const CaseOutput*> outputs(const Budget& budget,
-                                                          const RunOutput& run,
-                                                          const RunOutput& unchanged) const {
-    const auto one = [&](const std::string& name) -> const CaseOutput* {
-      if (name.empty()) return nullptr;
-      const CaseOutput* changed = sim::find(run, name);
-      if (changed != nullptr) return changed;
-      const CaseOutput* as_before = sim::find(unchanged, name);
-      return as_before != nullptr ? as_before : sim::find(complete_, name);
-    };
-    return {one(budget.quantity.cases.front()), one(budget.quantity.base)};
+  static void start(Budget& budget, const Runs& complete) {
+    auto [signal, why_not] = residual(budget, complete, "stopped");
+    budget.note = std::move(why_not);
+    if (!budget.note.empty()) return;
+    budget.s = std::move(signal.s);
+    budget.residual = std::move(signal.value);
+    const auto largest =
+        std::max_element(budget.residual.begin(), budget.residual.end(),
+                         [](double a, double b) { return std::abs(a) < std::abs(b); });
+    budget.place = static_cast<std::size_t>(largest - budget.residual.begin());
+    for (BudgetPart& part : budget.parts) part.signal.assign(budget.s.size(), 0.0);
   }
 
-  static std::optional<CaseData> data_of(const CaseOutput* one) {
-    if (one == nullptr) return std::nullopt;
-    return one->data();
-  }
-
-  // The residual of a run at the places of the budget; with a note if there is none.
-  std::vector<double> signal(Budget& budget, const RunOutput& run, const RunOutput& unchanged) {
-    const auto [one, base] = outputs(budget, run, unchanged);
-    for (const CaseOutput* output : {one, base}) {
-      if (output == nullptr || output->result.outcome.finished) continue;
-      budget.note = fmt::format("case {} stops where a cause is taken away: {}", output->name,
-                                output->result.outcome.reason);
-      return {};
-    }
-    const CaseData data = one->data();
-    const std::optional<CaseData> of_base = data_of(base);
-    const PathSignal found = path_signal(budget.quantity, data, of_base ? &*of_base : nullptr);
-    if (found.value.empty()) {
-      budget.note = "no samples where a cause is taken away";
+  // The residual of a run without some causes, at the places of the budget.
+  static std::vector<double> signal(Budget& budget, const Runs& runs) {
+    auto [found, why_not] = residual(budget, runs, "stops where a cause is taken away");
+    if (!why_not.empty()) {
+      budget.note = std::move(why_not);
       return {};
     }
     return at_places(found, budget.s);
@@ -419,59 +427,51 @@ class Accounts {
   }
 
   // part = residual of `with` - residual of `less`
-  void subtract(Cause cause, const RunOutput& with, const RunOutput& less) {
+  void subtract(Cause cause, const Runs& with, const Runs& less) {
     for (Budget& budget : budgets_) {
       if (!budget.note.empty() || !has(budget, cause)) continue;
-      std::vector<double> part = signal(budget, with, complete_);
-      const std::vector<double> left = signal(budget, less, with);
+      std::vector<double> part = signal(budget, with);
+      const std::vector<double> left = signal(budget, less);
       if (!budget.note.empty()) continue;
       for (std::size_t n = 0; n < part.size(); ++n) part[n] -= left[n];
-      take(budget, cause, std::move(part), true);
+      add(budget, cause, part);
     }
   }
 
-  // A cause, from a run without others; false if stopped.
-  bool take_away(Cause cause, Causes removed, const RunOutput& with) {
-    const bool any = std::any_of(budgets_.begin(), budgets_.end(),
-                                 [&](const Budget& budget) { return has(budget, cause); });
-    if (!any) {
-      runs_ += 1.0;
-      return true;
-    }
-    const Causes already = removed;
-    removed.insert(cause);
-    RunOutput less;
-    if (!run(removed, already, less)) return false;
-    subtract(cause, with, less);
-    return true;
-  }
-
-  static void take(Budget& budget, Cause cause, std::vector<double> signal, bool present) {
-    if (!budget.note.empty()) return;
+  static void add(Budget& budget, Cause cause, const std::vector<double>& signal) {
     BudgetPart& part = budget.parts[static_cast<std::size_t>(cause)];
-    part.present = present;
-    part.at_place = signal.at(budget.place);
-    part.rms = rms(signal);
-    part.signal = std::move(signal);
+    part.present = true;
+    for (std::size_t n = 0; n < signal.size(); ++n) part.signal[n] += signal[n];
   }
 
-  static void close(Budget& budget) {
+  void finish(Budget& budget, const Runs& none) const {
     if (!budget.note.empty()) return;
+    const QuantitySpec& quantity = budget.quantity;
+    const auto rest = rest_of(quantity, *scenario_.find_case(quantity.cases.front()),
+                              scenario_.find_case(quantity.base));
+    if (rest) {
+      const std::vector<double> left = signal(budget, none);
+      if (!budget.note.empty()) return;
+      add(budget, *rest, left);
+    }
     budget.remainder = budget.residual;
     for (BudgetPart& part : budget.parts) {
-      part.signal.resize(budget.s.size(), 0.0);
+      part.at_place = part.signal[budget.place];
+      part.rms = rms(part.signal);
       for (std::size_t n = 0; n < budget.s.size(); ++n) budget.remainder[n] -= part.signal[n];
     }
     budget.remainder_rms = rms(budget.remainder);
   }
 
+  // complete, without measurement, each that adds, all of these, each of the chain
+  static constexpr double kRuns = 3.0 + std::size(kAdding) + std::size(kChain);
+
   const Scenario& scenario_;
   const BudgetControl& control_;
   PreparationCache cache_;
   std::map<std::string, Causes> present_;  // by case
-  RunOutput complete_;
   std::vector<Budget> budgets_;
-  double runs_ = 0.0, total_ = 1.0;
+  double runs_ = 0.0;
 };
 
 }  // namespace

@@ -31,9 +31,12 @@ enum class Cause : std::uint8_t {
   cutting,         // the case runs in air
   interpolation,   // chords of rewritten programs and path tolerances a hundredth, no
                    // nominal-position filter, no block time
-  kinematics,      // stays without all others: what the axes cannot do about it
+  uncorrected,     // errors of the machine that no strategy of the case corrects: none
+  uncorrectable,   // stays without all others: what the axes of the strategies cannot do, and
+                   // the hundredth of tolerances
+  imposed,         // likewise: what strategies bring out on purpose
 };
-inline constexpr std::size_t kCauses = 11;
+inline constexpr std::size_t kCauses = 13;
 struct CauseInfo {
   std::string_view name;  // "lag", "table", ...
   std::string_view help;
@@ -49,23 +52,34 @@ struct BudgetPart {
   std::vector<double> signal;  // um
 };
 
-/// With R the residual along the path and R(-c) that of a run without the cause c, at equal arc
-/// length:
+/// With R the residual along the path, R(-c) that of a run without the causes c and R(c) that of a
+/// run with no others, at equal arc length; m = measurement, i = interpolation, l = lag, d = delay:
 ///
-///     part(measurement) = R - R(-m)                                      m = measurement  (1)
-///     part(c)           = R(-m) - R(-m, -c)                              for all others but (2)
-///     part(lag)         = R(-D) - R(-D, -lag)                                             (3)
-///     part(kinematics)  = R(- all causes)                                                 (4)
-///     remainder         = R - sum of the parts                                            (5)
+///     part(rest) = R()                                                                     (1)
+///     part(i)    = R(i) - R()                                                              (2)
+///     part(l)    = R(i, l) - R(i)                                                          (3)
+///     part(d)    = R(i, l, d) - R(i, l)                                                    (4)
+///     part(m)    = R - R(-m)                                                               (5)
+///     part(c)    = R(-m) - R(-m, -c)                    for all others                     (6)
+///     remainder  = R - sum of the parts
+///                = R(-m) - R(i, l, d) - sum of (6)                                         (7)
 ///
-/// m is taken away first, since the steps of encoders (some 20 nm) would be in every other
-/// difference. D = friction, measurement, cutting, delay: they act through the loops and would go
-/// with them.
+/// Everything goes through interpolation, loops and delays. Without them, a cause would not come
+/// out as it does: R(-l) differs from R by what the loops make of all causes, which (6) counts with
+/// those. So (2) to (4) ask what they do to the program alone, one after the other as the signal
+/// goes, and (6) what a cause adds to the outcome. Where loops are linear and causes add to what
+/// they are given, the parts then add up. Following errors, say, begin behind the interpolation:
+/// it has no part in them, although other tolerances make other speeds, and those other errors.
 ///
-/// Apart from that, causes are taken away one at a time and not one after the other: parts do then
-/// not depend on an order, and what causes do together (a product of two of them, say) is in both,
-/// or in none. So it shows in the remainder; removed in turn, parts would add up exactly and the
-/// last ones would hide it.
+/// (6) takes causes away one at a time and not one after the other: parts do then not depend on an
+/// order, and what two of them do together is in both, or in none. So it shows in the remainder
+/// (which is 0 where there is but one); removed in turn, parts would add up exactly and the last
+/// ones would hide it. m is taken away first, since the steps of encoders (some 20 nm) would be in
+/// every other difference.
+///
+/// The rest (1) is `imposed` where a strategy generates errors and the quantity does not take them
+/// off, else `uncorrectable` where a strategy corrects or generates, else `uncorrected`: the
+/// imposed displacement that imposed_curve_residual wants and nobody brings out.
 struct Budget {
   QuantitySpec quantity;         // of one case; a signal along the path (has_path_signal)
   std::vector<double> s;         // mm, of the original path

@@ -6,6 +6,7 @@ from figures import style
 
 REMAINDER, WHOLE = style.GREY, style.BLACK
 COLUMNS = 2
+ADDS_UP = 5e-4  # of the residual: nothing that a number here would show
 
 
 def draw(budgets):
@@ -53,5 +54,8 @@ def _panel(ax, one, budgets):
 def _message(budgets):
     shares = [abs(one.remainder.at_place / one.residual.at_place) for one in budgets.budgets
               if one.residual.at_place != 0.0]
-    worst = f"; at most {100.0 * max(shares):.2g} % remain unexplained" if shares else ""
-    return f"What residuals are made of{worst}"
+    if not shares:
+        return "What residuals are made of"
+    if max(shares) < ADDS_UP:
+        return "What residuals are made of; all of it adds up"
+    return f"What residuals are made of; causes together make at most {100.0 * max(shares):.2g} %"

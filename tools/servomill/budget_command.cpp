@@ -24,13 +24,17 @@ std::string causes_help() {
     out += fmt::format("  {:<15}{}\n", info.name, info.help);
   }
   out +=
-      "Each is taken away alone (measurement first, of all), so that parts do not depend on an "
-      "order;\n"
-      "lag is taken from loops without friction, measurement, cutting and delay, which act "
-      "through\n"
-      "them. What causes do together is in the remainder, which is printed. Quantities that have "
-      "a\n"
-      "budget: imposed_curve_residual, trajectory_difference, tool_deviation, following_error.";
+      "All goes through interpolation, lag and delay: what these do to the program alone is "
+      "theirs, "
+      "and\n"
+      "what they make of another cause is that one's. Each of the others is taken away alone\n"
+      "(measurement first, of all), so that parts do not depend on an order; what these do "
+      "together "
+      "is\n"
+      "in the remainder. What stays without all is uncorrected, uncorrectable or imposed.\n"
+      "Quantities that have a budget: imposed_curve_residual, trajectory_difference, "
+      "tool_deviation,\n"
+      "following_error.";
   return out;
 }
 
@@ -83,18 +87,23 @@ std::string title_of(const sim::QuantitySpec& quantity) {
       quantity.base.empty() ? "" : fmt::format(", against {}", quantity.base));
 }
 
-std::string micrometres(double value) {
-  const double size = std::abs(value);
-  return fmt::format("{:.{}f}", value, size >= 100.0 ? 1 : size >= 10.0 ? 2 : size >= 0.1 ? 3 : 4);
+// -0.04 with one decimal is 0, not -0.
+std::string fixed(double value, int decimals) {
+  const double scale = std::pow(10.0, decimals);
+  return fmt::format("{:.{}f}", std::round(scale * value) / scale + 0.0, decimals);
 }
 
-// -0.04 is 0, not -0.
-double rounded(double percent) { return std::round(10.0 * percent) / 10.0 + 0.0; }
+std::string micrometres(double value) {
+  const double size = std::abs(value);
+  return fixed(value, size >= 100.0 ? 1 : size >= 10.0 ? 2 : size >= 0.1 ? 3 : 4);
+}
+
+std::string percent(double share) { return fixed(100.0 * share, 1); }
 
 void print_line(std::string_view name, double at_place, double share, double rms,
                 std::string_view help) {
-  fmt::print("  {:<15} {:>9} um {:>7.1f} % {:>9} um  {}\n", name, micrometres(at_place),
-             rounded(100.0 * share), micrometres(rms), help);
+  fmt::print("  {:<15} {:>9} um {:>7} % {:>9} um  {}\n", name, micrometres(at_place),
+             percent(share), micrometres(rms), help);
 }
 
 void print_budget(const sim::Budget& budget) {
@@ -118,10 +127,9 @@ void print_budget(const sim::Budget& budget) {
     absent += fmt::format("{}{}", absent.empty() ? "" : ", ", sim::info_of(part.cause).name);
   }
   const double sum = budget.sum_at_place();
-  fmt::print("  {:<15} {:>9} um {:>7.1f} %\n", "sum", micrometres(sum),
-             rounded(100.0 * share(sum)));
+  fmt::print("  {:<15} {:>9} um {:>7} %\n", "sum", micrometres(sum), percent(share(sum)));
   print_line("remainder", budget.remainder_at_place(), share(budget.remainder_at_place()),
-             budget.remainder_rms, "what causes do together, and what is not known");
+             budget.remainder_rms, "what causes do together");
   print_line("residual", whole, 1.0, budget.residual_rms(), "");
   if (!absent.empty()) fmt::print("  not in this case: {}\n", absent);
 }
