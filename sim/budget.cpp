@@ -260,7 +260,7 @@ Causes present(const Causes& causes, const Scenario& scenario, const CaseSpec& o
 Scenario without(const Scenario& scenario, const Causes& removed, const Causes& already,
                  const std::map<std::string, Causes>& present_in) {
   Scenario out = scenario;
-  out.quantities.clear();
+  if (!removed.empty()) out.quantities.clear();  // the first run has checked them
   out.cases.clear();
   for (const CaseSpec& one : scenario.cases) {
     const auto found = present_in.find(one.name);
@@ -313,6 +313,7 @@ class Accounts {
   Accounts(const Scenario& scenario, std::span<const QuantitySpec> quantities,
            const BudgetControl& control)
       : scenario_(scenario), control_(control) {
+    scenario_.quantities.assign(quantities.begin(), quantities.end());
     const Causes all = all_causes();
     for (const QuantitySpec& quantity : quantities) {
       Budget budget;
@@ -466,7 +467,7 @@ class Accounts {
   // complete, without measurement, each that adds, all of these, each of the chain
   static constexpr double kRuns = 3.0 + std::size(kAdding) + std::size(kChain);
 
-  const Scenario& scenario_;
+  Scenario scenario_;
   const BudgetControl& control_;
   PreparationCache cache_;
   std::map<std::string, Causes> present_;  // by case
@@ -474,15 +475,43 @@ class Accounts {
   double runs_ = 0.0;
 };
 
+// The quantities of a scenario, and those of all cases and axes that it has none of.
+std::vector<QuantitySpec> asked_for(const Scenario& scenario, std::span<const std::string> also) {
+  std::vector<QuantitySpec> out = scenario.quantities;
+  const JointLayout& layout = scenario.machine.chain.layout;
+  for (const std::string& name : also) {
+    assert(is_of_any_case(name));
+    const auto has_name = [&](const QuantitySpec& one) { return one.name == name; };
+    if (std::any_of(out.begin(), out.end(), has_name)) continue;
+    QuantitySpec one;
+    one.name = name;
+    for (const CaseSpec& each : scenario.cases) one.cases.push_back(each.name);
+    for (int joint = 0; joint < kLinearJoints; ++joint) {
+      if (!layout.has(joint)) continue;
+      one.axis = layout.letter_of(joint);
+      out.push_back(one);
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 const CauseInfo& info_of(Cause cause) { return kInfos[static_cast<std::size_t>(cause)]; }
 
 double Budget::residual_rms() const { return rms(residual); }
 
-std::vector<QuantitySpec> budget_quantities(const Scenario& scenario) {
+bool is_of_any_case(std::string_view quantity) {
+  if (!has_path_signal(quantity)) return false;
+  const QuantityInfo& info = quantity_info(quantity);
+  return !info.needs_base && !info.needs_imposed;
+}
+
+std::vector<QuantitySpec> budget_quantities(const Scenario& scenario,
+                                            std::span<const std::string> also,
+                                            const std::vector<std::string>& sections) {
   std::vector<QuantitySpec> out;
-  for (const QuantitySpec& asked : scenario.quantities) {
+  for (const QuantitySpec& asked : asked_for(scenario, also)) {
     QuantitySpec one = asked;
     if (one.name == "brought_out" || one.name == "response_time") {
       one.name = "imposed_curve_residual";
@@ -491,6 +520,7 @@ std::vector<QuantitySpec> budget_quantities(const Scenario& scenario) {
     one.statistic = "max";
     one.reference.clear();
     one.kind.clear();
+    if (!sections.empty()) one.sections = sections;
     for (const std::string& name : asked.cases) {
       one.cases = {name};
       const bool known = std::any_of(out.begin(), out.end(), [&](const QuantitySpec& other) {

@@ -96,9 +96,19 @@ struct Budget {
   double residual_rms() const;
 };
 
+/// Whether each case has this quantity, asked for or not: tool_deviation, following_error.
+bool is_of_any_case(std::string_view quantity);
+
 /// What a scenario's quantities ask for that has a budget, each case of each once: brought_out and
 /// response_time stand for imposed_curve_residual; statistics do not matter.
-std::vector<QuantitySpec> budget_quantities(const Scenario& scenario);
+/// @param also      quantities of any case; where the scenario has none of that name, of all cases
+///                  and linear axes
+/// @param sections  of the program, in place of those of the quantities; none: as they are, and
+///                  all of it for `also`
+/// @pre is_of_any_case(also)
+std::vector<QuantitySpec> budget_quantities(const Scenario& scenario,
+                                            std::span<const std::string> also = {},
+                                            const std::vector<std::string>& sections = {});
 
 struct BudgetControl {
   unsigned threads = 0;  // 0: one a core

@@ -9,6 +9,17 @@
 #include "sim/preparation_cache.h"
 
 namespace servomill::sim {
+namespace {
+
+// Adds a fault that is not said yet.
+void add_once(std::vector<Fault>& faults, Fault fault) {
+  const bool is_said = std::any_of(faults.begin(), faults.end(), [&](const Fault& other) {
+    return other.place == fault.place && other.message == fault.message;
+  });
+  if (!is_said) faults.push_back(std::move(fault));
+}
+
+}  // namespace
 
 void refuse_unnumbered_tools(std::span<const Move> moves, const std::string& file) {
   const auto found = std::find_if(moves.begin(), moves.end(), [](const Move& move) {
@@ -130,12 +141,12 @@ void refuse_absent_sections(const Scenario& scenario, const std::vector<std::str
     for (const std::string& name : quantity.sections) {
       if (std::find(sections.begin(), sections.end(), name) != sections.end()) continue;
       const std::string near = did_you_mean(name, known);
-      faults.push_back(
-          {quantity.sections_place,
-           fmt::format("{} has no section '{}'{}", scenario.program.file, name,
-                       !near.empty()   ? near
-                       : known.empty() ? "; a comment (MSG, NAME) begins one"
-                                       : fmt::format("; there are: {}", fmt::join(known, ", ")))});
+      add_once(faults, {quantity.sections_place,
+                        fmt::format("{} has no section '{}'{}", scenario.program.file, name,
+                                    !near.empty() ? near
+                                    : known.empty()
+                                        ? "; a comment (MSG, NAME) begins one"
+                                        : fmt::format("; there are: {}", fmt::join(known, ", ")))});
     }
   }
   if (!faults.empty()) throw InputError(std::move(faults));

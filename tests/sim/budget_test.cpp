@@ -326,6 +326,51 @@ TEST(Budget, AddsUpForExperiment1) {
   EXPECT_GT(part(budgets[2], Cause::interpolation).rms, part(budgets[2], Cause::lag).rms);
 }
 
+// Without lag: 144 um believed, of which the limit lets 100 pass, where 120 are true. The belief
+// alone does no harm, and without it the limit would take 20 um; without the limit, the belief adds
+// 24. So the limit has -20 - 24 = -44 and the belief 0, and 24 are both together.
+TEST(Budget, LeavesWhatCausesDoTogetherInTheRemainder) {
+  const Budget budget = budget_of(
+      root("constant_um = 120.0", "[errors.belief]\nEYX = { constant_um = 144.0 }\n") +
+      one_case("type = \"feedback\"\nmodel = \"belief\"\nmax_um = 100.0\n", "servo = \"ideal\"\n"));
+  constexpr double kSteps = 0.1;  // um, of encoders and more than these
+  EXPECT_NEAR(budget.residual_at_place(), -20.0, kSteps);
+  EXPECT_NEAR(part(budget, Cause::saturation).at_place, -44.0, kSteps);
+  EXPECT_NEAR(part(budget, Cause::identification).at_place, 0.0, kSteps);
+  EXPECT_NEAR(budget.remainder_at_place(), 24.0, kSteps);
+}
+
+// Deviation of the tool and following error belong to every case, asked for or not.
+TEST(Budget, IsThereForCasesThatNobodyAsksAbout) {
+  const Scenario scenario =
+      small_scenario(kProgram,
+                     "[[case]]\nname = \"one\"\n[[case]]\nname = \"two\"\n"
+                     "[[quantity]]\nname = \"contour_error\"\n"
+                     "[[quantity]]\nname = \"following_error\"\naxis = \"X\"\n"
+                     "cases = [\"two\"]\n");
+  EXPECT_EQ(budget_quantities(scenario).size(), 1U);
+  const std::vector<std::string> both = {"tool_deviation", "following_error"};
+  const auto quantities = budget_quantities(scenario, both, {"flank"});
+  ASSERT_EQ(quantities.size(), 1U + 2U * 3U);  // as it is; two cases of X, Y, Z
+  for (const QuantitySpec& one : quantities) {
+    EXPECT_EQ(one.sections, std::vector<std::string>{"flank"});
+  }
+}
+
+TEST(Budget, RefusesASectionThatTheProgramLacks) {
+  const Scenario scenario = small_scenario(kProgram, "[[case]]\nname = \"one\"\n");
+  const std::vector<std::string> also = {"tool_deviation"};
+  auto quantities = budget_quantities(scenario, also, {"flonk"});
+  for (QuantitySpec& one : quantities) one.sections_place = {"--section"};
+  try {
+    find_budgets(scenario, quantities);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "--section: error: small.ngc has no section 'flonk'; did you mean 'flank'?");
+  }
+}
+
 TEST(Budget, SaysWhyThereIsNone) {
   const Scenario scenario = small_scenario(
       kProgram, root("polynomial_um = [0.0, 10.0]") +

@@ -52,11 +52,18 @@ void must_be_among(const std::string& name, const Names& names, const char* opti
 
 // What the options leave of what the scenario asks for.
 std::vector<sim::QuantitySpec> chosen(const sim::Scenario& scenario, const Options& options) {
-  std::vector<sim::QuantitySpec> all = sim::budget_quantities(scenario);
+  std::vector<std::string> also = options.list("quantity");
+  std::erase_if(also, [](const std::string& name) { return !sim::is_of_any_case(name); });
+  std::vector<sim::QuantitySpec> all =
+      sim::budget_quantities(scenario, also, options.list("section"));
   if (all.empty()) {
     throw InputError({options.word()},
                      "has no quantity with a budget (imposed_curve_residual, brought_out, "
-                     "response_time, trajectory_difference, tool_deviation, following_error)");
+                     "response_time, trajectory_difference, tool_deviation, following_error); "
+                     "ask for --quantity tool_deviation or following_error, which each case has");
+  }
+  if (options.has("section")) {
+    for (sim::QuantitySpec& one : all) one.sections_place = {"--section"};
   }
   const auto keep = [&](const char* option, const char* what, auto name_of) {
     const std::vector<std::string> wanted = options.list(option);
@@ -172,9 +179,12 @@ int budget_command(const Arguments& arguments) {
   options.add()("case,c", po::value<std::vector<std::string>>()->value_name("NAME"),
                 "only of this case (default: of all that the quantities of the scenario name)");
   options.add()("quantity", po::value<std::vector<std::string>>()->value_name("NAME"),
-                "only of this quantity");
+                "only of this quantity; tool_deviation and following_error also where the scenario "
+                "asks for neither");
   options.add()("axis", po::value<std::vector<std::string>>()->value_name("Y"),
                 "only of this axis");
+  options.add()("section", po::value<std::vector<std::string>>()->value_name("NAME"),
+                "only along this section of the program (default: those of the quantity)");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
                 "writes the signals of all parts, for tools/plot.py");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
