@@ -32,7 +32,7 @@ constexpr std::array<CauseInfo, kCauses> kInfos = {{
     {"interpolation", "chords, path tolerance and filter of the NC"},
     {"uncorrected", "errors that no strategy of the case corrects, or brings out"},
     {"uncorrectable", "what the axes of the strategies cannot do"},
-    {"imposed", "errors that strategies bring out on purpose"},
+    {"imposed", "what strategies bring out on purpose"},
 }};
 
 constexpr double kFine = 0.01;        // share of tolerances that are taken away
@@ -226,18 +226,27 @@ Causes all_causes() {
   return out;
 }
 
+// Whether strategies of a case move the tool where the program does not want it.
+bool moves_on_purpose(const CaseSpec& one) {
+  return has_strategy(one, strategies::Sign::generate) ||
+         std::any_of(one.strategies.begin(), one.strategies.end(), [](const StrategySpec& spec) {
+           return !spec.entry->reads_errors && spec.entry->name != "none";
+         });
+}
+
 // What stays without all others; none of what begins behind the strategies.
 // @param base  the case it is compared with, or nullptr
 std::optional<Cause> rest_of(const QuantitySpec& quantity, const CaseSpec& one,
                              const CaseSpec* base) {
   if (quantity.name == "following_error") return std::nullopt;
-  const auto has = [&](strategies::Sign sign) {
-    return has_strategy(one, sign) || (base != nullptr && has_strategy(*base, sign));
-  };
-  const bool generates = has(strategies::Sign::generate);
+  const auto any = [&](auto fact) { return fact(one) || (base != nullptr && fact(*base)); };
   const bool takes_imposed_off = quantity.name == "imposed_curve_residual";
-  if (generates && !takes_imposed_off) return Cause::imposed;
-  if (generates || has(strategies::Sign::correct)) return Cause::uncorrectable;
+  if (any(moves_on_purpose) && !takes_imposed_off) return Cause::imposed;
+  const bool knows_errors = any([](const CaseSpec& spec) {
+    return has_strategy(spec, strategies::Sign::generate) ||
+           has_strategy(spec, strategies::Sign::correct);
+  });
+  if (knows_errors) return Cause::uncorrectable;
   if (takes_imposed_off) return Cause::uncorrected;
   return std::nullopt;
 }
@@ -281,19 +290,27 @@ Scenario without(const Scenario& scenario, const Causes& removed, const Causes& 
   return out;
 }
 
-// Values of a signal at other places; constant beyond its ends.
-std::vector<double> at_places(const PathSignal& signal, const std::vector<double>& s) {
+// Values of a signal at the places of a budget; constant beyond its ends.
+std::vector<double> at_places(const PathSignal& signal, const Budget& places) {
+  const auto key = [](double s) { return std::round(s * 1e6); };  // nm: cases differ by rounding
+  const auto is_behind = [&](std::size_t k, std::size_t n) {
+    return std::pair(key(signal.s[k]), signal.turned[k]) >
+           std::pair(key(places.s[n]), places.turned[n]);
+  };
   std::vector<double> out;
-  out.reserve(s.size());
+  out.reserve(places.s.size());
   std::size_t k = 0;
   const std::size_t last = signal.s.size() - 1;
-  for (const double at : s) {
-    while (k < last && signal.s[k + 1] <= at) ++k;
-    if (k == last || at <= signal.s[k]) {
+  for (std::size_t n = 0; n < places.s.size(); ++n) {
+    while (k < last && !is_behind(k + 1, n)) ++k;
+    if (k == last || is_behind(k, n)) {
       out.push_back(signal.value[k]);
       continue;
     }
-    const double share = (at - signal.s[k]) / (signal.s[k + 1] - signal.s[k]);
+    const bool moves = key(signal.s[k + 1]) > key(signal.s[k]);
+    const std::vector<double>& from = moves ? signal.s : signal.turned;
+    const double at = moves ? places.s[n] : places.turned[n];
+    const double share = (at - from[k]) / (from[k + 1] - from[k]);
     out.push_back(signal.value[k] + share * (signal.value[k + 1] - signal.value[k]));
   }
   return out;
@@ -402,12 +419,13 @@ class Accounts {
     auto [signal, why_not] = residual(budget, complete, "stopped");
     budget.note = std::move(why_not);
     if (!budget.note.empty()) return;
-    budget.s = std::move(signal.s);
+    budget.s = signal.s;
     budget.residual = std::move(signal.value);
     const auto largest =
         std::max_element(budget.residual.begin(), budget.residual.end(),
                          [](double a, double b) { return std::abs(a) < std::abs(b); });
     budget.place = static_cast<std::size_t>(largest - budget.residual.begin());
+    budget.turned = std::move(signal.turned);
     for (BudgetPart& part : budget.parts) part.signal.assign(budget.s.size(), 0.0);
   }
 
@@ -418,7 +436,7 @@ class Accounts {
       budget.note = std::move(why_not);
       return {};
     }
-    return at_places(found, budget.s);
+    return at_places(found, budget);
   }
 
   bool has(const Budget& budget, Cause cause) const {

@@ -53,7 +53,8 @@ struct BudgetPart {
 };
 
 /// With R the residual along the path, R(-c) that of a run without the causes c and R(c) that of a
-/// run with no others, at equal arc length; m = measurement, i = interpolation, l = lag, d = delay:
+/// run with no others, at equal arc length (where the tip stands, at an equal share of what rotary
+/// axes turn meanwhile); m = measurement, i = interpolation, l = lag, d = delay:
 ///
 ///     part(rest) = R()                                                                     (1)
 ///     part(i)    = R(i) - R()                                                              (2)
@@ -77,12 +78,14 @@ struct BudgetPart {
 /// ones would hide it. m is taken away first, since the steps of encoders (some 20 nm) would be in
 /// every other difference.
 ///
-/// The rest (1) is `imposed` where a strategy generates errors and the quantity does not take them
-/// off, else `uncorrectable` where a strategy corrects or generates, else `uncorrected`: the
-/// imposed displacement that imposed_curve_residual wants and nobody brings out.
+/// The rest (1) is `imposed` where a strategy moves the tool on purpose (generates errors, bends
+/// the path) and the quantity does not take that off, else `uncorrectable` where one knows errors,
+/// else `uncorrected`: the imposed displacement that imposed_curve_residual wants and nobody brings
+/// out.
 struct Budget {
   QuantitySpec quantity;         // of one case; a signal along the path (has_path_signal)
   std::vector<double> s;         // mm, of the original path
+  std::vector<double> turned;    // as in PathSignal
   std::vector<double> residual;  // um
   std::size_t place = 0;         // index of its largest value
   std::array<BudgetPart, kCauses> parts;

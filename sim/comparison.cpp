@@ -279,6 +279,29 @@ std::vector<double> signed_values(const QuantitySpec& spec, const CaseData& one,
   return difference;
 }
 
+// Whether the tool stands from one place to another (mm): both are the same but for rounding.
+bool stands(double s, double later) { return later - s < 1e-7; }
+
+// What rotary axes have turned at each row since the tool stands there, as a share of all that they
+// turn until it moves on.
+std::vector<double> turned_while_standing(const CaseData& one, const std::vector<std::size_t>& rows,
+                                          const std::vector<double>& s) {
+  std::vector<double> out(rows.size(), 0.0);
+  for (const char axis : std::string_view("ABC")) {
+    const std::vector<double> ref = column_of(one, "ref_rotary", axis, rows);
+    for (std::size_t i = 1; i < ref.size(); ++i) out[i] += std::abs(ref[i] - ref[i - 1]);
+  }
+  for (std::size_t first = 0, end = 0; first < rows.size(); first = end) {
+    double turned = 0.0;
+    for (end = first; end < rows.size() && (end == first || stands(s[end - 1], s[end])); ++end) {
+      out[end] = end == first ? 0.0 : out[end] + out[end - 1];
+      turned = out[end];
+    }
+    for (std::size_t i = first; i < end && turned > 0.0; ++i) out[i] /= turned;
+  }
+  return out;
+}
+
 double evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* base) {
   const CaseData& one = compared.data;
   if (spec.name == "cycle_time") return one.duration;
@@ -385,6 +408,7 @@ PathSignal path_signal(const QuantitySpec& spec, const CaseData& one, const Case
   const std::vector<std::size_t>& rows = samples.rows(spec.sections);
   PathSignal out;
   out.s = column_of(one, "s", '\0', rows);
+  out.turned = turned_while_standing(one, rows, out.s);
   out.value = signed_values(spec, one, base, rows);
   return out;
 }

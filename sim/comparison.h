@@ -62,8 +62,9 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
 
 /// A signed quantity at each sample of feed motion.
 struct PathSignal {
-  std::vector<double> s;      // mm, arc length of the original path, not falling
-  std::vector<double> value;  // of the same length, in the unit of the quantity; or none
+  std::vector<double> s;       // mm, arc length of the original path, not falling
+  std::vector<double> turned;  // 0 to 1, of what rotary axes turn while s stands; 0 where it moves
+  std::vector<double> value;   // of the same length, in the unit of the quantity; or none
 };
 
 /// Whether path_signal knows this quantity: imposed_curve_residual, trajectory_difference,

@@ -340,6 +340,22 @@ TEST(Budget, LeavesWhatCausesDoTogetherInTheRemainder) {
   EXPECT_NEAR(budget.remainder_at_place(), 24.0, kSteps);
 }
 
+// The tip stands while C turns under tool-centre-point control: arc length does not tell where. The
+// centre of C is 10 um off, so X of the workpiece is off by 10 (1 - cos C) um.
+TEST(Budget, ComparesByTheTurnWhereTheTipStands) {
+  const Budget budget = budget_of(
+      "truth = \"machine\"\n[errors.machine]\nEX0C = \"10 um\"\n[[program.tool]]\nnumber = "
+      "1\nlength_mm = 110.0\n[[case]]\nname = \"one\"\n"
+      "servo = \"ideal\"\n" +
+          quantity("tool_deviation", 'X', "turn"),
+      "G17 G90 G94 G64 P0.0002 T1 M6\nG43.4 H1\nG0 X30 Y0 Z-10 C0\nF3600\nG1 C10\n(MSG, turn)\nG1 "
+      "C350\nM30\n");
+  EXPECT_EQ(budget.s.front(), budget.s.back());
+  EXPECT_NEAR(part(budget, Cause::uncorrected).at_place, 20.0, 0.01);
+  EXPECT_LT(largest(part(budget, Cause::interpolation).signal), 0.2);  // um, P0.0002
+  expect_nothing_else(budget, {Cause::uncorrected, Cause::interpolation}, 0.01);
+}
+
 // Deviation of the tool and following error belong to every case, asked for or not.
 TEST(Budget, IsThereForCasesThatNobodyAsksAbout) {
   const Scenario scenario =
