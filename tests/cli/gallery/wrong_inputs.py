@@ -263,6 +263,7 @@ MACHINE_REFUSES = [
 ]
 
 PROGRAM = [
+    program("a tool offset that no tool has", "G43 H1", "G43.1 Z10"),
     program("a program that ends in the middle of a block", "G1 Y5\nM30\n", "G1 Y"),
     program("a comment that does not end", "G1 X10", "G1 X10 (to the corner"),
     program("a G-code that there is not", "G1 X10", "G1.5 X10"),
@@ -303,12 +304,13 @@ OUTPUT = [
 SWEEP_IT = "servomill sweep scenario.toml -o out.h5"
 
 
-def cut(title, text, tool="diameter_mm = 8.0", case=""):
-    """A scenario with what it says of stock and cutting, the rest of its tool and of its first case."""
-    return {"title": title, "commands": CHECK,
+def cut(title, text, tool="diameter_mm = 8.0", case="", program=(), commands=None):
+    """A scenario with what it says of stock and cutting, the rest of its tool and of its first case, and changes of its program."""
+    return {"title": title, "commands": commands or CHECK,
             "edit": [("scenario.toml", "length_mm = 110.0", "length_mm = 110.0\n" + tool),
                      ("scenario.toml", "[record]", text + "\n[record]"),
-                     ("scenario.toml", 'name = "nominal"', 'name = "nominal"' + case)]}
+                     ("scenario.toml", 'name = "nominal"', 'name = "nominal"' + case)]
+            + [("part.ngc", old, new) for old, new in program]}
 
 
 BLOCK = "[[part.stock]]\nbox = { from_mm = [-50.0, -50.0, -130.0], to_mm = [50.0, 50.0, -100.0] }\n"
@@ -324,6 +326,8 @@ CUTTING = [
     cut("a raw part that is never touched", BLOCK.replace("-50.0, -50.0", "-900.0, -900.0").replace("[50.0, 50.0", "[-800.0, -800.0") + STEEL),
     cut("a cut with the spindle standing", BLOCK + STEEL),
     cut("a tool without diameter in the stock", BLOCK + STEEL, tool=""),
+    cut("cuts and coordinates that are odd, and run all the same", BLOCK + STEEL, tool="diameter_mm = 8.0\nflute_length_mm = 5.0",
+        program=[("G43 H1", "G43 H1\nS4775 M3"), ("G1 Y5", "G52 X1\nG1 Y5\nG0 Y10")], commands=["servomill run scenario.toml -q -o out.h5"]),
     axis("a structure that gives way to nothing", "structural_stiffness = 0.0"),
 ]
 
