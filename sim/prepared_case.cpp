@@ -76,10 +76,11 @@ std::vector<Move> through_text(const std::vector<Move>& rewritten, const Scenari
     original = next_motion();
     if (original == rewritten.end()) throw std::logic_error("a rewritten program gained a block");
     if ((move.end_machine - original->end_machine).cwiseAbs().maxCoeff() > kPrinted) {
-      throw InputError({scenario.program.file, original->line},
-                       fmt::format("case {}: cannot be rewritten in work coordinates that are "
-                                   "tilted or turned",
-                                   spec.name));
+      throw InputError(
+          {scenario.program.file, original->line},
+          fmt::format("case {}: cannot be rewritten in work coordinates that are tilted, "
+                      "turned or shifted by the program (G52, G92, G10)",
+                      spec.name));
     }
     move.line = original->line;
     move.s_begin = original->s_begin;
