@@ -13,7 +13,9 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 SCENARIO = os.path.join(HERE, "gallery", "scenario.toml")
 MACHINE = os.path.join(HERE, "..", "..", "scenarios", "guevel2025", "experiment1.toml")
-LONG = ["--set", "program.feed_override=0.001"]  # minutes of motion, seconds of simulation a case
+# Minutes of motion, seconds of simulation a case; few rows, so that the first case is on the disk long before the second
+# one has run.
+LONG = ["--set", "program.feed_override=0.001", "--set", "record.period_ms=10"]
 PATIENCE = 60  # s, until something is on the disk; far more than it takes
 
 
