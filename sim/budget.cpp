@@ -269,7 +269,11 @@ Causes present(const Causes& causes, const Scenario& scenario, const CaseSpec& o
 Scenario without(const Scenario& scenario, const Causes& removed, const Causes& already,
                  const std::map<std::string, Causes>& present_in) {
   Scenario out = scenario;
-  if (!removed.empty()) out.quantities.clear();  // the first run has checked them
+  if (!removed.empty()) {  // the first run has checked them; signals along the path need no part
+    out.quantities.clear();
+    out.probes.clear();
+    out.part.reset();
+  }
   out.cases.clear();
   for (const CaseSpec& one : scenario.cases) {
     const auto found = present_in.find(one.name);

@@ -125,8 +125,8 @@ std::optional<PartFit> lay_on_nominal(const std::string& case_name, const Nomina
   auto fit = std::get<PartFit>(std::move(found));
   if (fit.off > kFacets) {
     notes.push_back(fmt::format(
-        "warning: case {}: nominal points of the probes are up to {:.2g} um off '{}'; distances "
-        "after best fit are as uncertain (write it with smaller facets)",
+        "warning: case {}: nominal points of the probes are up to {:.3g} um off '{}' "
+        "(facets in place of curved faces, or another part); distances after best fit hold that",
         case_name, fit.off / um, part.file));
   }
   return fit;

@@ -12,11 +12,30 @@
 namespace servomill::sim {
 namespace {
 
+// Whether the bytes stand beside the name; --set stl=FILE means another file than theirs.
+bool has_bytes(Reader& part) {
+  const bool is_changed = part.place("stl").file.starts_with("--set") &&
+                          !part.place("stl_base64").file.starts_with("--set");
+  if (!part.has("stl_base64")) return false;
+  if (is_changed) part.raw("stl_base64");
+  return !is_changed;
+}
+
 std::optional<std::string> read_bytes(Reader& part, const std::string& file, InputFiles& files) {
-  if (!part.has("stl_base64")) return *files.text(file, part.place("stl"), "part");
+  if (!has_bytes(part)) return *files.text(file, part.place("stl"), "part");
   const auto bytes = from_base64(part.text("stl_base64"));
   if (!bytes) part.fault("stl_base64 is not base64");
   return bytes;
+}
+
+constexpr double kStep = 10e-6;  // m, along a normal
+constexpr double kShare = 0.9;  // of it, by which the distance grows: facets may be turned a little
+
+// Whether the distance from the part grows along the normal: outside of it, or, as at the foot of a
+// wall, inside.
+bool faces_out(const TriangleMesh& mesh, const plant::ProbeTarget& target, double distance) {
+  const auto at = [&](double s) { return mesh.closest(target.point + s * target.normal).distance; };
+  return at(kStep) - distance >= kShare * kStep || distance - at(-kStep) >= kShare * kStep;
 }
 
 std::string place_of(const Eigen::Vector3d& p) {
@@ -44,7 +63,7 @@ std::shared_ptr<const NominalPart> read_nominal_part(Reader& part, InputFiles& f
   const std::string name = part.text("stl");
   if (part.faults() == before && name.empty()) part.fault("stl", "must name an STL file");
   if (part.faults() > before) return nullptr;
-  const std::string file = part.has("stl_base64") ? name : beside(part.place("stl"), name);
+  const std::string file = has_bytes(part) ? name : beside(part.place("stl"), name);
   auto bytes = read_bytes(part, file, files);
   if (!bytes) return nullptr;
   auto mesh = std::make_shared<const TriangleMesh>(TriangleMesh::parse(*bytes, file));
@@ -54,13 +73,13 @@ std::shared_ptr<const NominalPart> read_nominal_part(Reader& part, InputFiles& f
 std::vector<Fault> faults_of_plan(std::span<const ProbeSpec> plan, const NominalPart& part) {
   std::vector<Fault> faults;
   for (const ProbeSpec& probe : plan) {
-    Wrong off, inwards;
+    Wrong off, astray;
     for (const plant::ProbeTarget& target : probe.feature.targets) {
       const SurfacePoint surface = part.mesh->closest(target.point);
       if (std::abs(surface.distance) > kOffThePart) {
         off.add(target, surface);
-      } else if (surface.on_face && surface.normal.dot(target.normal) < 0.0) {
-        inwards.add(target, surface);
+      } else if (!faces_out(*part.mesh, target, surface.distance)) {
+        astray.add(target, surface);
       }
     }
     const auto begin = [&](const Wrong& wrong) {
@@ -74,11 +93,14 @@ std::vector<Fault> faults_of_plan(std::span<const ProbeSpec> plan, const Nominal
                                     begin(off), part.file, place_of(off.first->point),
                                     std::abs(off.nearest.distance) / mm, kOffThePart / mm)});
     }
-    if (inwards.count > 0) {
+    if (astray.count > 0) {
+      const Eigen::Vector3d& n = astray.nearest.normal;
       faults.push_back(
-          {probe.place, fmt::format("{} face into the part '{}', the first at {}; normals must "
-                                    "point out of it",
-                                    begin(inwards), part.file, place_of(inwards.first->point))});
+          {probe.place,
+           fmt::format("{} do not face as the part '{}' does, the first at {}, where it faces "
+                       "({:.3g}, {:.3g}, {:.3g}); normals must point out of it",
+                       begin(astray), part.file, place_of(astray.first->point), n.x() + 0.0,
+                       n.y() + 0.0, n.z() + 0.0)});
     }
   }
   return faults;

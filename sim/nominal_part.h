@@ -30,8 +30,8 @@ struct NominalPart {
 /// @throws InputError if the file cannot be read or bounds no body
 std::shared_ptr<const NominalPart> read_nominal_part(Reader& part, InputFiles& files);
 
-/// A fault for every probe with nominal points that are off the part, or on its surface but facing
-/// into it.
+/// A fault for every probe with nominal points that are off the part, or on its surface but not
+/// facing as it does.
 std::vector<Fault> faults_of_plan(std::span<const ProbeSpec> plan, const NominalPart& part);
 
 }  // namespace servomill::sim

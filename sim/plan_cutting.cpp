@@ -352,7 +352,7 @@ class Planner {
     if (++rapids_ > kMostWarnings) return;
     plan_.warnings.push_back(
         {{in_.file, line},
-         fmt::format("rapid move through material, {:.2f} mm deep", rapid_depth_ / mm)});
+         fmt::format("rapid move through material, {:.3g} mm deep", rapid_depth_ / mm)});
   }
 
   [[noreturn]] void refuse_standing(const Stage& stage) const {

@@ -67,7 +67,6 @@ class ScenarioReader {
 
   void read() {
     Reader root(document_);
-    root.raw("based_on");          // is below this document by now
     root.raw("machine_override");  // is in the machine by now
     out_.title = root.text_or("title", out_.name);
     out_.source = root.text_or("source", "");

@@ -53,6 +53,8 @@ Document with_base(const std::string& path, InputFiles& files, int bases_left) {
   }
   Document below = with_base(base_path, files, bases_left - 1);
   Value above = document.root();
+  // done: what comes out needs no other file
+  std::erase_if(above.children, [](const Value& child) { return child.key == "based_on"; });
   const Value* cases = below.root().find("case");
   Value* more = above.find("case");
   constexpr auto kList = Value::Type::list;

@@ -76,6 +76,21 @@ Triangles read_binary(std::string_view bytes, const std::string& file) {
   return std::move(welder.out);
 }
 
+// Some programs write upper case.
+bool is(std::string_view found, std::string_view word) {
+  return std::equal(found.begin(), found.end(), word.begin(), word.end(),
+                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
+}
+
+std::string_view without_byte_order_mark(std::string_view bytes) {
+  return bytes.substr(bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+}
+
+bool begins_like_text(std::string_view text) {
+  const std::size_t first = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+  return is(text.substr(first, 5), "solid");
+}
+
 class Words {
  public:
   Words(std::string_view text, const std::string& file) : text_(text), place_{file, 1, 1} {}
@@ -95,7 +110,7 @@ class Words {
 
   void expect(std::string_view word) {
     const std::string_view found = next();
-    if (found != word) fail(fmt::format("'{}' expected", word), found);
+    if (!is(found, word)) fail(fmt::format("'{}' expected", word), found);
   }
   double number() {
     const std::string_view word = next();
@@ -152,10 +167,10 @@ Triangles read_ascii(std::string_view text, const std::string& file) {
   Words words(text, file);
   Welder welder;
   for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-    if (word != "solid") words.fail("'solid' expected", word);
+    if (!is(word, "solid")) words.fail("'solid' expected", word);
     words.skip_line();  // its name
-    for (word = words.next(); word != "endsolid"; word = words.next()) {
-      if (word != "facet") words.fail("'facet' or 'endsolid' expected", word);
+    for (word = words.next(); !is(word, "endsolid"); word = words.next()) {
+      if (!is(word, "facet")) words.fail("'facet' or 'endsolid' expected", word);
       read_loop(words, welder);
     }
     words.skip_line();
@@ -172,9 +187,8 @@ Triangles read_stl(std::string_view bytes, const std::string& file) {
       has_number &&
       bytes.size() == kBefore + std::size_t{kTriangle} * number_at<std::uint32_t>(bytes, kHeader);
   const bool is_text = bytes.find('\0') == std::string_view::npos;
-  if (!fits && is_text && bytes.starts_with("solid")) {
-    return read_ascii(bytes, file);
-  }
+  const std::string_view text = without_byte_order_mark(bytes);
+  if (!fits && is_text && begins_like_text(text)) return read_ascii(text, file);
   if (!has_number) {
     throw InputError({file}, fmt::format("not STL: {} bytes, neither 'solid' nor the {} bytes of a "
                                          "binary header",

@@ -26,7 +26,9 @@ constexpr std::size_t kBatchesPerThread = 4;  // at least, so that threads end t
 constexpr std::size_t kWaitingPerThread = 2;  // batches that may wait to be written
 
 // Values of these keys name files, which stand beside the scenario.
-bool names_a_file(const std::string& key) { return key == "machine" || key == "program.file"; }
+bool names_a_file(const std::string& key) {
+  return key == "machine" || key == "program.file" || key == "part.stl";
+}
 
 std::string unquoted(const std::string& text) { return text.substr(1, text.size() - 2); }
 

@@ -145,11 +145,24 @@ TEST(NominalPart, MustHaveTheProbesOnIt) {
             std::string::npos)
       << found;
   EXPECT_EQ(faults("", part(just)), "no error");
-  EXPECT_NE(faults("", part(the_block()) +
-                           "[[probe]]\nname = \"in\"\npoints_mm = [[50, 20, 0, 0, 0, -1]]\n")
-                .find("probe 'in': 1 of 1 points face into the part 'block.stl', the first at X50 "
-                      "Y20 Z0; normals must point out of it"),
-            std::string::npos);
+  EXPECT_NE(
+      faults("",
+             part(the_block()) + "[[probe]]\nname = \"in\"\npoints_mm = [[50, 20, 0, 0, 0, -1]]\n")
+          .find("probe 'in': 1 of 1 points do not face as the part 'block.stl' does, the first "
+                "at X50 Y20 Z0, where it faces (0, 0, 1); normals must point out of it"),
+      std::string::npos);
+}
+
+TEST(NominalPart, MustFaceAsTheProbesDo) {
+  const auto found = [](const std::string& point) {
+    return faults("", part(the_block()) + "[[probe]]\nname = \"p\"\npoints_mm = [" + point + "]\n");
+  };
+  EXPECT_EQ(found("[100, 20, -5, 1, 0, 0]"), "no error");
+  EXPECT_NE(found("[100, 20, -5, 0, 1, 0]").find("do not face as the part"), std::string::npos);
+  // on the edge between two faces either of them, but not into the body
+  EXPECT_EQ(found("[100, 0, -5, 1, 0, 0]"), "no error");
+  EXPECT_EQ(found("[100, 0, -5, 0, -1, 0]"), "no error");
+  EXPECT_NE(found("[100, 0, -5, -1, 0, 0]").find("do not face as the part"), std::string::npos);
 }
 
 // Chords in place of arcs are as good as their distance.
@@ -157,9 +170,10 @@ TEST(NominalPart, SaysHowFarItsFacetsAreOff) {
   const Triangles low = block(Vector3d(-20.0, 0.0, -10.0) * mm, Vector3d(100.0, 70.0, -0.005) * mm);
   const RunOutput output = run(milled("", part(low)));
   ASSERT_FALSE(output.cases[0].notes.empty());
-  EXPECT_EQ(output.cases[0].notes.back(),
-            "warning: case one: nominal points of the probes are up to 5 um off 'block.stl'; "
-            "distances after best fit are as uncertain (write it with smaller facets)");
+  EXPECT_EQ(
+      output.cases[0].notes.back(),
+      "warning: case one: nominal points of the probes are up to 5 um off 'block.stl' "
+      "(facets in place of curved faces, or another part); distances after best fit hold that");
 }
 
 TEST(NominalPart, SaysWhatLeavesItFree) {

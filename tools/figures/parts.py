@@ -191,7 +191,7 @@ def draw_plan(run):
     scale = magnification(extent.max(), np.max(np.abs(means[np.isfinite(means)]), initial=0.0), 0.1)
     columns = 1 if len(of_case) == 1 else 2
     lines = -(-len(of_case) // columns)
-    height = (PANEL - LABELS) * min(1.0, max(0.4, extent[1] / extent[0])) + LABELS
+    height = (PANEL - LABELS) * min(1.0, max(0.4, extent[1] / max(extent[0], 1e-9 + 0.1 * extent[1]))) + LABELS
     figure, strip, rows = style.panels([1.0] * lines, (PANEL * columns + 0.4, height * lines + 0.8), columns=columns)
     key = [style.Look("nominal place", PALE, "", ".")] + ([style.MISSED] if np.isnan(means).any() else [])
     style.legend(strip, key, lines=False, points=True)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -174,6 +175,14 @@ TEST(Stl, AsciiIsReadInMillimetres) {
   EXPECT_NEAR(mesh.closest(Vector3d(1, 1, 1) * 20.0 * mm).distance,
               (60.0 - 10.0) / std::sqrt(3.0) * mm, kRounding);
   EXPECT_NEAR(mesh.closest(Vector3d(1, 1, 1) * 1.0 * mm).distance, -1.0 * mm, kRounding);
+}
+
+TEST(Stl, AsciiMayBeInUpperCaseBehindBlankLines) {
+  std::string upper = kTetrahedron;
+  for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  for (const std::string& text : {upper, "\n  \n" + upper, "\xEF\xBB\xBF" + kTetrahedron}) {
+    EXPECT_EQ(TriangleMesh::parse(text, "part.stl").triangles().triangles.size(), 4U);
+  }
 }
 
 TEST(Stl, FaultsOfTextHavePlaces) {

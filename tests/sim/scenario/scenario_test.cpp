@@ -266,6 +266,15 @@ TEST_F(BasedOn, WinsOverTheScenarioBelowAndKeepsTheRest) {
   EXPECT_EQ(above.cases.size(), below.cases.size());
 }
 
+// What is stored in result files is a scenario that runs anywhere.
+TEST_F(BasedOn, IsNotInTheResolvedScenario) {
+  const std::string path = write("above.toml", fmt::format("based_on = \"{}\"\n", kSmall));
+  const Scenario above = read_scenario(path);
+  EXPECT_EQ(above.resolved.find("based_on"), std::string::npos);
+  const Scenario again = read_scenario(write("resolved.toml", above.resolved));
+  EXPECT_EQ(again.resolved, above.resolved);
+}
+
 TEST_F(BasedOn, ReplacesCasesOfTheSameNameAndAddsOthers) {
   const Scenario below = read_scenario(kSmall);
   const std::string first = below.cases.front().name;
