@@ -67,6 +67,7 @@ class ScenarioReader {
 
   void read() {
     Reader root(document_);
+    root.raw("based_on");          // still there in result files of earlier versions
     root.raw("machine_override");  // is in the machine by now
     out_.title = root.text_or("title", out_.name);
     out_.source = root.text_or("source", "");

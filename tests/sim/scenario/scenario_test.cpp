@@ -273,6 +273,10 @@ TEST_F(BasedOn, IsNotInTheResolvedScenario) {
   EXPECT_EQ(above.resolved.find("based_on"), std::string::npos);
   const Scenario again = read_scenario(write("resolved.toml", above.resolved));
   EXPECT_EQ(again.resolved, above.resolved);
+  // as earlier versions stored it
+  const Scenario earlier =
+      read_resolved_scenario("based_on = \"gone.toml\"\n" + above.resolved, "earlier");
+  EXPECT_EQ(earlier.cases.size(), above.cases.size());
 }
 
 TEST_F(BasedOn, ReplacesCasesOfTheSameNameAndAddsOthers) {
