@@ -8,22 +8,19 @@
 #include "plant/vocabulary/units.h"
 #include "sim/config/base64.h"
 #include "sim/scenario_document.h"
+#include "sim/work_frame.h"
 
 namespace servomill::sim {
 namespace {
 
-// Whether the bytes stand beside the name; --set stl=FILE means another file than theirs.
-bool has_bytes(Reader& part) {
-  const bool is_changed = part.place("stl").file.starts_with("--set") &&
-                          !part.place("stl_base64").file.starts_with("--set");
-  if (!part.has("stl_base64")) return false;
-  if (is_changed) part.raw("stl_base64");
-  return !is_changed;
+// The bytes beside the name. --set stl=FILE means another file than theirs.
+bool are_outdated(Reader& part) {
+  return part.place("stl").file.starts_with("--set") &&
+         !part.place("stl_base64").file.starts_with("--set");
 }
 
-std::optional<std::string> read_bytes(Reader& part, const std::string& file, InputFiles& files) {
-  if (!has_bytes(part)) return *files.text(file, part.place("stl"), "part");
-  const auto bytes = from_base64(part.text("stl_base64"));
+std::optional<std::string> bytes_of_text(Reader& part) {
+  auto bytes = from_base64(part.text("stl_base64"));
   if (!bytes) part.fault("stl_base64 is not base64");
   return bytes;
 }
@@ -36,10 +33,6 @@ constexpr double kShare = 0.9;  // of it, by which the distance grows: facets ma
 bool faces_out(const TriangleMesh& mesh, const plant::ProbeTarget& target, double distance) {
   const auto at = [&](double s) { return mesh.closest(target.point + s * target.normal).distance; };
   return at(kStep) - distance >= kShare * kStep || distance - at(-kStep) >= kShare * kStep;
-}
-
-std::string place_of(const Eigen::Vector3d& p) {
-  return fmt::format("X{:g} Y{:g} Z{:g}", p.x() / mm, p.y() / mm, p.z() / mm);
 }
 
 // What is wrong with points of one kind: how many, and the first.
@@ -63,8 +56,10 @@ std::shared_ptr<const NominalPart> read_nominal_part(Reader& part, InputFiles& f
   const std::string name = part.text("stl");
   if (part.faults() == before && name.empty()) part.fault("stl", "must name an STL file");
   if (part.faults() > before) return nullptr;
-  const std::string file = has_bytes(part) ? name : beside(part.place("stl"), name);
-  auto bytes = read_bytes(part, file, files);
+  const bool is_here = part.has("stl_base64") && !are_outdated(part);
+  if (!is_here) part.raw("stl_base64");
+  const std::string file = is_here ? name : beside(part.place("stl"), name);
+  auto bytes = is_here ? bytes_of_text(part) : *files.text(file, part.place("stl"), "part");
   if (!bytes) return nullptr;
   auto mesh = std::make_shared<const TriangleMesh>(TriangleMesh::parse(*bytes, file));
   return std::make_shared<const NominalPart>(NominalPart{file, *std::move(bytes), std::move(mesh)});
@@ -90,7 +85,7 @@ std::vector<Fault> faults_of_plan(std::span<const ProbeSpec> plan, const Nominal
       faults.push_back(
           {probe.place, fmt::format("{} are not on the part '{}', the first, {}, is "
                                     "{:.3g} mm off; must be <= {:g} mm",
-                                    begin(off), part.file, place_of(off.first->point),
+                                    begin(off), part.file, program_words(off.first->point),
                                     std::abs(off.nearest.distance) / mm, kOffThePart / mm)});
     }
     if (astray.count > 0) {
@@ -99,7 +94,7 @@ std::vector<Fault> faults_of_plan(std::span<const ProbeSpec> plan, const Nominal
           {probe.place,
            fmt::format("{} do not face as the part '{}' does, the first at {}, where it faces "
                        "({:.3g}, {:.3g}, {:.3g}); normals must point out of it",
-                       begin(astray), part.file, place_of(astray.first->point), n.x() + 0.0,
+                       begin(astray), part.file, program_words(astray.first->point), n.x() + 0.0,
                        n.y() + 0.0, n.z() + 0.0)});
     }
   }

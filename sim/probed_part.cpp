@@ -124,10 +124,6 @@ double imposed_at(const PartSource& source, const PartFrame& frame, const Progra
   return target.normal.dot(frame.direction(displacement));
 }
 
-std::string place_of(const Vector3d& p) {
-  return fmt::format("X{:g} Y{:g} Z{:g}", p.x() / mm, p.y() / mm, p.z() / mm);
-}
-
 struct Misses {
   std::size_t count = 0, first = 0;
 };
@@ -218,7 +214,7 @@ ProbedPart probe_part(const PartSource& source, const std::vector<ProbeSpec>& pl
       out.notes.push_back(fmt::format(
           "{}: warning: case {}: {} of {} points of probe '{}' met no cut surface, first at {}: {}",
           to_string(probe.place), source.case_name, misses.count, targets.size(), probe.name,
-          place_of(targets[misses.first].point), why(miss, cmm)));
+          program_words(targets[misses.first].point), why(miss, cmm)));
     }
     found.measured = probe_all(cmm, source.case_name, probe.name, found.deviation);
     out.features.push_back(std::move(found));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/axes.h"
@@ -33,5 +34,8 @@ struct PartFrame {
 /// only where that is zero.
 /// @param work_offset  6; m, rad, machine coordinates
 PartFrame work_frame(const plant::MachineChain& chain, const AxisWords& work_offset);
+
+/// A place in G as programs say it: "X1 Y2.5 Z-3", in mm.
+std::string program_words(const Eigen::Vector3d& p_G);
 
 }  // namespace servomill::sim
