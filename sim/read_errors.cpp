@@ -108,9 +108,21 @@ ErrorFunction read_function(Reader& table, const Units& units) {
   return sum;
 }
 
+// Squareness as it is measured: "0.2 mm/m", "50 um/m".
+bool is_slope(Reader& model, std::string_view key) {
+  if (!model.is(key, Value::Type::text)) return false;
+  const ScaledText slope = scale_text(model.text(key), kNumber);
+  return slope.complaint.empty();
+}
+
 // A bare number is in m or rad: one that was meant in um or um/m would pass for kilometres.
 double read_bare_location(Reader& model, std::string_view key, const Units& units) {
-  const double value = model.real(key, units.value_quantity());
+  double value = 0.0;
+  if (!units.value_is_length && is_slope(model, key)) {
+    value = scale_text(model.text(key), kNumber).si;
+  } else {
+    value = model.real(key, units.value_quantity());
+  }
   if (std::abs(value) <= (units.value_is_length ? kLargestShift : kLargestAngle)) return value;
   model.fault(key,
               units.value_is_length

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -30,6 +31,8 @@ struct Preset {
 // CC 424: Service Manual iTNC 530 (2010), p. 648, and estimates for what it does not give
 constexpr std::array<Preset, 2> kPresetPeriods = {
     {{1.8e-3, 0.6e-3, 0.1e-3}, {0.2e-3, 0.2e-3, 0.1e-3}}};
+
+constexpr std::string_view kRetractKey = "retract_mm";
 
 constexpr double kLeastBase = 0.1 * us;  // more ticks than that no run can count
 constexpr double kLongestPeriod = 1.0;   // s
@@ -84,11 +87,15 @@ NominalFilter read_filter(Reader& nc, const LoopPeriods& periods) {
 // SI; far from any machine, and near enough that a path can be planned with them.
 constexpr double kLeastLimit = 1e-6, kMostLimit = 1e7;
 
-void read_limits(Reader& axis, bool linear, int j, NcSettings& nc) {
+void read_dynamic_limits(Reader& axis, bool linear, int j, NcSettings& nc) {
   const AxisQuantities& q = quantities_of(linear);
   nc.v_max[j] = axis.real("v_max", q.velocity, {at_least(kLeastLimit), at_most(kMostLimit)});
   nc.a_max[j] = axis.real("a_max", q.acceleration, {at_least(kLeastLimit), at_most(kMostLimit)});
   nc.j_max[j] = axis.real("j_max", q.jerk, {at_least(kLeastLimit), at_most(kMostLimit)});
+}
+
+void read_travel(Reader& axis, bool linear, int j, NcSettings& nc) {
+  const AxisQuantities& q = quantities_of(linear);
   const std::string_view key = linear ? "travel_mm" : "travel_deg";
   nc.lower[j] = -std::numeric_limits<double>::infinity();
   nc.upper[j] = std::numeric_limits<double>::infinity();
@@ -146,6 +153,29 @@ void read_direction(Reader& axis, plant::ChainAxis& chain_axis) {
   }
 }
 
+// Where the axis lies and how far it goes.
+void read_axis_geometry(Reader& axis, int j, MachineSettings& machine) {
+  const auto lane = static_cast<std::size_t>(j);
+  const bool linear = j < kLinearJoints;
+  read_travel(axis, linear, j, machine.nc);
+  if (axis.has(kRetractKey)) axis.real(kRetractKey, kLength);  // of programs, not of a simulation
+  auto& chain_axis = machine.chain.at(*machine.chain.layout.axis[lane]);
+  if (!linear) {
+    chain_axis.sense = static_cast<plant::Sense>(axis.choice_or("sense", 0, kSenses));
+  }
+  read_direction(axis, chain_axis);
+  if (axis.has("centre_mm")) {
+    const std::size_t before = axis.faults();
+    const auto centre = axis.reals("centre_mm", kLength);
+    if (axis.faults() > before) return;
+    if (centre.size() == 3) {
+      chain_axis.centre << centre[0], centre[1], centre[2];
+    } else {
+      axis.fault("centre_mm", "must be [x, y, z]");
+    }
+  }
+}
+
 void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machine) {
   const auto lane = static_cast<std::size_t>(j);
   const bool linear = j < kLinearJoints;
@@ -167,23 +197,9 @@ void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machi
   machine.nc.gain_place[lane] = {axis.has("Kv") ? axis.place("Kv") : common.Kv_place,
                                  axis.place("velocity_bandwidth"), winding_place(axis)};
   refuse_unbearable_load(axis, machine.drives[lane], machine.nc.cascade[lane], linear);
-  read_limits(axis, linear, j, machine.nc);
+  read_dynamic_limits(axis, linear, j, machine.nc);
   read_encoders(axis, j, common.noise_seed, machine);
-  auto& chain_axis = machine.chain.at(*machine.chain.layout.axis[lane]);
-  if (!linear) {
-    chain_axis.sense = static_cast<plant::Sense>(axis.choice_or("sense", 0, kSenses));
-  }
-  read_direction(axis, chain_axis);
-  if (axis.has("centre_mm")) {
-    const std::size_t before = axis.faults();
-    const auto centre = axis.reals("centre_mm", kLength);
-    if (axis.faults() > before) return;
-    if (centre.size() == 3) {
-      chain_axis.centre << centre[0], centre[1], centre[2];
-    } else {
-      axis.fault("centre_mm", "must be [x, y, z]");
-    }
-  }
+  read_axis_geometry(axis, j, machine);
 }
 
 plant::MachineChain read_chain(Reader& machine) {
@@ -220,7 +236,86 @@ AxisWords read_words(Reader& table, const JointLayout& layout) {
   return words;
 }
 
-MachineSettings read_machine(Reader& table, std::map<std::string, plant::ErrorModel>* errors) {
+namespace {
+
+using ErrorModels = std::map<std::string, plant::ErrorModel>;
+
+void read_models(Reader& machine, const JointLayout& layout, ErrorModels* errors) {
+  if (!machine.has("errors")) return;
+  Reader models = machine.table("errors");
+  auto read = read_error_models(models, layout);
+  if (errors != nullptr) *errors = std::move(read);
+}
+
+// Keys that every drive needs: a file with one of them is that of a machine to simulate.
+bool describes_drives(Reader& machine) {
+  constexpr std::array<std::string_view, 4> kNeeded = {"Kt", "load", "motor_inertia", "i_max_A"};
+  if (!machine.has("axis")) return false;
+  Reader axes = machine.table("axis");
+  for (const std::string& name : axes.keys()) {
+    if (!axes.is(name, Value::Type::table)) continue;
+    Reader axis = axes.table(name);
+    if (std::any_of(kNeeded.begin(), kNeeded.end(),
+                    [&](std::string_view key) { return axis.has(key); })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// A machine file without drives: structure, travel, limits, errors.
+MachineSettings read_geometry(Reader& table, ErrorModels* errors) {
+  MachineSettings machine;
+  machine.name = table.text_or("name", "unnamed machine");
+  table.text_or("source", "");
+  machine.chain = read_chain(table);
+  if (table.has("nc")) table.raw("nc");
+  if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
+    table.raw("axis");
+    table.raw("errors");
+    return machine;
+  }
+  machine.nc.lower.setConstant(-std::numeric_limits<double>::infinity());
+  machine.nc.upper.setConstant(std::numeric_limits<double>::infinity());
+  Reader axes = table.table_or_empty("axis");
+  for (int j = 0; j < kJoints; ++j) {
+    const std::string name(1,
+                           machine.chain.layout.has(j) ? machine.chain.layout.letter_of(j) : ' ');
+    if (!axes.has(name)) continue;
+    Reader axis = axes.table(name);
+    const std::array<std::string_view, 3> limits = {"v_max", "a_max", "j_max"};
+    const AxisQuantities& q = quantities_of(j < kLinearJoints);
+    const std::array<Quantity, 3> of = {q.velocity, q.acceleration, q.jerk};
+    Joints* const into[] = {&machine.nc.v_max, &machine.nc.a_max, &machine.nc.j_max};
+    for (std::size_t k = 0; k < limits.size(); ++k) {
+      if (!axis.has(limits[k])) continue;
+      (*into[k])[j] = axis.real(limits[k], of[k], {at_least(kLeastLimit), at_most(kMostLimit)});
+    }
+    read_axis_geometry(axis, j, machine);
+  }
+  read_models(table, machine.chain.layout, errors);
+  return machine;
+}
+
+}  // namespace
+
+MachineDescription read_machine_description(const std::string& path,
+                                            const std::vector<std::string>& changes) {
+  Document document = Document::from_file(path);
+  for (const std::string& change : changes) document.set(change);
+  Reader root(document);
+  MachineDescription out;
+  out.has_drives = describes_drives(root);
+  out.machine = out.has_drives ? read_machine(root, &out.errors) : read_geometry(root, &out.errors);
+  if (root.has("axis") && root.table("axis").has("Z")) {
+    Reader Z = root.table("axis").table("Z");
+    if (Z.has(kRetractKey)) out.retract_Z = Z.real(kRetractKey, kLength);
+  }
+  root.finish();
+  return out;
+}
+
+MachineSettings read_machine(Reader& table, ErrorModels* errors) {
   MachineSettings machine;
   machine.name = table.text_or("name", "unnamed machine");
   table.text_or("source", "");
@@ -264,11 +359,7 @@ MachineSettings read_machine(Reader& table, std::map<std::string, plant::ErrorMo
     Reader axis = axes.table(std::string(1, machine.chain.layout.letter_of(j)));
     read_axis(axis, common, j, machine);
   }
-  if (table.has("errors")) {
-    Reader models = table.table("errors");
-    auto read = read_error_models(models, machine.chain.layout);
-    if (errors != nullptr) *errors = std::move(read);
-  }
+  read_models(table, machine.chain.layout, errors);
   return machine;
 }
 

@@ -35,15 +35,6 @@ constexpr double kTipTold = 0.1e-6, kAxisTold = 1e-6;  // m, rad: of less nothin
 
 using ErrorModels = std::map<std::string, plant::ErrorModel>;
 
-MachineSettings machine_of(const CompensateRequest& request, ErrorModels& errors) {
-  Document document = Document::from_file(request.machine_file);
-  for (const std::string& change : request.changes) document.set(change);
-  Reader root(document);
-  MachineSettings machine = read_machine(root, &errors);
-  root.finish();
-  return machine;
-}
-
 const plant::ErrorModel& model_of(const ErrorModels& models, const CompensateRequest& request,
                                   std::string& name) {
   const std::string& file = request.error_file.empty() ? request.machine_file : request.error_file;
@@ -310,8 +301,10 @@ std::unique_ptr<ProgramWriter> writer_of(const CompensateRequest& request, Walk&
 }  // namespace
 
 Compensated compensate(const CompensateRequest& request) {
-  ErrorModels models;
-  const MachineSettings machine = machine_of(request, models);
+  const MachineDescription described =
+      read_machine_description(request.machine_file, request.changes);
+  const MachineSettings& machine = described.machine;
+  ErrorModels models = described.errors;
   const JointLayout& layout = machine.chain.layout;
   if (!request.error_file.empty()) models = read_error_file(request.error_file, layout);
   std::string model;
