@@ -1,0 +1,295 @@
+// Modal state of a Fanuc control: codes of a block, units, feeds and the tool length.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "controllers/dialects/fanuc_machine.h"
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers {
+namespace {
+
+using Group = FanucGroup;
+
+struct KnownCode {
+  int tenths;
+  Group group;
+};
+
+// Codes that are read. Numbers and groups: B-63944EN, list of preparatory functions (M).
+constexpr std::array kCodes = {
+    KnownCode{0, Group::motion},         KnownCode{10, Group::motion},
+    KnownCode{20, Group::motion},        KnownCode{30, Group::motion},
+    KnownCode{40, Group::one_shot},      KnownCode{51, Group::contour},
+    KnownCode{90, Group::one_shot},      KnownCode{150, Group::polar},
+    KnownCode{170, Group::plane},        KnownCode{180, Group::plane},
+    KnownCode{190, Group::plane},        KnownCode{200, Group::unit},
+    KnownCode{210, Group::unit},         KnownCode{280, Group::one_shot},
+    KnownCode{300, Group::one_shot},     KnownCode{400, Group::cutter},
+    KnownCode{430, Group::length},       KnownCode{440, Group::length},
+    KnownCode{490, Group::length},       KnownCode{500, Group::scaling},
+    KnownCode{501, Group::mirror},       KnownCode{530, Group::one_shot},
+    KnownCode{540, Group::work_system},  KnownCode{550, Group::work_system},
+    KnownCode{560, Group::work_system},  KnownCode{570, Group::work_system},
+    KnownCode{580, Group::work_system},  KnownCode{590, Group::work_system},
+    KnownCode{610, Group::path},         KnownCode{640, Group::path},
+    KnownCode{690, Group::rotation},     KnownCode{800, Group::cycle},
+    KnownCode{900, Group::distance},     KnownCode{910, Group::distance},
+    KnownCode{930, Group::feed_mode},    KnownCode{940, Group::feed_mode},
+    KnownCode{950, Group::feed_mode},    KnownCode{970, Group::spindle_mode},
+    KnownCode{980, Group::return_level}, KnownCode{990, Group::return_level},
+};
+
+std::string code_text(int tenths) {
+  return tenths % 10 == 0 ? fmt::format("G{}", tenths / 10)
+                          : fmt::format("G{}.{}", tenths / 10, tenths % 10);
+}
+
+}  // namespace
+
+void FanucMachine::read_codes() {
+  codes_ = {};
+  M_ = {};
+  for (const FanucWord& one : block_->words) {
+    if (one.letter == 'M') read_M(one);
+    if (one.letter != 'G') continue;
+    const double tenths = 10.0 * one.value();
+    const auto found = std::find_if(kCodes.begin(), kCodes.end(), [&](const KnownCode& known) {
+      return std::abs(known.tenths - tenths) < 1e-6;
+    });
+    if (found == kCodes.end()) {
+      fail(one.column, fmt::format("G{:g} is not read here", one.value()));
+    }
+    Code& place = codes_[static_cast<std::size_t>(found->group)];
+    if (place.tenths >= 0) {
+      fail(one.column, fmt::format("{} and {} of one group in a block", code_text(place.tenths),
+                                   code_text(found->tenths)));
+    }
+    place = {found->tenths, one.column};
+  }
+}
+
+// More than one M in a block needs No. 3404#7 (M3B).
+void FanucMachine::read_M(const FanucWord& word) {
+  constexpr std::array kRead = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 30};
+  if (M_.tenths >= 0) fail(word.column, "two M codes in a block depend on No. 3404#7 (M3B)");
+  if (!word.is_integer() || std::find(kRead.begin(), kRead.end(), word.mantissa) == kRead.end()) {
+    fail(word.column, fmt::format("M{:g} is not read here", word.value()));
+  }
+  M_ = {static_cast<int>(word.mantissa), word.column};
+}
+
+bool FanucMachine::names_axis() const {
+  return std::any_of(kAllAxes.begin(), kAllAxes.end(),
+                     [&](Axis axis) { return word(letter(axis)) != nullptr; });
+}
+
+// Words that belong to none of the codes of the block.
+void FanucMachine::check_words() const {
+  const bool is_arc = modes_.motion && *modes_.motion >= 2 && code(Group::one_shot) < 0;
+  for (const FanucWord& one : block_->words) {
+    bool is_taken = std::string_view("GMSTFHXYZABC").find(one.letter) != std::string_view::npos;
+    if (one.letter == 'I' || one.letter == 'J' || one.letter == 'K') is_taken = is_arc;
+    if (one.letter == 'P') is_taken = code(Group::one_shot) == 40 || code(Group::one_shot) == 300;
+    if (one.letter == 'Q' || one.letter == 'R') is_taken = has(Group::contour);
+    if (!is_taken) {
+      fail(one.column,
+           fmt::format("{} belongs to no code of the block that is read here", one.letter));
+    }
+  }
+}
+
+void FanucMachine::set_modes() {
+  set_unit();
+  set_cancels();
+  if (has(Group::motion)) {
+    modes_.motion = code(Group::motion) / 10;
+    modes_.is_cycle_off = true;  // a code of group 01 ends a canned cycle
+  }
+  if (has(Group::plane)) {
+    modes_.normal_axis = code(Group::plane) == 170 ? 2 : code(Group::plane) == 180 ? 1 : 0;
+  }
+  if (has(Group::distance)) modes_.is_incremental = code(Group::distance) == 910;
+  if (has(Group::work_system)) modes_.work_system = code(Group::work_system) / 10 - 53;
+  if (has(Group::path)) {
+    modes_.path = code(Group::path) == 610 ? PathMode::exact_stop : PathMode::continuous;
+  }
+  if (has(Group::feed_mode)) {
+    const FeedMode mode = code(Group::feed_mode) == 930   ? FeedMode::inverse_time
+                          : code(Group::feed_mode) == 940 ? FeedMode::units_per_minute
+                                                          : FeedMode::units_per_revolution;
+    if (modes_.feed_mode != mode && rules_.feed_mode_forgets_F) feed_.reset();
+    modes_.feed_mode = mode;
+  }
+}
+
+// A switch changes work offsets and compensation values: B-63944EN p. 192.
+void FanucMachine::set_unit() {
+  if (!has(Group::unit)) return;
+  const int at = column(Group::unit);
+  if (block_->words.size() > 1) {
+    fail(at, "G20 and G21 stand in a block of their own at the begin of the program");
+  }
+  const double unit = code(Group::unit) == 200 ? rules_.inch_in_mm * mm : mm;
+  if (modes_.unit && *modes_.unit != unit) {
+    fail(at, "a switch between G20 and G21 changes work offsets and compensation values");
+  }
+  modes_.unit = unit;
+}
+
+void FanucMachine::set_cancels() {
+  if (has(Group::cutter)) modes_.is_cutter_off = true;
+  if (has(Group::cycle)) modes_.is_cycle_off = true;
+  if (has(Group::scaling)) modes_.is_scaling_off = true;
+  if (has(Group::rotation)) modes_.is_rotation_off = true;
+  if (has(Group::polar)) modes_.is_polar_off = true;
+}
+
+// F without a point counts whole mm/min; its increments in other modes are not read.
+void FanucMachine::set_feed() {
+  const FanucWord* F = word('F');
+  if (F == nullptr) return;
+  if (!modes_.feed_mode) fail(F->column, "F while none of G93, G94 and G95 is in force");
+  if (!modes_.unit) fail(F->column, "F while neither G20 nor G21 is in force");
+  const bool is_metric_minute =
+      *modes_.feed_mode == FeedMode::units_per_minute && *modes_.unit == mm;
+  if (F->is_integer() && !is_metric_minute) {
+    fail(F->column, "F without a point, whose increment depends on parameters");
+  }
+  if (F->mantissa <= 0) fail(F->column, "F must be above 0");
+  feed_ = F->value();
+}
+
+void FanucMachine::set_spindle() {
+  const FanucWord* S = word('S');
+  if (S == nullptr) return;
+  if (!S->is_integer()) fail(S->column, "S takes an integer");
+  if (S->mantissa < 0) fail(S->column, "S must not be negative");
+  speed_ = S->value() * rpm;
+  const bool switches = M_.tenths >= 3 && M_.tenths <= 5;
+  if (!switches && direction_) {
+    MachineAction out = action(ActionKind::spindle);
+    out.direction = *direction_;
+    out.value = *speed_;
+    actions_.push_back(out);
+  }
+}
+
+int FanucMachine::integer(char letter, int max) const {
+  const FanucWord& one = *word(letter);
+  if (!one.is_integer() || one.mantissa < 0 || one.mantissa > max) {
+    fail(one.column, fmt::format("{} must be an integer in 0 ... {}", letter, max));
+  }
+  return static_cast<int>(one.mantissa);
+}
+
+// Value of a dimension word in m or rad. Digits below the increment are cut off by the control
+// (M), so that they are refused.
+double FanucMachine::dimension(const FanucWord& word, bool is_linear) const {
+  if (is_linear && !modes_.unit) {
+    fail(word.column, fmt::format("{} while neither G20 nor G21 is in force", word.letter));
+  }
+  const double unit = is_linear ? *modes_.unit : deg;
+  const bool is_inch = is_linear && unit != mm;
+  const int digits = (settings_.is_IS_C ? 4 : 3) + (is_inch ? 1 : 0);
+  if (word.is_integer() && rules_.number_without_point_is_increments) {
+    return word.value() / std::pow(10.0, digits) * unit;
+  }
+  std::int64_t rest = word.mantissa;
+  int decimals = word.decimals;
+  for (; decimals > 0 && rest % 10 == 0; --decimals) rest /= 10;
+  if (decimals > digits) {
+    fail(word.column, fmt::format("{} has {} decimals; the control cuts off after {}", word.letter,
+                                  decimals, digits));
+  }
+  return word.value() * unit;
+}
+
+double FanucMachine::length_of(int number, int column) const {
+  if (number == 0) return 0.0;
+  const auto found = setup_.tool_length.find(number);
+  if (found == setup_.tool_length.end()) {
+    fail(column, fmt::format("the length H{} is not known", number));
+  }
+  return found->second;
+}
+
+// G43, G44, G49 and H. Without Z the change of length moves Z where TOS is 0 (M).
+void FanucMachine::set_length() {
+  const FanucWord* H = word('H');
+  if (!has(Group::length)) {
+    if (H == nullptr) return;
+    if (length_.mode != FanucLength::Mode::on) fail(H->column, "H while no G43 is in force");
+    change_length(FanucLength::Mode::on, length_.sign, integer('H', 999), H->column);
+    return;
+  }
+  const int at = column(Group::length);
+  if (code(Group::length) == 490) {
+    if (H != nullptr) fail(H->column, "H in a block with G49");
+    return change_length(FanucLength::Mode::off, 1.0, 0, at);
+  }
+  if (H == nullptr) fail(at, "G43 without H");
+  const double sign = (code(Group::length) == 430 ? 1.0 : -1.0) * rules_.G43_sign;
+  change_length(FanucLength::Mode::on, sign, integer('H', 999), at);
+}
+
+void FanucMachine::change_length(FanucLength::Mode mode, double sign, int number, int column) {
+  const std::optional<double> before = length_.acts;
+  const double after = mode == FanucLength::Mode::on ? sign * length_of(number, column) : 0.0;
+  length_ = {mode, sign, number, after, false};
+  const int one_shot = code(Group::one_shot);
+  const bool is_machine = one_shot == 530 || one_shot == 280 || one_shot == 300;
+  if (is_machine && mode == FanucLength::Mode::on) {
+    fail(column, "a tool length in a block with G53, G28 or G30");
+  }
+  if (word('Z') != nullptr) {
+    if (is_machine) return;
+    if (!modes_.is_incremental) fail(column, "neither G90 nor G91 is in force");
+    if (*modes_.is_incremental)
+      fail(column, "a change of the tool length under G91 depends on No. 5006#6 (TOS)");
+    return;
+  }
+  if (is_machine) fail(column, "G49 with G53, G28 or G30, but without Z");
+  const bool moves =
+      mode == FanucLength::Mode::on ? rules_.G43_alone_moves_Z : rules_.G49_alone_moves_Z;
+  if (before == after || settings_.TOS || !moves) return;
+  if (!before) {
+    fail(column,
+         "moves Z by the change of the tool length where No. 5006#6 (TOS) is 0, and the "
+         "length before is not known");
+  }
+  if (names_axis()) fail(column, "a change of the tool length in a block that moves other axes");
+  if (!modes_.motion || *modes_.motion > 1)
+    fail(column, "a change of the tool length without G0 or G1");
+  check_modes_of_motion();
+  MachineAction out = action(*modes_.motion == 0 ? ActionKind::rapid : ActionKind::feed);
+  out.is_commanded[2] = true;
+  if (position_[2]) out.end[2] = *position_[2] + after - *before;
+  if (*modes_.motion == 1) set_action_feed(out);
+  move_to(out);
+}
+
+// G53, G28, G30 with Z: the vector is cancelled, the display stays (B-63844EN/02 p. 204).
+void FanucMachine::suspend_length() {
+  if (length_.mode == FanucLength::Mode::unknown) length_.acts = 0.0;
+  if (length_.mode != FanucLength::Mode::on) return;
+  length_.is_suspended = true;
+  length_.acts = 0.0;
+}
+
+// Length with which an absolute Z is reached.
+double FanucMachine::acting_length(int column) {
+  if (length_.mode == FanucLength::Mode::unknown) {
+    fail(column, "Z while none of G43, G44 and G49 is known to be in force");
+  }
+  const bool returns = settings_.EVO || !rules_.length_returns_only_with_EVO;
+  if (length_.is_suspended && returns) {
+    length_.is_suspended = false;
+    length_.acts = length_.sign * length_of(*length_.number, column);
+  }
+  return *length_.acts;
+}
+
+}  // namespace servomill::controllers
