@@ -19,6 +19,7 @@ void write_signal(Hdf5Group& group, const std::string& name, const std::vector<d
 
 BudgetStore::BudgetStore(const std::string& path, bool force, const Scenario& scenario)
     : file_(writable_name(path, force), force) {
+  file_.remove_unless_committed();
   Hdf5Group root = file_.root();
   write_inputs(root, scenario, "budget");
 }

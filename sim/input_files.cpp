@@ -27,7 +27,9 @@ std::shared_ptr<const std::string> InputFiles::text(const std::string& path, con
   MemoKey key;
   key.add(path);
   return texts_.get(key, [&] {
-    std::string text = read_file(path, at, what);
+    const bool is_document = what == "scenario" || what == "machine";
+    std::string text =
+        read_file(path, at, what, is_document ? kMostBytesOfDocument : kMostBytesOfFile);
     const std::uint64_t now = crc64(text);
     const std::scoped_lock lock(mutex_);
     if (checksums_.emplace(path, now).first->second != now) {

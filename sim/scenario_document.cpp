@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "plant/vocabulary/user_file.h"
+
 namespace servomill::sim {
 namespace {
 
@@ -85,8 +87,11 @@ void refuse_machine(const Document& document) {
 }  // namespace
 
 std::string beside(const Place& place, const std::string& path) {
-  if (place.file.starts_with("--set")) return path;
-  return (fs::path(place.file).parent_path() / path).lexically_normal().string();
+  std::string file = place.file.starts_with("--set")
+                         ? path
+                         : (fs::path(place.file).parent_path() / path).lexically_normal().string();
+  remember_input(file);
+  return file;
 }
 
 Value as_machine(Value table) {

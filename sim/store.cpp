@@ -11,6 +11,7 @@
 #include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/units.h"
 #include "sim/hdf5/series_writer.h"
+#include "sim/output_name.h"
 #include "sim/store_probes.h"
 #include "sim/version.h"
 
@@ -298,19 +299,15 @@ bool is_hdf5(const std::string& path) {
 std::string writable_name(const std::string& path, bool force) {
   namespace fs = std::filesystem;
   if (path.empty()) throw InputError({"--output"}, "the name of the result file is empty");
+  std::string target = output_target(path, existing_of(force));
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) throw InputError({path}, "is a folder; name a file");
-  for (const std::string& name : {path, path + ".partial"}) {
-    if (!fs::exists(name, ignored)) continue;
-    if (force && (fs::is_empty(name, ignored) || is_hdf5(name))) continue;
-    if (force) {
-      throw InputError({name}, "exists and is no result file; --force does not overwrite others");
-    }
-    throw InputError({name}, name == path ? "exists; use --force to overwrite"
-                                          : "exists, left by a run that did not end; use --force "
-                                            "to overwrite");
+  const std::string partial = target + ".partial";
+  if (!force) refuse_partial(partial);
+  for (const std::string& name : {target, partial}) {
+    if (!fs::exists(name, ignored) || fs::is_empty(name, ignored) || is_hdf5(name)) continue;
+    throw InputError({name}, "exists and is no result file; --force does not overwrite others");
   }
-  return path;
+  return target;
 }
 
 }  // namespace servomill::sim

@@ -57,9 +57,9 @@ std::vector<std::string> split_lines(const std::string& text);
 /// Whether a file begins as HDF5 does.
 bool is_hdf5(const std::string& path);
 
-/// `path`, if a result file may be made there: it is no folder, and neither it nor its partial file
-/// exists, or `force` is set and it is a result file (anything else is never overwritten).
-/// @throws InputError
+/// The name under which a result file may be made (sim/output_name.h): neither it nor its partial
+/// file exists, or `force` is set and it is a result file (anything else is never overwritten).
+/// @throws InputError, SystemError while another process writes it
 std::string writable_name(const std::string& path, bool force);
 
 }  // namespace servomill::sim

@@ -1,47 +1,41 @@
 #include "sim/write_file.h"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <memory>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/user_file.h"
 #include "sim/hdf5/system_error.h"
+#include "sim/output_name.h"
 
 namespace servomill::sim {
 namespace {
 
-void write_all(const std::string& path, std::string_view text) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "wb"),
-                                                             &std::fclose);
-  if (file == nullptr) throw SystemError(path, "cannot be written", std::strerror(errno));
-  if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() ||
-      std::fflush(file.get()) != 0) {
+void write_all(const std::string& partial, std::string_view text, const std::string& path) {
+  const OpenFile file(std::fopen(partial.c_str(), "wbx"));
+  if (file == nullptr || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() ||
+      std::fflush(file.get()) != 0 || ::fsync(::fileno(file.get())) != 0) {
     throw SystemError(path, "cannot be written", std::strerror(errno));
   }
 }
 
 }  // namespace
 
-void write_text_file(const std::string& path, std::string_view text, bool force) {
-  std::error_code ignored;
+void refuse_unwritable_text(const std::string& path, bool force) {
   if (path.empty()) throw InputError({"--output"}, "the name of the file is empty");
-  if (std::filesystem::is_directory(path, ignored))
-    throw InputError({path}, "is a folder; name a file");
-  if (!force && std::filesystem::exists(path, ignored)) {
-    throw InputError({path}, "exists; use --force to overwrite");
-  }
-  const std::string partial = path + ".partial";
-  try {
-    write_all(partial, text);
-  } catch (...) {
-    std::filesystem::remove(partial, ignored);
-    throw;
-  }
-  std::error_code failed;
-  std::filesystem::rename(partial, path, failed);
-  if (failed) throw SystemError(path, "cannot be written", failed.message());
+  output_target(path, existing_of(force));
+}
+
+void write_text_file(const std::string& path, std::string_view text, bool force) {
+  refuse_unwritable_text(path, force);
+  const Existing existing = existing_of(force);
+  const std::string target = output_target(path, existing);
+  const TemporaryFile partial(target);
+  write_all(partial.name(), text, path);
+  give_name(partial.name(), target, existing);
 }
 
 }  // namespace servomill::sim

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/user_file.h"
 
 namespace servomill::controllers {
 namespace {
@@ -19,13 +20,7 @@ constexpr std::size_t kLongestKept = 1U << 15;  // of one line
 }  // namespace
 
 struct ProgramText::Reader {
-  explicit Reader(const std::string& path) : file(std::fopen(path.c_str(), "rb")) {}
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
-  ~Reader() {
-    if (file != nullptr) std::fclose(file);
-  }
-  std::FILE* file;
+  OpenFile file;
 };
 
 ProgramText::ProgramText() = default;
@@ -44,8 +39,10 @@ ProgramText ProgramText::of_text(std::string text, std::string file) {
 ProgramText ProgramText::of_file(const std::string& path) {
   ProgramText out;
   out.file_ = path;
-  out.reader_ = std::make_unique<Reader>(path);
-  if (out.reader_->file == nullptr || !out.refill()) out.fail();
+  std::string why;
+  out.reader_ = std::make_unique<Reader>(Reader{open_input(path, why)});
+  if (!why.empty()) throw InputError({path}, fmt::format("cannot be read: {}", why));
+  if (!out.refill()) out.fail();
   return out;
 }
 
@@ -61,10 +58,10 @@ bool ProgramText::refill() {
   at_ = 0;
   const std::size_t kept = buffer_.size();
   buffer_.resize(kept + kPiece);
-  const std::size_t got = std::fread(buffer_.data() + kept, 1, kPiece, reader_->file);
+  const std::size_t got = std::fread(buffer_.data() + kept, 1, kPiece, reader_->file.get());
   buffer_.resize(kept + got);
   at_end_ = got < kPiece;
-  return std::ferror(reader_->file) == 0;
+  return std::ferror(reader_->file.get()) == 0;
 }
 
 bool ProgramText::next(std::string_view& line) {
@@ -119,7 +116,7 @@ void ProgramText::seek(std::uint64_t offset) {
   at_ = 0;
   base_ = offset;
   at_end_ = false;
-  if (::fseeko(reader_->file, static_cast<off_t>(offset), SEEK_SET) != 0 || !refill()) {
+  if (::fseeko(reader_->file.get(), static_cast<off_t>(offset), SEEK_SET) != 0 || !refill()) {
     fail();
   }
 }

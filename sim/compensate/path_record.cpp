@@ -50,6 +50,7 @@ void PathRecord::add(const Step& step, const Correction& correction) {
 void PathRecord::write(const std::string& path, bool force, const std::string& title,
                        const std::string& machine) const {
   OutputFile file(writable_name(path, force), force);
+  file.remove_unless_committed();
   Hdf5Group root = file.root();
   root.attribute("Conventions", "CF-1.8");
   root.attribute("title", title);

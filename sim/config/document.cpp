@@ -3,16 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
-#include <cstring>
-#include <memory>
 #include <optional>
 #include <utility>
 
 #include "sim/config/parse_toml.h"
+#include "sim/read_file.h"
 
 namespace servomill::sim {
 namespace {
@@ -204,19 +200,7 @@ void merge_table(Value& base, const Value& overriding) {
 Document::Document(std::string name, Value root) : name_(std::move(name)), root_(std::move(root)) {}
 
 Document Document::from_file(const std::string& path) {
-  const auto fail = [&path]() {
-    throw InputError({path}, fmt::format("cannot be read: {}", std::strerror(errno)));
-  };
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             &std::fclose);
-  if (!file) fail();
-  std::string text;
-  std::array<char, 1 << 14> block{};
-  while (const std::size_t count = std::fread(block.data(), 1, block.size(), file.get())) {
-    text.append(block.data(), count);
-  }
-  if (std::ferror(file.get()) != 0) fail();
-  return from_text(text, path);
+  return from_text(read_file(path, {}, "scenario", kMostBytesOfDocument), path);
 }
 
 Document Document::from_text(std::string_view text, const std::string& name) {

@@ -79,6 +79,7 @@ std::string name_of(StepKind kind) {
 
 BodeStore::BodeStore(const std::string& path, bool force, const Scenario& scenario)
     : file_(writable_name(path, force), force) {
+  file_.remove_unless_committed();
   Hdf5Group root = file_.root();
   write_inputs(root, scenario, "bode");
 }
@@ -119,6 +120,7 @@ void BodeStore::add(char axis, const BodeResult& result) {
 
 StepStore::StepStore(const std::string& path, bool force, const Scenario& scenario)
     : machine_(scenario.machine), file_(writable_name(path, force), force) {
+  file_.remove_unless_committed();
   Hdf5Group root = file_.root();
   write_inputs(root, scenario, "step");
 }

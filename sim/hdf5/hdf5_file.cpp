@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +19,8 @@
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/user_file.h"
+#include "sim/output_name.h"
 
 namespace servomill::sim {
 namespace {
@@ -79,11 +80,8 @@ void refuse_if_locked(const std::string& path) {
 
 // The library would cut the file before it finds it locked.
 void refuse_to_cut_locked(const std::string& path) {
-  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  const bool locked = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  close(descriptor);
-  if (locked) throw SystemError(path, "cannot be made", "another process writes it");
+  if (writer_of(path) != Writer::alive) return;
+  throw SystemError(path, "cannot be made", "another process writes it");
 }
 
 // `result` of a call that writes into the file of `object`.
@@ -497,11 +495,11 @@ void Hdf5Group::list(const std::string& name, std::span<const double> values,
   dataset.attach_scale(of, 0);
 }
 
-OutputFile::OutputFile(std::string path, bool force)
-    : path_(std::move(path)), partial_path_(path_ + ".partial"), force_(force) {
+OutputFile::OutputFile(std::string path, bool force) : path_(std::move(path)), force_(force) {
+  path_ = output_target(path_, existing_of(force_));
+  partial_path_ = path_ + ".partial";
+  if (!force_) refuse_partial(partial_path_);
   const Library library;
-  refuse_existing(path_, "exists");
-  refuse_existing(partial_path_, "exists, left by a run that did not end");
   prepare_library();
   const Hdf5Handle creation = group_creation(H5P_FILE_CREATE);
   const Hdf5Handle access = handle(H5Pcreate(H5P_FILE_ACCESS));
@@ -550,12 +548,11 @@ OutputFile OutputFile::reopened(std::string path) {
   return resumed(std::move(path), false);
 }
 
+OutputFile::OutputFile(OutputFile&&) noexcept = default;
 OutputFile::~OutputFile() = default;
 
-void OutputFile::refuse_existing(const std::string& name, std::string_view why) const {
-  std::error_code ignored;
-  if (force_ || !std::filesystem::exists(name, ignored)) return;
-  throw InputError({name}, fmt::format("{}; use --force to overwrite", why));
+void OutputFile::remove_unless_committed() {
+  temporary_ = std::make_unique<TemporaryFile>(TemporaryFile::existing(partial_path_));
 }
 
 Hdf5Group OutputFile::root() {
@@ -576,18 +573,14 @@ void OutputFile::commit() {
   const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
   if (!synced) throw SystemError(partial_path_, "cannot be written", system_reason());
   close(descriptor);
-  refuse_existing(path_, "exists");
-  if (std::rename(partial_path_.c_str(), path_.c_str()) != 0) {
-    throw SystemError(path_, "cannot be made", system_reason());
-  }
+  give_name(partial_path_, path_, existing_of(force_));
 }
 
 InputFile::InputFile(std::string path) : path_(std::move(path)) {
   const Library library;
   prepare_library();
-  const int descriptor = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) fail(fmt::format("cannot be read: {}", system_reason()));
-  close(descriptor);
+  const std::string why = why_unreadable(path_);
+  if (!why.empty()) fail(fmt::format("cannot be read: {}", why));
   if (H5Fis_hdf5(path_.c_str()) <= 0) fail("is not an HDF5 file");
   file_ = Hdf5Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
   if (file_.get() < 0) {

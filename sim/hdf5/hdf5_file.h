@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +18,8 @@
 #include "sim/hdf5/system_error.h"
 
 namespace servomill::sim {
+
+class TemporaryFile;
 
 /// Owner of one identifier of the library; identifiers below 0 are none.
 class Hdf5Handle {
@@ -158,7 +161,7 @@ class OutputFile {
   /// Makes the complete file `path` the partial one again and goes on with it.
   /// @throws as resumed()
   static OutputFile reopened(std::string path);
-  OutputFile(OutputFile&&) = default;
+  OutputFile(OutputFile&&) noexcept;
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -166,6 +169,9 @@ class OutputFile {
   Hdf5Group root();
   const std::string& path() const { return path_; }
   const std::string& partial_path() const { return partial_path_; }
+
+  /// From here on nothing stays without a commit.
+  void remove_unless_committed();
 
   /// Writes all to the disk and gives the file its name. Groups and datasets taken from it are of
   /// no use afterwards.
@@ -175,12 +181,12 @@ class OutputFile {
 
  private:
   OutputFile(std::string path, bool force, Hdf5Handle file);
-  void refuse_existing(const std::string& name, std::string_view why) const;
 
   std::string path_;
   std::string partial_path_;
   bool force_;
-  Hdf5Handle file_;
+  std::unique_ptr<TemporaryFile> temporary_;  // where nothing stays without a commit
+  Hdf5Handle file_;                           // closed before that one is removed
 };
 
 /// A file to read. Paths are absolute: "/cases/table/servo/time".

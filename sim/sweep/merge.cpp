@@ -145,6 +145,7 @@ Merged merge_sweeps(const std::vector<std::string>& paths, const std::string& ou
     if (!table) {
       table.emplace(writable_name(out, force), force, read_sweep_header(file).base,
                     columns_of(file), whole);
+      table->remove_unless_committed();
     }
     table->copy(file);
   }

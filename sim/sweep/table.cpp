@@ -15,6 +15,8 @@
 #include <numeric>
 #include <set>
 
+#include "plant/vocabulary/user_file.h"
+#include "sim/output_name.h"
 #include "sim/store.h"
 #include "sim/version.h"
 
@@ -159,6 +161,7 @@ bool is_unborn(const std::string& path) {
 
 // A CSV file of ours may be replaced, no other.
 void refuse_foreign_csv(const std::string& path, bool force) {
+  output_target(path, Existing::replaced);
   if (!exists(path)) return;
   if (!force) throw InputError({path}, "exists; use --force to overwrite");
   std::ifstream file(path, std::ios::binary);
@@ -555,29 +558,26 @@ std::string csv_header(const std::vector<TableColumn>& columns) {
 class CsvFile {
  public:
   explicit CsvFile(const std::string& path)
-      : path_(path), partial_(path + ".partial"), file_(std::fopen(partial_.c_str(), "wb")) {
-    if (file_ == nullptr) throw SystemError(partial_, "cannot be made", std::strerror(errno));
+      : path_(output_target(path, Existing::replaced)),
+        partial_(path_),
+        file_(std::fopen(partial_.name().c_str(), "wbx")) {
+    if (file_ == nullptr) throw SystemError(path_, "cannot be made", std::strerror(errno));
   }
-  ~CsvFile() {
-    if (file_ != nullptr) std::fclose(file_);
-  }
-  CsvFile(const CsvFile&) = delete;
-  CsvFile& operator=(const CsvFile&) = delete;
   void write(const std::string& text) {
-    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail();
+    if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) fail();
   }
   void commit() {
-    std::FILE* file = file_;
-    file_ = nullptr;
-    if (std::fclose(file) != 0 || std::rename(partial_.c_str(), path_.c_str()) != 0) fail();
+    if (std::fclose(file_.release()) != 0) fail();
+    give_name(partial_.name(), path_, Existing::replaced);
   }
 
  private:
   [[noreturn]] void fail() const {
-    throw SystemError(partial_, "cannot be written", std::strerror(errno));
+    throw SystemError(path_, "cannot be written", std::strerror(errno));
   }
-  std::string path_, partial_;
-  std::FILE* file_;
+  std::string path_;
+  TemporaryFile partial_;
+  OpenFile file_;
 };
 
 }  // namespace

@@ -70,6 +70,10 @@ class SweepTable {
   void copy(const InputFile& from);
   /// Gives the file its final name and writes the CSV file beside it. @pre !is_complete()
   void commit();
+  /// From here on nothing stays without a commit.
+  void remove_unless_committed() {
+    if (file_) file_->remove_unless_committed();
+  }
   std::string partial_path() const { return path_ + ".partial"; }
   /// Levels of instructions that points were computed with, in rising order. Where there are
   /// baseline among others, results differ in their last bits.

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/hdf5/system_error.h"
 #include "sim/read_file.h"
 
 namespace servomill::sim {
@@ -37,9 +36,9 @@ TEST(WriteTextFile, SaysWhyItFails) {
   try {
     write_text_file(path, "one", false);
     FAIL();
-  } catch (const SystemError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              path + ".partial: cannot be written: No such file or directory");
+  } catch (const InputError& error) {
+    const std::string folder = testing::TempDir() + "no_such_folder";
+    EXPECT_EQ(std::string(error.what()), path + ": error: there is no folder '" + folder + "'");
   }
 }
 

@@ -69,6 +69,8 @@ class Options {
   std::string word() const;
 
  private:
+  void remember_files() const;
+
   std::string command_, synopsis_, summary_, words_;
   boost::program_options::options_description description_{"Options"};
   boost::program_options::variables_map values_;

@@ -5,6 +5,8 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/compensate/compensate.h"
+#include "sim/output_name.h"
+#include "sim/store.h"
 #include "sim/write_file.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/program_options.h"
@@ -55,6 +57,16 @@ sim::CompensateRequest request_of(const Options& options) {
   request.start = text_of(options, "start");
   request.records = options.has("record");
   return request;
+}
+
+// Before the work: what cannot be written afterwards.
+void refuse_outputs(const Options& options, const std::string& name) {
+  const bool force = options.has("force"), to_stdout = name == "-";
+  if (!to_stdout) sim::refuse_unwritable_text(name, force);
+  if (!options.has("record")) return;
+  const auto& record = options.get<std::string>("record");
+  sim::writable_name(record, force);
+  if (!to_stdout) sim::refuse_same_output(record, name, "--record", "the program");
 }
 
 }  // namespace
@@ -108,15 +120,13 @@ int compensate_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
 
   const std::string name = program_name(options);
-  std::error_code ignored;
-  if (fs::equivalent(name, options.word(), ignored)) {
-    throw InputError({"--output " + name}, "is the program itself; name another file");
-  }
-  const sim::Compensated done = sim::compensate(request_of(options));
-  const bool to_stdout = name == "-";
-  if (!to_stdout) sim::write_text_file(name, done.program, options.has("force"));
+  const bool to_stdout = name == "-", force = options.has("force");
+  const sim::CompensateRequest request = request_of(options);
+  refuse_outputs(options, name);
+  const sim::Compensated done = sim::compensate(request);
+  if (!to_stdout) sim::write_text_file(name, done.program, force);
   if (options.has("record")) {
-    done.record.write(options.get<std::string>("record"), options.has("force"),
+    done.record.write(options.get<std::string>("record"), force,
                       fs::path(options.word()).filename().string(), done.machine);
   }
   for (const Fault& warning : done.warnings) {

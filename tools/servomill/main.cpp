@@ -13,6 +13,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/simd.h"
+#include "plant/vocabulary/user_file.h"
 #include "sim/hdf5/system_error.h"
 #include "sim/version.h"
 #include "tools/servomill/command.h"
@@ -83,6 +84,7 @@ int dispatch(const Arguments& arguments) {
     throw InputError({"servomill"}, fmt::format("no command '{}'{}; see servomill --help", name,
                                                 did_you_mean(name, names)));
   }
+  const InputRecord inputs;
   simd_level();  // refuses what SERVOMILL_SIMD must not be
   return command->run({arguments.begin() + 1, arguments.end()});
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/store.h"
 #include "sim/sweep/merge.h"
 #include "tools/servomill/command.h"
 
@@ -23,6 +24,7 @@ int merge_command(const Arguments& arguments) {
   if (!options.has("output")) throw InputError(place, "needs the name of the result: -o OUT.h5");
 
   const auto out = options.get<std::string>("output");
+  sim::writable_name(out, options.has("force"));
   const sim::Merged merged =
       sim::merge_sweeps(options.words(), out, options.has("force"), options.has("partial"));
   for (const std::string& missing : merged.missing) fmt::print(stderr, "{}: {}\n", out, missing);

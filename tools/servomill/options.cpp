@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <iostream>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/user_file.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {
@@ -66,6 +69,7 @@ bool Options::parse(const Arguments& arguments) {
     throw InputError(place, error.what());
   }
   if (!has("help")) {
+    remember_files();
     for (const std::string& one : words()) {
       if (one.empty()) throw InputError(place, fmt::format("{} is empty; see --help", words_));
     }
@@ -74,6 +78,18 @@ bool Options::parse(const Arguments& arguments) {
   std::cout << fmt::format("Usage: servomill {} {}\n\n{}\n\n", command_, synopsis_, summary_)
             << description_;
   return false;
+}
+
+// A word or a value that is a file's name is an input, unless results go there.
+void Options::remember_files() const {
+  constexpr std::array<std::string_view, 2> kOutputs = {"output", "record"};
+  for (const auto& [name, value] : values_) {
+    if (std::find(kOutputs.begin(), kOutputs.end(), name) != kOutputs.end()) continue;
+    if (const auto* text = boost::any_cast<std::string>(&value.value())) remember_input(*text);
+    if (const auto* texts = boost::any_cast<std::vector<std::string>>(&value.value())) {
+      for (const std::string& one : *texts) remember_input(one);
+    }
+  }
 }
 
 std::string Options::word() const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "plant/vocabulary/units.h"
 #include "sim/post_file.h"
@@ -118,7 +119,7 @@ int post_command(const Arguments& arguments) {
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the machine, such as axis.A.centre_mm=[0,0,-150]");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.ngc"),
-                "program; default: PART.ngc in the current folder");
+                "program; - for standard output. Default: PART.ngc in the current folder");
   options.add()(
       "tolerance", po::value<double>()->default_value(1.0, "1")->value_name("UM"),
       "by which the tip may leave the straight way, um: half of it for the chords between "
@@ -149,12 +150,19 @@ int post_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
 
   const std::string name = program_name(options);
-  const sim::PostedFile posted = post(request_of(options));
+  const bool to_stdout = name == "-";
+  sim::PostRequest request = request_of(options);
+  if (!to_stdout) sim::refuse_unwritable_text(name, options.has("force"));
+  const sim::PostedFile posted = post(std::move(request));
   tell(posted.warnings);
-  sim::write_text_file(name, posted.program, options.has("force"));
+  if (to_stdout) {
+    std::fwrite(posted.program.data(), 1, posted.program.size(), stdout);
+  } else {
+    sim::write_text_file(name, posted.program, options.has("force"));
+  }
   if (!options.has("quiet")) {
-    fmt::print("{}: {} locations, {} points between them\n", name, posted.locations,
-               posted.inserted);
+    fmt::print(to_stdout ? stderr : stdout, "{}: {} locations, {} points between them\n", name,
+               posted.locations, posted.inserted);
   }
   return kDone;
 }

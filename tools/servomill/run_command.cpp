@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -42,6 +43,11 @@ void print_outcomes(const sim::RunOutput& output) {
 // What a run that did not end leaves behind.
 void print_kept(const std::string& partial_path, const std::vector<std::string>& complete,
                 const std::vector<std::string>& incomplete) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(partial_path, ignored)) {
+    fmt::print(stderr, "nothing is kept\n");
+    return;
+  }
   fmt::print(stderr, "kept in {}: ", partial_path);
   if (complete.empty()) {
     fmt::print(stderr, "no complete case");

@@ -8,6 +8,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/simd.h"
 #include "sim/hdf5/system_error.h"
+#include "sim/output_name.h"
 #include "sim/sweep/point_series.h"
 #include "sim/sweep/sweep.h"
 #include "sim/sweep/table.h"
@@ -165,10 +166,12 @@ int sweep_command(const Arguments& arguments) {
   const std::string signals = options.has("series") ? sim::series_folder(out) : "";
   if (options.has("shard")) out = sim::shard_name(out, selection);
   const unsigned threads = thread_count(options);
+  const bool force = options.has("force");
+  out = sim::output_target(out, force ? sim::Existing::replaced : sim::Existing::resumed);
+  sim::output_target(sim::csv_name(out), sim::Existing::replaced);
   sweep.refuse_hopeless();
 
-  sim::SweepTable table(out, options.has("force"), sweep.base(), sim::columns_of(sweep.base()),
-                        selection);
+  sim::SweepTable table(out, force, sweep.base(), sim::columns_of(sweep.base()), selection);
   if (options.has("retry-failed")) table.forget(sim::PointStatus::failed);
   const std::vector<bool> done = points_done(table, selection, sweep, signals);
   auto left = static_cast<std::uint64_t>(std::count(done.begin(), done.end(), false));

@@ -10,6 +10,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/export/table_files.h"
 #include "sim/hdf5/system_error.h"
+#include "sim/output_name.h"
 #include "sim/read_errors.h"
 #include "sim/write_file.h"
 #include "tools/servomill/axis_options.h"
@@ -186,9 +187,8 @@ void write(const std::vector<sim::TextFile>& files, const std::string& folder, b
   }
   for (const sim::TextFile& file : files) {
     const std::string path = (fs::path(folder) / file.name).string();
-    if (fs::is_directory(path, error)) throw InputError({path}, "is a folder");
-    if (!force && fs::exists(path, error)) {
-      throw InputError({path}, "exists; use --force to overwrite");
+    if (fs::exists(fs::symlink_status(path, error))) {
+      sim::output_target(path, sim::existing_of(force));
     }
   }
   fs::create_directories(folder, error);

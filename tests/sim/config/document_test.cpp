@@ -110,7 +110,7 @@ TEST(Document, SaysWhyAFileCannotBeRead) {
   EXPECT_EQ(message([] { Document::from_file("/no/such.toml"); }),
             "/no/such.toml: error: cannot be read: No such file or directory");
   EXPECT_EQ(message([] { Document::from_file("/tmp"); }),
-            "/tmp: error: cannot be read: Is a directory");
+            "/tmp: error: cannot be read: is a folder");
 }
 
 TEST(Document, PointsAtFaultsOfSyntax) {

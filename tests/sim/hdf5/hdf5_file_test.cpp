@@ -135,11 +135,11 @@ TEST_F(Hdf5File, IsNotOverwrittenIfItAppearsDuringTheRun) {
 
 TEST_F(Hdf5File, SaysWhyItCannotBeMade) {
   EXPECT_EQ(message([&] { OutputFile(path("no/out.h5"), false); }),
-            "no/out.h5.partial: cannot be made: No such file or directory");
+            "no/out.h5: error: there is no folder 'no'");
   fs::create_directory(path("out.h5.partial"));
   EXPECT_EQ(message([&] { OutputFile(path("out.h5"), true); }),
             "out.h5.partial: cannot be made: Is a directory");
-  EXPECT_THROW(OutputFile(path("no/out.h5"), false), SystemError);
+  EXPECT_THROW(OutputFile(path("out.h5"), true), SystemError);
 }
 
 TEST_F(Hdf5File, SaysWhatItLacks) {

@@ -1,0 +1,141 @@
+#include "plant/vocabulary/user_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+#include <mutex>
+#include <set>
+#include <utility>
+
+namespace servomill {
+namespace {
+
+using Identity = std::pair<dev_t, ino_t>;
+
+struct Record {
+  std::mutex mutex;
+  bool on = false;
+  std::set<Identity> files;
+};
+
+Record& record() {
+  static Record one;
+  return one;
+}
+
+void remember(const struct stat& file) {
+  const std::scoped_lock lock(record().mutex);
+  if (record().on) record().files.emplace(file.st_dev, file.st_ino);
+}
+
+std::string kind_of(mode_t mode) {
+  if (S_ISREG(mode)) return {};
+  if (S_ISDIR(mode)) return "is a folder";
+  if (S_ISFIFO(mode)) return "is a pipe, not a file of known size";
+  if (S_ISSOCK(mode)) return "is a socket, not a file of known size";
+  return "is a device, not a file of known size";
+}
+
+std::string size_text(std::uintmax_t bytes) {
+  constexpr double kMega = 1e6, kGiga = 1e9;
+  const auto size = static_cast<double>(bytes);
+  return size < kGiga ? fmt::format("{:.4g} MB", size / kMega)
+                      : fmt::format("{:.4g} GB", size / kGiga);
+}
+
+// A pipe that nobody writes must not keep the process.
+OpenFile open_regular(const std::string& path, struct stat& about, std::string& why) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) {
+    why = std::strerror(errno);
+    return nullptr;
+  }
+  why = ::fstat(descriptor, &about) != 0 ? std::strerror(errno) : kind_of(about.st_mode);
+  std::FILE* file = why.empty() ? ::fdopen(descriptor, "rb") : nullptr;
+  if (file == nullptr) {
+    if (why.empty()) why = std::strerror(errno);
+    ::close(descriptor);
+    return nullptr;
+  }
+  return OpenFile(file);
+}
+
+}  // namespace
+
+InputRecord::InputRecord() {
+  const std::scoped_lock lock(record().mutex);
+  assert(!record().on);
+  record().on = true;
+}
+
+InputRecord::~InputRecord() {
+  const std::scoped_lock lock(record().mutex);
+  record().on = false;
+  record().files.clear();
+}
+
+void remember_input(const std::string& path) {
+  struct stat about {};
+  if (::stat(path.c_str(), &about) == 0 && S_ISREG(about.st_mode)) remember(about);
+}
+
+bool is_input(const std::string& path) {
+  struct stat about {};
+  if (::stat(path.c_str(), &about) != 0) return false;
+  const std::scoped_lock lock(record().mutex);
+  return record().files.count({about.st_dev, about.st_ino}) > 0;
+}
+
+OpenFile open_input(const std::string& path, std::string& why) {
+  struct stat about {};
+  OpenFile file = open_regular(path, about, why);
+  if (file) remember(about);
+  return file;
+}
+
+std::string why_unreadable(const std::string& path) {
+  struct stat about {};
+  std::string why;
+  open_regular(path, about, why);
+  return why;
+}
+
+std::string read_input(const std::string& path, std::uintmax_t most, std::string& why) {
+  constexpr std::size_t kPiece = 1U << 20;
+  struct stat about {};
+  const OpenFile file = open_regular(path, about, why);
+  if (!file) return {};
+  remember(about);
+  const auto size = static_cast<std::uintmax_t>(about.st_size);
+  if (size > most) {
+    why = fmt::format("holds {}, more than the {} that may be read", size_text(size),
+                      size_text(most));
+    return {};
+  }
+  std::string text;
+  text.reserve(static_cast<std::size_t>(size));
+  while (std::feof(file.get()) == 0 && std::ferror(file.get()) == 0) {
+    const std::size_t kept = text.size();
+    text.resize(kept + std::clamp<std::size_t>(size - std::min<std::uintmax_t>(kept, size),
+                                               1U << 12, kPiece));
+    text.resize(kept + std::fread(text.data() + kept, 1, text.size() - kept, file.get()));
+    if (text.size() <= most) continue;  // it may grow while it is read
+    why = fmt::format("holds more than the {} that may be read", size_text(most));
+    return {};
+  }
+  if (std::ferror(file.get()) != 0) why = std::strerror(errno);
+  return text;
+}
+
+std::string not_a_regular_file(const std::string& path) {
+  struct stat about {};
+  return ::stat(path.c_str(), &about) == 0 ? kind_of(about.st_mode) : std::string();
+}
+
+}  // namespace servomill

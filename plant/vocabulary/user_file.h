@@ -1,0 +1,56 @@
+/// Files that the user names as inputs: opened within bounds, and remembered.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+namespace servomill {
+
+/// Remembers the inputs of a command while it is alive, so that no output replaces one of them.
+/// At most one in a process.
+class InputRecord {
+ public:
+  InputRecord();
+  InputRecord(const InputRecord&) = delete;
+  InputRecord& operator=(const InputRecord&) = delete;
+  ~InputRecord();
+};
+
+/// Counts the file behind a name as an input. Without a record, and without a file, nothing
+/// happens.
+void remember_input(const std::string& path);
+
+/// Whether the file behind a name is an input, under whatever name it was read: symbolic and hard
+/// links are the file that they lead to.
+bool is_input(const std::string& path);
+
+struct FileCloser {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using OpenFile = std::unique_ptr<std::FILE, FileCloser>;
+
+/// Limit of what is read of one file at once, bytes.
+inline constexpr std::uintmax_t kMostBytesOfFile = 2'000'000'000;
+/// Limit of a document of keys and values (TOML), which takes many times its size in memory.
+inline constexpr std::uintmax_t kMostBytesOfDocument = 100'000'000;
+
+/// Opens a file for reading and remembers it. Devices, pipes and sockets have no end that could be
+/// known before, and are refused.
+/// @param why  set if nothing is returned: "No such file or directory", "is a folder", ...
+OpenFile open_input(const std::string& path, std::string& why);
+
+/// Why a file cannot be opened for reading, with a library of its own; empty if it can. It is not
+/// remembered.
+std::string why_unreadable(const std::string& path);
+
+/// All bytes of a file; refused beyond `most`, before anything is read where its size is known.
+/// @param why  empty if it was read
+std::string read_input(const std::string& path, std::uintmax_t most, std::string& why);
+
+/// Why a file is not one that can be read or replaced: a device, a pipe, a socket, a folder; empty
+/// for a regular file and where nothing is.
+std::string not_a_regular_file(const std::string& path);
+
+}  // namespace servomill
