@@ -1,0 +1,62 @@
+/// Blocks and words of Heidenhain conversational programs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "plant/vocabulary/input_error.h"
+
+namespace servomill::controllers {
+
+/// One word: "X+10", "IPA-90", "FMAX", "Q339=+1". Words end at white space.
+struct HeidenhainWord {
+  std::string text;
+  std::string address;  // the letters that it begins with
+  std::string rest;     // what follows them
+  Place place;
+};
+
+/// One block: a line with the lines that continue it.
+struct HeidenhainBlock {
+  Place place;  // of its first word, or of its line
+  std::optional<long> number;
+  bool is_optional = false;  // begins with '/'
+  std::vector<HeidenhainWord> words;
+};
+
+/// Hands out the blocks of a text one by one. Empty lines are none; a block of a comment only has
+/// no words.
+class HeidenhainBlocks {
+ public:
+  /// @param text  must outlive this
+  HeidenhainBlocks(std::string_view text, std::string file);
+  /// The next block, nullopt at the end.
+  /// @throws InputError for a control character, for a continuation without a next line
+  std::optional<HeidenhainBlock> next();
+  /// Line handed out last, from 1.
+  int line() const { return line_; }
+
+ private:
+  struct Line;
+  Line take_line();
+
+  std::string_view rest_;
+  std::string file_;
+  int line_ = 0;
+};
+
+/// Bounds of a number: the control's input format.
+struct HeidenhainFormat {
+  double max = 0.0;
+  int decimals = 0;
+  bool has_sign = true;
+};
+
+/// The number that follows the address of a word; "10.5" and "10,5" are the same.
+/// @throws InputError
+double heidenhain_number(const HeidenhainWord& word, std::string_view digits,
+                         const HeidenhainFormat& format);
+
+}  // namespace servomill::controllers
