@@ -44,22 +44,54 @@ double fitting_spacing(double length, bool linear, std::size_t most, const Forma
   return first_that_fits(length, most, [unit](int n) { return round_series(unit, n); });
 }
 
-using Curve = std::function<double(double)>;  // error over the position of the axis
+// Error over the position of the axis and its direction of travel: 1, -1, 0 for the mean.
+using Curve = std::function<double(double, int)>;
 
-CompensationTable tabulate(const TableLine& line, const Curve& error, double step) {
+std::vector<double> rounded_values(const TableLine& line, const Curve& error, int direction,
+                                   double step) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < line.points; ++i) {
+    const double exact = error(line.position(line.entry(i)), direction);
+    out.push_back(std::round(exact / step) * step + 0.0);
+  }
+  return out;
+}
+
+CompensationTable tabulate(const TableLine& line, const Curve& error, double step,
+                           bool by_direction) {
   CompensationTable table;
   table.line = line;
-  for (std::size_t i = 0; i < line.points; ++i) {
-    const double exact = error(line.position(line.entry(i)));
-    table.error.push_back(std::round(exact / step) * step + 0.0);
-  }
+  table.error = rounded_values(line, error, by_direction ? 1 : 0, step);
+  if (by_direction) table.error_down = rounded_values(line, error, -1, step);
   constexpr double kWithin = 8.0;  // places looked at between two points
   const double places = std::ceil((line.to - line.from) / line.spacing * kWithin - kSlack);
   for (double n = 0.0; n <= places; ++n) {
     const double q = std::min(line.from + n * line.spacing / kWithin, line.to);
-    table.residual = std::max(table.residual, std::abs(table.at(line.entry_of(q)) - error(q)));
+    for (const int direction : {1, -1}) {
+      const double exact = error(q, by_direction ? direction : 0);
+      table.residual =
+          std::max(table.residual, std::abs(table.at(line.entry_of(q), direction) - exact));
+    }
   }
   return table;
+}
+
+// The displacements to first order: those of errors a million times smaller.
+constexpr double kSmall = 1e-6;
+
+TableSource scaled_down(TableSource source) {
+  source.errors = plant::scaled(source.errors, kSmall);
+  return source;
+}
+
+bool is_zero_to_first_order(const LineCorrection& small, const CompensationTable& table,
+                            double step) {
+  const TableLine& line = table.line;
+  for (std::size_t i = 0; i < line.points; ++i) {
+    const double d = small.over(line.joint, line.position(line.entry(i)))[table.output] / kSmall;
+    if (std::abs(d) > 0.5 * step) return false;
+  }
+  return true;
 }
 
 bool holds_anything(const CompensationTable& table) { return table.largest() > 0.0; }
@@ -114,23 +146,28 @@ bool CompensationTable::is_angle() const {
   return component ? !is_linear(component->direction) : output >= kLinearJoints;
 }
 
-double CompensationTable::at(double entry) const {
+double CompensationTable::at(double entry, int direction) const {
+  const std::vector<double>& e = direction < 0 && depends_on_direction() ? error_down : error;
   const double u =
-      std::clamp((entry - line.first) / line.spacing, 0.0, static_cast<double>(error.size() - 1));
-  const auto i = std::min(static_cast<std::size_t>(u), error.size() - 2);
-  return error[i] + (u - static_cast<double>(i)) * (error[i + 1] - error[i]);
+      std::clamp((entry - line.first) / line.spacing, 0.0, static_cast<double>(e.size() - 1));
+  const auto i = std::min(static_cast<std::size_t>(u), e.size() - 2);
+  return e[i] + (u - static_cast<double>(i)) * (e[i + 1] - e[i]);
 }
 
 double CompensationTable::largest() const {
   double most = 0.0;
-  for (const double e : error) most = std::max(most, std::abs(e));
+  for (const auto* values : {&error, &error_down}) {
+    for (const double e : *values) most = std::max(most, std::abs(e));
+  }
   return most;
 }
 
 double CompensationTable::steepest() const {
   double most = 0.0;
-  for (std::size_t i = 0; i + 1 < error.size(); ++i) {
-    most = std::max(most, std::abs(error[i + 1] - error[i]) / line.spacing);
+  for (const auto* values : {&error, &error_down}) {
+    for (std::size_t i = 0; i + 1 < values->size(); ++i) {
+      most = std::max(most, std::abs((*values)[i + 1] - (*values)[i]) / line.spacing);
+    }
   }
   return most;
 }
@@ -138,7 +175,7 @@ double CompensationTable::steepest() const {
 std::vector<CompensationTable> tables_of(const TableSource& source,
                                          const std::vector<TableLine>& lines,
                                          const FormatRules& rules) {
-  const LineCorrection correction(source);
+  const LineCorrection correction(source), small(scaled_down(source));
   std::vector<CompensationTable> out;
   for (const TableLine& line : lines) {
     if (!line.wanted) continue;
@@ -146,11 +183,21 @@ std::vector<CompensationTable> tables_of(const TableSource& source,
       const bool own = output == line.joint;
       if (!own && (!rules.cross || line.joint >= kLinearJoints || output >= kLinearJoints))
         continue;
+      const double step = output < kLinearJoints ? rules.length_step : rules.angle_step;
+      const bool by_direction = (own || rules.direction == DirectionRule::all) &&
+                                correction.depends_on_direction(line.joint);
       CompensationTable table = tabulate(
-          line, [&](double q) { return -correction.over(line.joint, q)[output]; },
-          output < kLinearJoints ? rules.length_step : rules.angle_step);
+          line,
+          [&](double q, int direction) {
+            return -correction.over(line.joint, q, direction)[output];
+          },
+          step, by_direction);
+      if (table.error == table.error_down) table.error_down.clear();
       table.output = output;
-      if (holds_anything(table)) out.push_back(std::move(table));
+      if (!holds_anything(table)) continue;
+      table.is_second_order = !table.depends_on_direction() && table.largest() <= kSecondOrder &&
+                              is_zero_to_first_order(small, table, step);
+      out.push_back(std::move(table));
     }
   }
   return out;
@@ -168,8 +215,8 @@ std::vector<CompensationTable> component_tables_of(const TableSource& source,
       const plant::ErrorFunction& error = source.errors.component(name);
       if (error.is_zero()) continue;
       CompensationTable table = tabulate(
-          line, [&](double q) { return error.value(q); },
-          is_linear(direction) ? rules.length_step : rules.angle_step);
+          line, [&](double q, int travel) { return plant::travelling(error, travel).value(q); },
+          is_linear(direction) ? rules.length_step : rules.angle_step, !error.reversals.empty());
       table.output = line.joint;
       table.component = name;
       out.push_back(std::move(table));

@@ -48,16 +48,25 @@ struct CompensationTable {
   int output = 0;                             // joint that is corrected
   std::optional<plant::ErrorName> component;  // set where one error is tabulated, not an axis
   std::vector<double> error;                  // m, rad: actual minus nominal, rounded as written
+  std::vector<double> error_down;  // travelling down; empty: as `error`, which then is the mean
+  bool is_second_order = false;    // see kSecondOrder
 
   bool is_angle() const;
-  double at(double entry) const;  ///< linear between points, constant beyond them
-  double largest() const;         ///< magnitude, over the points
-  double residual = 0.0;          // m, rad: largest that linear interpolation and rounding leave
-  double steepest() const;        ///< largest magnitude of step over spacing
+  bool depends_on_direction() const { return !error_down.empty(); }
+  /// Linear between points, constant beyond them.
+  /// @param direction  of travel: 1 up, -1 down
+  double at(double entry, int direction = 1) const;
+  double largest() const;   ///< magnitude, over the points
+  double residual = 0.0;    // m, rad: largest that linear interpolation and rounding leave
+  double steepest() const;  ///< largest magnitude of step over spacing
 };
 
+/// The displacement of an axis to which no error contributes in first order is not worth a table up
+/// to this size: an axis inclined by EC0Y = 200 urad is shorter along Y by 0.012 um in 0.6 m.
+inline constexpr double kSecondOrder = 0.1e-6;  // m, rad
+
 /// Tables of the displacements on the lines, 0 at the reference; none for those that would hold
-/// zeros only.
+/// zeros only. Those of second order up to kSecondOrder are marked.
 std::vector<CompensationTable> tables_of(const TableSource& source,
                                          const std::vector<TableLine>& lines,
                                          const FormatRules& rules);

@@ -21,21 +21,25 @@ std::vector<double> spread(const TableLine& line, int count) {
   return q;
 }
 
-Joints held(const LineCorrection& correction, const TableLine& line, const FormatRules& rules,
-            double q) {
+Joints held(const LineCorrection& correction, const TableLine& line,
+            const std::vector<OmittedTable>& omitted, const FormatRules& rules, double q) {
   if (!line.wanted) return Joints::Zero();
   Joints d = correction.over(line.joint, q);
   if (!rules.cross) d = Joints::Unit(line.joint) * d[line.joint];
+  for (const OmittedTable& table : omitted) {
+    if (table.base == line.joint) d[table.output] = 0.0;
+  }
   return d;
 }
 
 std::vector<Samples> samples_of(const TableSource& source, const std::vector<TableLine>& lines,
-                                const FormatRules& rules, auto count_of) {
+                                const std::vector<OmittedTable>& omitted, const FormatRules& rules,
+                                auto count_of) {
   const LineCorrection correction(source);
   std::vector<Samples> out;
   for (const TableLine& line : lines) {
     Samples s{line.joint, spread(line, count_of(line.joint)), {}};
-    for (const double q : s.q) s.d.push_back(held(correction, line, rules, q));
+    for (const double q : s.q) s.d.push_back(held(correction, line, omitted, rules, q));
     out.push_back(std::move(s));
   }
   return out;
@@ -71,11 +75,12 @@ plant::ErrorModel only(const plant::ErrorModel& errors, const plant::ErrorName& 
 }
 
 // The error alone. Between the ends of the other linear axes what stays is linear.
-LeftOver stay_of(TableSource source, const std::vector<TableLine>& lines, const FormatRules& rules,
+LeftOver stay_of(TableSource source, const std::vector<TableLine>& lines,
+                 const std::vector<OmittedTable>& omitted, const FormatRules& rules,
                  const plant::ErrorName& name, int own) {
   constexpr int kFine = 129, kFineTurn = 33, kEnds = 2, kAngles = 5;
   source.errors = only(source.errors, name);
-  const auto samples = samples_of(source, lines, rules, [&](int joint) {
+  const auto samples = samples_of(source, lines, omitted, rules, [&](int joint) {
     const bool fine = joint == own && !name.is_location;
     return joint < kLinearJoints ? (fine ? kFine : kEnds) : (fine ? kFineTurn : kAngles);
   });
@@ -94,6 +99,7 @@ LeftOver stay_of(TableSource source, const std::vector<TableLine>& lines, const 
 }  // namespace
 
 std::vector<LeftOver> left_over(const TableSource& source, const std::vector<TableLine>& lines,
+                                const std::vector<OmittedTable>& omitted,
                                 const FormatRules& rules) {
   std::vector<LeftOver> out;
   for (const TableLine& line : lines) {
@@ -104,7 +110,7 @@ std::vector<LeftOver> left_over(const TableSource& source, const std::vector<Tab
         const double size = is_location ? std::abs(source.errors.location(name))
                                         : largest_within(source.errors.component(name), line);
         if (size == 0.0) continue;
-        LeftOver one = stay_of(source, lines, rules, name, line.joint);
+        LeftOver one = stay_of(source, lines, omitted, rules, name, line.joint);
         one.size = size;
         if (one.tip > kNothing || one.tool_axis > kNothing) out.push_back(one);
       }
@@ -121,7 +127,8 @@ Volume volume(const TableSource& source, const std::vector<TableLine>& lines,
   const auto look_at = [&](const Joints& Q) {
     Joints d = Joints::Zero();
     for (const CompensationTable& table : tables) {
-      d[table.output] -= table.at(table.line.entry_of(Q[table.line.joint]));
+      const double entry = table.line.entry_of(Q[table.line.joint]);
+      d[table.output] -= 0.5 * (table.at(entry, 1) + table.at(entry, -1));
     }
     const Eigen::Vector3d nominal = plant::forward(source.chain, Q, source.p_ST).p_WT;
     const auto error = [&](const Joints& where) {

@@ -22,11 +22,18 @@ struct Volume {
   double after = 0.0;   // m, with the tables as they are written
 };
 
+/// A table that is not written: displacement of axis `output` over axis `base`.
+struct OmittedTable {
+  int base = 0, output = 0;
+  double largest = 0.0;  // m, rad
+};
+
 /// Errors of which more stays than kNothing, in the order X, Y, Z, A, B, C of their axes, component
 /// errors before location errors.
-/// @param lines  one for each axis of the machine: its travel, and whether it has tables
+/// @param lines    one for each axis of the machine: its travel, and whether it has tables
+/// @param omitted  tables that the format could hold
 std::vector<LeftOver> left_over(const TableSource& source, const std::vector<TableLine>& lines,
-                                const FormatRules& rules);
+                                const std::vector<OmittedTable>& omitted, const FormatRules& rules);
 
 Volume volume(const TableSource& source, const std::vector<TableLine>& lines,
               const std::vector<CompensationTable>& tables);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <optional>
 
 #include "plant/geometry/error_model.h"
 #include "plant/kinematics/chain.h"
@@ -33,19 +35,28 @@ class LineCorrection {
 
   /// @param joint  the axis whose position the table looks up
   /// @param q      its position (m, rad)
+  /// @param direction  of travel of the joint: 1 up, -1 down, 0 the mean of both
   /// @return displacement of all axes (5; m, rad) since the reference: of X, Y and Z for a linear
   ///         axis, of itself for a rotary one
-  Joints over(int joint, double q) const;
+  Joints over(int joint, double q, int direction = 0) const;
+
+  /// Returns true if an error of the axis of that joint depends on its direction of travel.
+  bool depends_on_direction(int joint) const;
 
   /// Displacement at the reference (5; m, rad).
   const Joints& base() const { return base_; }
 
  private:
-  Eigen::Vector3d linear_at(const Joints& Q) const;  // m
-  double rotary_at(int joint, double q) const;       // rad
+  // Belief without the positioning errors of rotary axes. A joint whose errors depend on the
+  // direction of travel has one for each direction.
+  strategies::Belief belief_of(const plant::ErrorModel& errors) const;
+  const strategies::Belief& belief(int joint, int direction) const;
+  Eigen::Vector3d linear_at(const strategies::Belief& belief, const Joints& Q) const;  // m
+  double rotary_at(int joint, double q, int direction) const;                          // rad
 
   TableSource source_;
-  strategies::Belief belief_;  // without the positioning errors of rotary axes
+  strategies::Belief belief_;
+  std::array<std::array<std::optional<strategies::Belief>, 2>, kLinearJoints> directed_;
   Joints base_ = Joints::Zero();
 };
 

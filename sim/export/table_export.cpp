@@ -120,6 +120,28 @@ void add_left_over(const TableExport& e, std::vector<std::string>& out) {
   }
 }
 
+// The directions of travel that the tables over one axis hold.
+std::string directions_in(const TableExport& e, const TableLine& line) {
+  std::string both, mean;
+  for (const CompensationTable& table : e.tables) {
+    if (table.line.joint != line.joint) continue;
+    std::string& list = table.depends_on_direction() ? both : mean;
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", title_of(e, table));
+  }
+  if (both.empty()) return "the tables hold the mean";
+  const std::string out = fmt::format("both directions are held by {}", both);
+  return mean.empty() ? out : fmt::format("{}; the mean by {}", out, mean);
+}
+
+void add_omitted(const TableExport& e, std::vector<std::string>& out) {
+  for (const OmittedTable& table : e.omitted) {
+    out.push_back(fmt::format(
+        "note: no table {} over {}: {} at most, of second order in errors of other directions",
+        e.letter(table.output), e.letter(table.base),
+        size_of(table.output >= kLinearJoints, table.largest)));
+  }
+}
+
 void add_notes(const TableExport& e, std::vector<std::string>& out) {
   for (const CompensationTable& table : e.tables) {
     if (!table.line.one_turn || table.line.wraps || table.component) continue;
@@ -135,12 +157,12 @@ void add_notes(const TableExport& e, std::vector<std::string>& out) {
       if (error.reversals.empty()) continue;
       const double most =
           std::max(std::abs(error.width(line.from)), std::abs(error.width(line.to)));
-      out.push_back(
-          fmt::format("note: {} depends on the direction of travel, by {} at the ends of "
-                      "the travel; the tables hold the mean",
-                      to_string(name), size_of(!is_linear(direction), most)));
+      out.push_back(fmt::format(
+          "note: {} depends on the direction of travel, by {} at the ends of the travel; {}",
+          to_string(name), size_of(!is_linear(direction), most), directions_in(e, line)));
     }
   }
+  add_omitted(e, out);
   if (!e.rules().power_of_two) return;
   for (const TableLine& line : e.lines) {
     const double exponent = std::log2(line.spacing / kGridStep);
@@ -173,6 +195,12 @@ TableExport export_tables(const MachineSettings& machine, const plant::ErrorMode
   const bool csv = request.format == TableFormat::csv;
   e.tables = csv ? component_tables_of(e.source, e.lines, e.rules())
                  : tables_of(e.source, e.lines, e.rules());
+  for (const CompensationTable& table : e.tables) {
+    if (table.is_second_order) {
+      e.omitted.push_back({table.line.joint, table.output, table.largest()});
+    }
+  }
+  std::erase_if(e.tables, [](const CompensationTable& table) { return table.is_second_order; });
   if (e.tables.empty() && !(csv && !errors.is_zero())) {
     throw InputError({}, fmt::format("{} tables over the axes that are asked for can hold nothing "
                                      "of the error model '{}'",
@@ -180,7 +208,7 @@ TableExport export_tables(const MachineSettings& machine, const plant::ErrorMode
   }
   if (csv) return e;
   e.base = LineCorrection(e.source).base();
-  e.left = left_over(e.source, e.lines, e.rules());
+  e.left = left_over(e.source, e.lines, e.omitted, e.rules());
   e.volume = volume(e.source, e.lines, e.tables);
   return e;
 }

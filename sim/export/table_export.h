@@ -33,6 +33,7 @@ struct TableExport {
   TableSource source;
   std::vector<TableLine> lines;           // one for each axis of the machine
   std::vector<CompensationTable> tables;  // rounded as written
+  std::vector<OmittedTable> omitted;      // of second order in the errors
   Joints base = Joints::Zero();           // m, rad: displacement that the reference would need
   std::vector<LeftOver> left;
   Volume volume;

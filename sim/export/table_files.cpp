@@ -39,6 +39,15 @@ std::string joined(const std::vector<std::string>& lines, std::string_view prefi
   return text;
 }
 
+const std::vector<double>& values(const CompensationTable& table, int direction) {
+  return direction < 0 && table.depends_on_direction() ? table.error_down : table.error;
+}
+
+bool any_by_direction(const TableExport& e) {
+  return std::any_of(e.tables.begin(), e.tables.end(),
+                     [](const CompensationTable& table) { return table.depends_on_direction(); });
+}
+
 // --- LinuxCNC -----------------------------------------------------------------------------------
 
 // Reading ends at the first line that is not three numbers: no comments, no header.
@@ -47,9 +56,12 @@ std::string comp_file(const CompensationTable& table, int type) {
   const int decimals = decimals_of(table.output);
   std::string text;
   for (std::size_t i = 0; i < table.error.size(); ++i) {
-    const double nominal = table.line.entry(i) / unit, error = table.error[i] / unit;
-    const std::string value = fixed(type == 0 ? nominal + error : -error, decimals);
-    text += fmt::format("{} {} {}\n", fixed(nominal, decimals), value, value);
+    const double nominal = table.line.entry(i) / unit;
+    const auto value = [&](int direction) {
+      const double error = values(table, direction)[i] / unit;
+      return fixed(type == 0 ? nominal + error : -error, decimals);
+    };
+    text += fmt::format("{} {} {}\n", fixed(nominal, decimals), value(1), value(-1));
   }
   return text;
 }
@@ -62,8 +74,10 @@ std::vector<TextFile> linuxcnc_files(const TableExport& e) {
       {type == 0 ? "each line of a file: nominal position, position reached moving up, moving down"
                  : "each line of a file: nominal position, trim moving up, trim moving down, added "
                    "to the motor command",
-       "units: mm and deg, as LINEAR_UNITS = mm and ANGULAR_UNITS = degree; up and down are equal: "
-       "the mean of both",
+       any_by_direction(e)
+           ? "units: mm and deg, as LINEAR_UNITS = mm and ANGULAR_UNITS = degree"
+           : "units: mm and deg, as LINEAR_UNITS = mm and ANGULAR_UNITS = degree; up and down are "
+             "equal: no positioning depends on the direction of travel",
        "joints: X, Y, Z and the rotary axes in alphabetical order; COMP_FILE excludes BACKLASH"},
       "# ");
   int number = 0;
@@ -85,17 +99,24 @@ std::vector<TextFile> linuxcnc_files(const TableExport& e) {
 
 std::string com_listing(const TableExport& e, const std::vector<const CompensationTable*>& tables) {
   const TableLine& line = tables.front()->line;
+  const CompensationTable* down = nullptr;  // BACKLASH
+  for (const CompensationTable* table : tables) {
+    if (table->depends_on_direction()) down = table;
+  }
   std::string text = fmt::format("{:>12}", "AXISPOS");
+  if (down != nullptr) text += fmt::format(" {:>10}", "BACKLASH");
   for (const CompensationTable* table : tables) {
     text += fmt::format(" {:>10}", std::string(1, e.letter(table->output)));
   }
   text += "\n";
   for (std::size_t i = 0; i < line.points; ++i) {
     text += fmt::format("{:>12}", fixed(line.entry(i) / unit_of(line.joint), 4));
-    for (const CompensationTable* table : tables) {
-      const int decimals = table->is_angle() ? 5 : 4;
-      text += fmt::format(" {:>10}", fixed(table->error[i] / unit_of(table->output), decimals));
-    }
+    const auto add = [&](const CompensationTable& table, int direction) {
+      const double error = values(table, direction)[i] / unit_of(table.output);
+      text += fmt::format(" {:>10}", fixed(error, table.is_angle() ? 5 : 4));
+    };
+    if (down != nullptr) add(*down, -1);
+    for (const CompensationTable* table : tables) add(*table, 1);
     text += "\n";
   }
   return text;
@@ -120,9 +141,14 @@ std::vector<TextFile> heidenhain_files(const TableExport& e) {
   notes.insert(
       notes.end(),
       {"values: error in mm or deg, positive where the axis travels too far, entered with its sign",
-       "columns: [axis of the column of *.COM] = F([axis of the column of *.CMA]); AXISPOS from "
-       "the "
-       "machine datum; BACKLASH stays empty: the values are the mean of both directions",
+       any_by_direction(e)
+           ? "columns: [axis of the column of *.COM] = F([axis of the column of *.CMA]); AXISPOS "
+             "from the machine datum; BACKLASH: values of the axis itself in the negative "
+             "direction "
+             "of traverse, where it differs"
+           : "columns: [axis of the column of *.COM] = F([axis of the column of *.CMA]); AXISPOS "
+             "from the machine datum; BACKLASH stays empty: no positioning depends on the "
+             "direction",
        "these are listings for the table editor of the control: the documents give the columns, "
        "not "
        "the text of the files",
@@ -155,22 +181,28 @@ std::string encoder_table(const TableExport& e, const CompensationTable& table) 
   return text;
 }
 
-std::string cross_table(const TableExport& e, const CompensationTable& table, int index) {
+// @param direction  of travel for which the table acts: 1, -1, 0 for both
+std::string cross_table(const TableExport& e, const CompensationTable& table, int index,
+                        int direction) {
   const TableLine& line = table.line;
+  const double place = unit_of(line.joint), unit = unit_of(table.output);
   std::string text =
-      fmt::format("; {} over {}: MD18342 $MN_MM_CEC_MAX_POINTS[{}] >= {}\n",
-                  machine_axis(e, table.output), machine_axis(e, line.joint), index, line.points);
+      fmt::format("; {} over {}{}: MD18342 $MN_MM_CEC_MAX_POINTS[{}] >= {}\n",
+                  machine_axis(e, table.output), machine_axis(e, line.joint),
+                  direction == 0 ? "" : (direction > 0 ? ", travelling up" : ", travelling down"),
+                  index, line.points);
   for (std::size_t i = 0; i < table.error.size(); ++i) {
-    text += fmt::format("$AN_CEC[{},{}]={}\n", index, i, fixed(-table.error[i] / mm, 6));
+    text += fmt::format("$AN_CEC[{},{}]={}\n", index, i,
+                        fixed(-values(table, direction)[i] / unit, decimals_of(table.output)));
   }
   text += fmt::format("$AN_CEC_INPUT_AXIS[{}]=({})\n", index, machine_axis(e, line.joint));
   text += fmt::format("$AN_CEC_OUTPUT_AXIS[{}]=({})\n", index, machine_axis(e, table.output));
-  text += fmt::format("$AN_CEC_STEP[{}]={}\n", index, shortest(line.spacing / mm));
-  text += fmt::format("$AN_CEC_MIN[{}]={}\n", index, shortest(line.first / mm));
-  text += fmt::format("$AN_CEC_MAX[{}]={}\n", index, shortest(line.entry(line.points - 1) / mm));
-  text += fmt::format("$AN_CEC_DIRECTION[{}]=0\n", index);
+  text += fmt::format("$AN_CEC_STEP[{}]={}\n", index, shortest(line.spacing / place));
+  text += fmt::format("$AN_CEC_MIN[{}]={}\n", index, shortest(line.first / place));
+  text += fmt::format("$AN_CEC_MAX[{}]={}\n", index, shortest(line.entry(line.points - 1) / place));
+  text += fmt::format("$AN_CEC_DIRECTION[{}]={}\n", index, direction);
   text += fmt::format("$AN_CEC_MULT_BY_TABLE[{}]=0\n", index);
-  text += fmt::format("$AN_CEC_IS_MODULO[{}]=0\n", index);
+  text += fmt::format("$AN_CEC_IS_MODULO[{}]={}\n", index, line.wraps ? 1 : 0);
   return text;
 }
 
@@ -181,10 +213,13 @@ std::vector<TextFile> siemens_files(const TableExport& e) {
   std::string encoder, cross;
   int index = 0;
   for (const CompensationTable& table : e.tables) {
-    if (table.output == table.line.joint) {
+    if (table.depends_on_direction()) {  // page 249: two tables, of the same axis, too
+      cross += cross_table(e, table, index, 1) + cross_table(e, table, index + 1, -1);
+      index += 2;
+    } else if (table.output == table.line.joint) {
       encoder += encoder_table(e, table);
     } else {
-      cross += cross_table(e, table, index++);
+      cross += cross_table(e, table, index++, 0);
     }
   }
   std::vector<TextFile> files;
@@ -217,14 +252,20 @@ std::string component_csv(const TableExport& e,
   std::string text =
       fmt::format("{}_{}", e.letter(line.joint), line.joint < kLinearJoints ? "mm" : "deg");
   for (const CompensationTable* table : tables) {
-    text += fmt::format(",{}_{}", to_string(*table->component), table->is_angle() ? "urad" : "um");
+    const char* unit = table->is_angle() ? "urad" : "um";
+    const std::string name = to_string(*table->component);
+    text += table->depends_on_direction() ? fmt::format(",{0}_up_{1},{0}_down_{1}", name, unit)
+                                          : fmt::format(",{}_{}", name, unit);
   }
   text += "\n";
   for (std::size_t i = 0; i < line.points; ++i) {
     text += shortest(line.entry(i) / unit_of(line.joint));
     for (const CompensationTable* table : tables) {
-      text += ',';
-      text += fixed(table->error[i] / (table->is_angle() ? urad : um), 4);
+      for (const int direction : {1, -1}) {
+        if (direction < 0 && !table->depends_on_direction()) continue;
+        text += ',';
+        text += fixed(values(*table, direction)[i] / (table->is_angle() ? urad : um), 4);
+      }
     }
     text += "\n";
   }

@@ -14,6 +14,7 @@ const FormatRules& rules_of(TableFormat format) {
        .power_of_two = false,
        .one_turn = false,
        .wraps = false,
+       .direction = DirectionRule::own,
        .length_step = 1e-6 * mm,
        .angle_step = 1e-8 * deg},
       {.document = "HEIDENHAIN, Technical Manual MANUALplus 620 (2012), pages 716 to 718 (columns "
@@ -24,6 +25,7 @@ const FormatRules& rules_of(TableFormat format) {
        .power_of_two = true,
        .one_turn = true,
        .wraps = true,
+       .direction = DirectionRule::own,
        .length_step = 1e-4 * mm,
        .angle_step = 1e-5 * deg},
       {.document = "Siemens, SINUMERIK 840D sl/828D Function Manual Extended Functions (03/2013), "
@@ -33,6 +35,7 @@ const FormatRules& rules_of(TableFormat format) {
        .power_of_two = false,
        .one_turn = false,
        .wraps = true,
+       .direction = DirectionRule::all,
        .length_step = 1e-6 * mm,
        .angle_step = 1e-8 * deg},
       {.document = "RFC 4180; names of ISO 230-1 and ISO 230-7",
@@ -41,6 +44,7 @@ const FormatRules& rules_of(TableFormat format) {
        .power_of_two = false,
        .one_turn = false,
        .wraps = false,
+       .direction = DirectionRule::all,
        .length_step = 1e-4 * um,
        .angle_step = 1e-4 * urad},
   }};

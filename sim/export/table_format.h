@@ -13,6 +13,10 @@ enum class TableFormat : std::uint8_t { linuxcnc, heidenhain, siemens, csv };
 inline constexpr std::array<std::string_view, 4> kTableFormats = {"linuxcnc", "heidenhain",
                                                                   "siemens", "csv"};
 
+/// Dependence on the direction of travel that a format holds: none of a table over another axis
+/// where only `own`.
+enum class DirectionRule : std::uint8_t { own, all };
+
 struct FormatRules {
   std::string_view document;  // that the format follows
   std::size_t most_points;    // in one table
@@ -20,6 +24,7 @@ struct FormatRules {
   bool power_of_two;          // older controls: spacing 2^n x 0.1 um
   bool one_turn;              // entries of rotary axes lie within 0..360 deg
   bool wraps;                 // the table of an endless axis repeats
+  DirectionRule direction;    // of travel
   double length_step;         // m, last digit written
   double angle_step;          // rad
 };

@@ -21,6 +21,7 @@ tables:
   Y over X: 161 points, 5 mm apart from -400 mm, up to 149.807 um; linear interpolation and rounding leave up to 4.788 um
 not in these tables: nothing
 tip at poses all over the travel, beside that of the reference: off by up to 150.000 um without these tables, 4.788 um with
+verified: 18000 positions, largest difference to the error model 4.7885 um
 written: {folder}/NC_CEC.INI
 """
 
@@ -52,7 +53,7 @@ class Table(unittest.TestCase):
     def test_comment_of_the_file_says_the_same(self):
         servomill(*self.command)
         lines = files_in(self.out)["NC_CEC.INI"].splitlines()
-        said = SAID.splitlines()[:-1]
+        said = SAID.splitlines()[:-2]
         self.assertEqual(lines[2:2 + len(said)], ["; " + line for line in said])
 
     def test_replaces_files_only_by_force(self):

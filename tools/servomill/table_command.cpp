@@ -8,7 +8,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
-#include "sim/export/table_files.h"
+#include "sim/export/verify_tables.h"
 #include "sim/hdf5/system_error.h"
 #include "sim/output_name.h"
 #include "sim/read_errors.h"
@@ -258,10 +258,11 @@ int table_command(const Arguments& arguments) {
   }();
   const auto folder = options.get<std::string>("output");
   const auto files = sim::table_files(tables);
+  const sim::TableVerification verified = sim::verify_tables(tables, files);
   write(files, folder, options.has("force"));
   if (options.has("quiet")) return kDone;
   for (const std::string& line : sim::report(tables)) fmt::print("{}\n", line);
-  fmt::print("written:");
+  fmt::print("{}\nwritten:", to_string(verified));
   for (const sim::TextFile& file : files)
     fmt::print(" {}", (fs::path(folder) / file.name).string());
   fmt::print("\n");

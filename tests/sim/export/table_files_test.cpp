@@ -57,7 +57,7 @@ TEST(TableFiles, Linuxcnc) {
 #   EC0Y  50.000 urad; tip 0.500 um
 # tip at poses all over the travel, beside that of the reference: off by up to 7.257 um without these tables, 7.123 um with
 # each line of a file: nominal position, position reached moving up, moving down
-# units: mm and deg, as LINEAR_UNITS = mm and ANGULAR_UNITS = degree; up and down are equal: the mean of both
+# units: mm and deg, as LINEAR_UNITS = mm and ANGULAR_UNITS = degree; up and down are equal: no positioning depends on the direction of travel
 # joints: X, Y, Z and the rotary axes in alphabetical order; COMP_FILE excludes BACKLASH
 
 [JOINT_0]
@@ -107,7 +107,7 @@ not in these tables, or only on their lines (largest size; what it alone leaves 
   EAX   20.000 urad; tip 0.224 um, tool axis 20.000 urad
 tip at poses all over the travel, beside that of the reference: off by up to 7.257 um without these tables, 0.651 um with
 values: error in mm or deg, positive where the axis travels too far, entered with its sign
-columns: [axis of the column of *.COM] = F([axis of the column of *.CMA]); AXISPOS from the machine datum; BACKLASH stays empty: the values are the mean of both directions
+columns: [axis of the column of *.COM] = F([axis of the column of *.CMA]); AXISPOS from the machine datum; BACKLASH stays empty: no positioning depends on the direction
 these are listings for the table editor of the control: the documents give the columns, not the text of the files
 check the sign with one point before you rely on it
 )");
