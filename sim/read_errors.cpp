@@ -8,6 +8,7 @@
 #include <set>
 
 #include "plant/vocabulary/units.h"
+#include "sim/read_machine.h"
 
 namespace servomill::sim {
 namespace {
@@ -232,6 +233,11 @@ std::map<std::string, plant::ErrorModel> read_error_models(Reader& models,
 std::map<std::string, plant::ErrorModel> read_error_file(const std::string& path,
                                                          const JointLayout& layout) {
   const Document document = Document::from_file(path);
+  if (document.root().find("structure") != nullptr) {  // a machine file, with its own errors
+    MachineDescription described = read_machine_description(path);
+    if (described.machine.chain.layout == layout) return std::move(described.errors);
+    throw InputError({path}, "holds the errors of a machine with other axes");
+  }
   Reader root(document);
   Reader models = root.table("errors");
   auto out = read_error_models(models, layout);

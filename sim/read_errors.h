@@ -18,7 +18,8 @@ plant::ErrorModel read_errors(Reader& model, const JointLayout& layout);
 std::map<std::string, plant::ErrorModel> read_error_models(Reader& models,
                                                            const JointLayout& layout);
 
-/// The models of a file that holds nothing but tables [errors.NAME].
+/// The models of a file that holds nothing but tables [errors.NAME], or of a machine file's own
+/// [errors].
 /// @throws InputError
 std::map<std::string, plant::ErrorModel> read_error_file(const std::string& path,
                                                          const JointLayout& layout);

@@ -12,6 +12,7 @@
 #include "sim/hdf5/system_error.h"
 #include "sim/output_name.h"
 #include "sim/read_errors.h"
+#include "sim/read_machine.h"
 #include "sim/write_file.h"
 #include "tools/servomill/axis_options.h"
 
@@ -23,25 +24,29 @@ namespace fs = std::filesystem;
 
 double unit_of(int joint) { return joint < kLinearJoints ? mm : deg; }
 
-// Machine and error models: a scenario's, or those of --machine and of a file of error models.
+// Machine and error models: a scenario's, or those of --machine and of a file of error models, by
+// default the machine's own.
 struct Inputs {
   sim::MachineSettings machine;
   std::map<std::string, plant::ErrorModel> models;
 };
 
 Inputs read_inputs(const Options& options) {
-  const std::string path = options.word();
   if (!options.has("machine")) {
-    sim::Scenario scenario = sim::read_scenario(path, options.list("set"));
+    sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
     return {std::move(scenario.machine), std::move(scenario.errors)};
   }
-  if (options.has("set")) {
-    throw InputError({"--set"}, "changes a scenario; there is none with --machine");
+  sim::MachineDescription described =
+      sim::read_machine_description(options.get<std::string>("machine"), options.list("set"));
+  Inputs inputs{std::move(described.machine), std::move(described.errors)};
+  if (!options.words().empty()) {
+    inputs.models = sim::read_error_file(options.word(), inputs.machine.chain.layout);
   }
-  Inputs inputs;
-  inputs.machine = sim::read_machine_file(options.get<std::string>("machine"));
-  inputs.models = sim::read_error_file(path, inputs.machine.chain.layout);
   return inputs;
+}
+
+std::string error_file(const Options& options) {
+  return options.words().empty() ? options.get<std::string>("machine") : options.word();
 }
 
 // The error model that --model names; without it the only one there is.
@@ -49,7 +54,7 @@ const plant::ErrorModel& model_of(const Inputs& inputs, const Options& options, 
   std::vector<std::string_view> names;
   for (const auto& [key, model] : inputs.models) names.push_back(key);
   if (names.empty()) {
-    throw InputError({options.word()}, "has no error model; write one as [errors.NAME]");
+    throw InputError({error_file(options)}, "has no error model; write one as [errors.NAME]");
   }
   const std::string there_are = fmt::format("there are {}", fmt::join(names, ", "));
   if (!options.has("model") && names.size() > 1) {
@@ -202,20 +207,23 @@ void write(const std::vector<sim::TextFile>& files, const std::string& folder, b
 
 int table_command(const Arguments& arguments) {
   Options options(
-      "table", "SCENARIO.toml --format linuxcnc|heidenhain|siemens|csv -o FOLDER",
+      "table", "SCENARIO.toml|--machine M.toml --format linuxcnc|heidenhain|siemens|csv -o FOLDER",
       "Writes an error model as compensation tables for a real NC: what corrects each axis over\n"
       "its own position, with heidenhain and siemens also over that of the two other linear axes.\n"
       "A table holds the errors on one line along its axis, and 0 at the reference. What it "
       "cannot\n"
       "hold is listed by its name of ISO 230-1, with what it leaves at the tip. csv holds the\n"
-      "errors themselves. Every format names the document that it follows.",
+      "errors themselves. Every format names the document that it follows. The files are read "
+      "back\n"
+      "by the rules of that document and compared with the error model before they are written.",
       "SCENARIO.toml");
   options.add()("format", po::value<std::string>()->value_name("FORMAT"),
                 "linuxcnc, heidenhain, siemens or csv");
   options.add()("output,o", po::value<std::string>()->value_name("FOLDER"), "folder for the files");
-  options.add()("machine", po::value<std::string>()->value_name("M.toml"),
-                "machine description; the file then need not be a scenario, but holds nothing but "
-                "error models, as tables [errors.NAME]");
+  options.add()(
+      "machine", po::value<std::string>()->value_name("M.toml"),
+      "machine file, which needs structure, travel and errors only; instead of a scenario "
+      "a file of error models [errors.NAME] may be given, or nothing: the machine's own");
   options.add()("model", po::value<std::string>()->value_name("NAME"),
                 "error model; needed if there are several");
   options.add()("axis,a", po::value<std::string>()->default_value("all")->value_name("X,Y"),
@@ -238,7 +246,7 @@ int table_command(const Arguments& arguments) {
   options.add()("comp-file-type", po::value<int>()->value_name("0|1"),
                 "of linuxcnc: 0 positions reached (unless you say so), 1 trims");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
-                "changes a key of the scenario, as for servomill run");
+                "changes a key of the scenario or of the machine file, as for servomill run");
   options.add()("force,f", "replaces files of the same names");
   options.add()("quiet,q", "prints nothing but faults");
   if (!options.parse(arguments)) return kDone;
@@ -253,7 +261,7 @@ int table_command(const Arguments& arguments) {
     try {
       return sim::export_tables(inputs.machine, errors, request);
     } catch (const InputError& error) {  // knows what is wrong, not where
-      throw InputError({options.word()}, error.faults().front().message);
+      throw InputError({error_file(options)}, error.faults().front().message);
     }
   }();
   const auto folder = options.get<std::string>("output");
