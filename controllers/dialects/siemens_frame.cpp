@@ -44,14 +44,20 @@ void SiemensFrame::read_offset() {
   if (context_.rules.offset_rotates) rotation_ = context_.setup.work_rotation[index];
 }
 
+bool SiemensFrame::length_is_in_force() const {
+  if (is_of_machine_ && context_.settings.SUPA_drops_length) return false;
+  return state_.D != 0 && state_.tool != 0;
+}
+
+std::optional<int> SiemensFrame::axis_of_any_length() const {
+  return context_.settings.length_follows_plane ? state_.normal_axis : std::optional<int>(2);
+}
+
 int SiemensFrame::length_axis() const {
-  if (is_of_machine_ && context_.settings.SUPA_drops_length) return -1;
-  if (state_.D == 0 || state_.tool == 0) return -1;
-  if (!context_.settings.length_follows_plane) return 2;
-  if (!state_.normal_axis) {
-    fail("the plane is not known, and with it the axis of the tool length; G17 sets it");
-  }
-  return *state_.normal_axis;
+  if (!length_is_in_force()) return -1;
+  const std::optional<int> axis = axis_of_any_length();
+  if (!axis) fail("the plane is not known, and with it the axis of the tool length; G17 sets it");
+  return *axis;
 }
 
 double SiemensFrame::length(int axis) const {

@@ -14,12 +14,15 @@ class SiemensFrame {
   SiemensFrame(const SiemensState& state, const SiemensBlock& block, const SiemensContext& context);
 
   bool is_of_machine() const { return is_of_machine_; }
+  bool length_is_in_force() const;  // false: D0, no tool, or suppressed; true where D is unknown
   double rotation() const { return rotation_; }  // rad; 0 with SUPA
 
   /// @throw InputError where the offset or the length of the axis is not determined
   double offset(int axis) const { return offset_[axis]; }
   double length(int axis) const;
 
+  /// The axis along which tool lengths act; nullopt: it depends on the plane, which is unknown.
+  std::optional<int> axis_of_any_length() const;
   /// The axis that the length of the tool in force moves; -1: none.
   int length_axis() const;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "controllers/dialects/planar_arc.h"
 #include "controllers/dialects/siemens_frame.h"
 #include "controllers/dialects/siemens_state.h"
 #include "plant/vocabulary/units.h"
@@ -11,13 +12,31 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr double kRadiusMismatch = 5.0 * um;  // of start and end, at output digits
-constexpr double kLeastSweep = 1e-3 * deg;    // below, rounding decides between none and a turn
-constexpr double kSamePoint = 1.0 * nm;       // a tenth of the last digit that programs have
+constexpr double kLeastSweep = 1e-3 * deg;  // below, rounding decides between none and a turn
+constexpr double kSamePoint = 1.0 * nm;     // a tenth of the last digit that programs have
 
 std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
 char name_of(int axis) { return letter(kAllAxes[at(axis)]); }
 bool is_linear_axis(int axis) { return axis < 3; }
+
+// Modes that every motion depends on.
+void check_modes(const SiemensState& state, const SiemensBlock& block,
+                 const SiemensContext& context) {
+  const auto fail = [&](int column, std::string message) {
+    context.fail(block.line, column, std::move(message));
+  };
+  if (!state.motion) fail(block.column, "positions without a known G0, G1, G2 or G3");
+  if (!state.is_cutter_off) {
+    fail(block.column, "the cutter compensation may be on; G40 switches it off");
+  }
+  for (int a = 3; a < kAxisWords; ++a) {
+    const std::optional<SiemensNumber>& word = block.axes[at(a)];
+    if (word && !state.is_transformation_off) {
+      fail(word->column,
+           fmt::format("{}: a transformation may be active; TRAFOOF switches it off", name_of(a)));
+    }
+  }
+}
 
 // One block with positions: program coordinates first, then the machine's.
 class Motion {
@@ -26,7 +45,6 @@ class Motion {
       : state_(state), block_(block), context_(context), frame_(state, block, context) {}
 
   MachineAction run() {
-    check_modes();
     const bool is_arc = *state_.motion >= 2;
     if (is_arc) {
       check_arc_words();
@@ -53,18 +71,6 @@ class Motion {
   [[noreturn]] void fail(std::string message) const { fail(block_.column, std::move(message)); }
 
   bool has(int axis) const { return block_.axes[at(axis)].has_value(); }
-
-  void check_modes() const {
-    if (!state_.motion) fail("positions without a known G0, G1, G2 or G3");
-    if (!state_.is_cutter_off) fail("the cutter compensation may be on; G40 switches it off");
-    for (int a = 3; a < kAxisWords; ++a) {
-      if (has(a) && !state_.is_transformation_off) {
-        fail(
-            block_.axes[at(a)]->column,
-            fmt::format("{}: a transformation may be active; TRAFOOF switches it off", name_of(a)));
-      }
-    }
-  }
 
   void check_line_words() const {
     if (block_.has_centre() || block_.CR || block_.TURN) {
@@ -220,7 +226,7 @@ class Motion {
     const double d = chord.norm();
     if (d < kSamePoint)
       fail(block_.CR->column, "CR with equal start and end: the circle is not determined");
-    if (std::abs(r) < 0.5 * d - kRadiusMismatch) {
+    if (std::abs(r) < 0.5 * d - kMaxRadiusDifference) {
       fail(block_.CR->column,
            fmt::format("CR = {}: start and end are {:.6g} mm apart", block_.CR->value, d / mm));
     }
@@ -230,13 +236,19 @@ class Motion {
     return 0.5 * (start + end) + side * h / d * Eigen::Vector2d(-chord[1], chord[0]);
   }
 
+  Eigen::Vector3d in_space(const Eigen::Vector2d& point) const {
+    Eigen::Vector3d out = Eigen::Vector3d::Zero();
+    out[u_] = point[0];
+    out[v_] = point[1];
+    return out;
+  }
+
   int turns_of(const Eigen::Vector2d& start, const Eigen::Vector2d& end,
                const Eigen::Vector2d& centre, bool is_clockwise) const {
     const Eigen::Vector2d from = start - centre, to = end - centre;
-    if (from.norm() == 0.0) fail("the centre of the arc is its start");
-    if (std::abs(from.norm() - to.norm()) > kRadiusMismatch) {
-      fail(fmt::format("the end of the arc is {:.6g} mm from the centre, its start {:.6g} mm",
-                       to.norm() / mm, from.norm() / mm));
+    if (const auto fault =
+            arc_fault(in_space(start), in_space(end), in_space(centre), 3 - u_ - v_)) {
+      fail(*fault);
     }
     int added = block_.TURN ? static_cast<int>(block_.TURN->value) : 0;
     if (!context_.rules.TURN_adds_turns && added > 0) --added;
@@ -266,7 +278,11 @@ class Motion {
     out_.end = state_.position;
     out_.is_machine_position = frame_.is_of_machine();
     out_.tool = state_.tool.value_or(0);
-    out_.tool_offset = state_.D.value_or(0) == 0 ? 0 : out_.tool;
+    const std::optional<int> length_axis = frame_.axis_of_any_length();
+    if (length_axis && is_used_[at(*length_axis)]) {
+      state_.tool_of_length = frame_.length_is_in_force() ? out_.tool : 0;
+    }
+    out_.tool_offset = state_.tool_of_length;
   }
 
   void set_path() {
@@ -336,6 +352,7 @@ class Motion {
 
 MachineAction siemens_motion(SiemensState& state, const SiemensBlock& block,
                              const SiemensContext& context) {
+  check_modes(state, block, context);
   return Motion(state, block, context).run();
 }
 

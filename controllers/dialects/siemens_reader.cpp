@@ -231,12 +231,11 @@ class Reader {
     if (is_M6 && !state_.selected) fail("M6 without T: the tool is not known");
     if (changes_here) put_tool_in();
     if (changes_here || is_M6) forget_after_change();
+    if (changes_here) add(ActionKind::tool).number = *state_.tool;
   }
 
   void put_tool_in() {
     state_.tool = state_.selected;
-    MachineAction& action = add(ActionKind::tool);
-    action.number = *state_.tool;
     const int D = context_.settings.default_D;
     if (D >= 0) state_.D = D;
     if (block_.D) state_.D = static_cast<int>(block_.D->value);
@@ -284,8 +283,8 @@ class Reader {
     for (const SiemensNumber& M : block_.M) {
       const int number = static_cast<int>(M.value);
       if (is_stop(number)) {
-        add(ActionKind::stop).number = number;
         if (context_.rules.stop_forgets_positions) state_.forget_positions();
+        add(ActionKind::stop).number = number;
       }
       if (is_end(number)) {
         add(ActionKind::end);
@@ -310,6 +309,13 @@ class Reader {
 };
 
 }  // namespace
+
+std::string to_string(const SiemensSettings& settings) {
+  return fmt::format("MD20270={} MD10760={:d} MD22550={:d} SD42940={} {}", settings.default_D,
+                     settings.SUPA_drops_length, !settings.T_changes_tool,
+                     settings.length_follows_plane ? 0 : 17,
+                     settings.M6_is_macro ? "M6 a macro" : "plain M6");
+}
 
 std::vector<SiemensSettings> all_siemens_settings() {
   std::vector<SiemensSettings> out;

@@ -41,6 +41,9 @@ struct SiemensSettings {
   bool length_follows_plane = true;
 };
 
+/// Name of the settings for messages, such as "MD20270=1 MD10760=0 MD22550=1 SD42940=0 plain M6".
+std::string to_string(const SiemensSettings& settings);
+
 /// Every combination whose members differ in meaning: 32.
 std::vector<SiemensSettings> all_siemens_settings();
 

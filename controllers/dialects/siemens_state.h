@@ -45,11 +45,13 @@ struct SiemensState {
   // Offsets that acted when each axis moved last, in machine coordinates; unknown like the
   // position.
   KnownPosition frame_shift, length_shift;
+  int tool_of_length = 0;  // whose length the position of its axis contains; 0: none or unknown
 
   void forget_positions() {
     position = {};
     frame_shift = {};
     length_shift = {};
+    tool_of_length = 0;
   }
 };
 

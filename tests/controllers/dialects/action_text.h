@@ -5,7 +5,8 @@
 ///
 /// Axes that are not commanded but known come in brackets. Further words: `~` each axis of a rapid
 /// at its own rate, `machine` and `home` places of the machine, `F` in mm/min, deg/min, `1/min` or
-/// `/rev`, arcs with normal, centre and turns, `H` the number of the length.
+/// `/rev`, arcs with normal, centre and turns, `H` the number of the length, `P` the tolerance of
+/// corners in mm.
 #pragma once
 
 #include <fmt/format.h>
@@ -67,6 +68,7 @@ inline std::string motion_text(const MachineAction& action) {
     out += fmt::format(" turns {}", action.turns);
   }
   if (action.tool_offset != 0) out += fmt::format(" H{}", action.tool_offset);
+  if (action.path_tolerance) out += " P" + plain_number(*action.path_tolerance / mm);
   if (action.is_path_mode_known && action.path_mode == PathMode::exact_stop) out += " stops";
   return out;
 }

@@ -27,8 +27,7 @@ const std::vector<SiemensExample>& siemens_examples();
 /// X1 Y2 Z3; tool 1 is 50 long, tool 2 80.
 ControlSetup siemens_example_setup();
 
-/// What is expected, as text: the line, the action, commanded axes (mm, deg), other known axes in
-/// parentheses, feed, corners. An InputError becomes its message.
+/// What is expected, as action_text.h writes it. An InputError becomes its message.
 std::vector<std::string> siemens_actions(const SiemensExample& example,
                                          const SiemensSettings& settings,
                                          const SiemensRules& rules = {});

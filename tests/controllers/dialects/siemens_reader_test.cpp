@@ -6,7 +6,7 @@
 #include <set>
 
 #include "plant/vocabulary/input_error.h"
-#include "siemens_examples.h"
+#include "tests/controllers/dialects/siemens_examples.h"
 
 namespace servomill::controllers {
 namespace {
@@ -21,9 +21,7 @@ TEST(SiemensReader, ReadsEveryExampleForEverySettingAsWorkedOut) {
       if (!example.applies(settings)) continue;
       ++read;
       EXPECT_EQ(siemens_actions(example, settings), example.expected)
-          << example.name << ": D " << settings.default_D << ", SUPA drops "
-          << settings.SUPA_drops_length << ", macro " << settings.M6_is_macro << ", T changes "
-          << settings.T_changes_tool << ", plane " << settings.length_follows_plane;
+          << example.name << " with " << to_string(settings);
     }
     EXPECT_GT(read, 0) << example.name;
   }
@@ -32,8 +30,7 @@ TEST(SiemensReader, ReadsEveryExampleForEverySettingAsWorkedOut) {
 TEST(SiemensReader, HasASettingForEveryCombination) {
   std::set<std::string> seen;
   for (const SiemensSettings& s : all_siemens_settings()) {
-    seen.insert(fmt::format("{}{}{}{}{}", s.default_D, s.SUPA_drops_length, s.M6_is_macro,
-                            s.T_changes_tool, s.length_follows_plane));
+    seen.insert(to_string(s));
   }
   EXPECT_EQ(seen.size(), 32U);
   EXPECT_EQ(all_siemens_settings().size(), 32U);
@@ -100,16 +97,17 @@ TEST(SiemensReader, TheSafeFrameMeansTheSameForAllSettings) {
       "",
       "SUPA G0 Z=-5 D0\nT1 M6\nG17 G40 G90 G94 G54\nS1000 M3\nG0 X10 Y10\nG0 Z5 D1\nM8\n"
       "G1 Z-1 F200\nG1 X50\nM9\nSUPA G0 Z=-5 D0\nM5",
-      {"3 rapid Z-5 machine", "4 tool 1", "6 spindle 1 1000", "7 rapid X110 Y210 bent",
-       "8 rapid Z355 (X110 Y210)", "9 coolant 2", "10 feed Z349 (X110 Y210) F200",
-       "11 feed X150 (Y210 Z349) F200", "12 coolant 0", "13 rapid Z-5 (X150 Y210) machine",
-       "14 spindle 0 0"}};
+      {"3 rapid Z-5 machine", "4 tool 1", "6 spindle +1000", "7 rapid X110 Y210 ~",
+       "8 rapid (X110) (Y210) Z355 H1", "9 coolant 2", "10 feed (X110) (Y210) Z349 F200 H1",
+       "11 feed X150 (Y210) (Z349) F200 H1", "12 coolant 0", "13 rapid (X150) (Y210) Z-5 machine",
+       "14 spindle off 0"}};
   for (const SiemensSettings& settings : all_siemens_settings()) {
     if (!settings.M6_is_macro) continue;
     EXPECT_EQ(siemens_actions(frame, settings), frame.expected);
   }
   SiemensExample known = frame;  // without a macro Z is still known after the change
-  known.expected[3] = "7 rapid X110 Y210 (Z-5) bent";
+  known.expected[1] = "4 tool 1 (Z-5)";
+  known.expected[3] = "7 rapid X110 Y210 (Z-5) ~";
   for (const SiemensSettings& settings : all_siemens_settings()) {
     if (settings.M6_is_macro) continue;
     EXPECT_EQ(siemens_actions(known, settings), known.expected);
@@ -130,7 +128,7 @@ TEST(SiemensReader, MotionsCarryToolAndLength) {
   setup.start[0] = 0.001;
   const auto actions = read_siemens(
       "G710 G17 G40 G90 G94 G54\nTRANS\nT1 M6\nG17 G40 G90 G94 G54\nG0 X1 D0\nZ1 D1\nM30", "p.mpf",
-      setup, {});
+      setup, {.M6_is_macro = false});
   ASSERT_EQ(actions.size(), 4U);
   EXPECT_EQ(actions[0].end[0], 0.001);  // the start is known
   EXPECT_EQ(actions[1].tool, 1);
