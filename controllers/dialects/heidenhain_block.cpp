@@ -155,6 +155,12 @@ std::optional<HeidenhainBlock> HeidenhainBlocks::next() {
 
 double heidenhain_number(const HeidenhainWord& word, std::string_view digits,
                          const HeidenhainFormat& format) {
+  if (digits.empty()) throw InputError(word.place, fmt::format("'{}' without a number", word.text));
+  if (digits.find('Q') != std::string_view::npos) {
+    throw InputError(word.place, fmt::format("'{}': Q parameters are not covered by the "
+                                             "verification",
+                                             word.text));
+  }
   if (!is_number(digits, format)) {
     throw InputError(word.place, fmt::format("'{}': '{}' is not a number{}", word.text, digits,
                                              format.has_sign ? "" : " without a sign"));

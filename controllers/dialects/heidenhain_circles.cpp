@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "controllers/dialects/heidenhain_control.h"
+#include "controllers/dialects/planar_arc.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers::heidenhain {
@@ -13,9 +14,6 @@ namespace {
 using Point = std::array<double, 2>;
 
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
-// Largest difference of the radii at both ends. The control takes up to 16 um, selectable ([410]
-// p. 79), so that less is safe on each machine.
-constexpr double kRadiusTolerance = 5.0 * um;
 // An arc so short that rounding could make a full circle of it, or the reverse
 constexpr double kSmallestSweep = 1e-3 * deg;
 
@@ -128,6 +126,15 @@ void Control::move_on_arc(const Positioning& p, KnownPosition end, double sweep)
   move_to(p, end, action);
 }
 
+// The control takes radii that differ by up to 16 um, selectable ([410] p. 79); all take 5 um.
+void Control::check_ends(const Point& start, const Point& end) const {
+  const Point& centre = state_.pole->at;
+  constexpr int kNormal = 2;
+  const auto fault = arc_fault({start[0], start[1], 0.0}, {end[0], end[1], 0.0},
+                               {centre[0], centre[1], 0.0}, kNormal);
+  if (fault) fail(place_, *fault);
+}
+
 // C X+45 Y+25 DR+: about CC, from the position programmed last. Equal ends make a full circle.
 void Control::run_circle(const HeidenhainBlock& block) {
   const Positioning p = read_words(block, 1);
@@ -148,11 +155,7 @@ void Control::run_circle(const HeidenhainBlock& block) {
   }
   const KnownPosition end = targets(p);
   const Point last = {*end[axes[0]], *end[axes[1]]};
-  const double off = std::abs(radius(state_.pole->at, last) - radius(state_.pole->at, start));
-  if (off > kRadiusTolerance) {
-    fail(place_, fmt::format("the ends of the circle differ by {:.4f} mm in radius; at most 0.005",
-                             off / mm));
-  }
+  check_ends(start, last);
   int direction = *p.direction * (rules_.dr_plus_is_counter_clockwise ? 1 : -1);
   if (is_mirrored(0) != is_mirrored(1) && rules_.mirror_reverses_arcs) direction = -direction;
   move_on_arc(p, end, sweep_to(start, last, direction));

@@ -133,6 +133,7 @@ class Control {
   void run_helix(const HeidenhainBlock& block);
   void move_on_arc(const Positioning& p, KnownPosition end, double sweep);
   std::array<double, 2> start_on_plane() const;
+  void check_ends(const std::array<double, 2>& start, const std::array<double, 2>& end) const;
   double sweep_to(const std::array<double, 2>& start, const std::array<double, 2>& end,
                   int direction) const;
   double helix_sweep(const Positioning& p, double start_angle) const;

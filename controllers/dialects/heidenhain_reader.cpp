@@ -56,32 +56,47 @@ void check_number(const HeidenhainBlock& block, bool is_numbered, long expected)
   }
 }
 
+struct Choice {
+  bool HeidenhainSettings::*member;
+  std::string_view name;  // of the other than the usual value
+};
+
+constexpr Choice kChoices[] = {
+    {&HeidenhainSettings::is_rapid_straight, "FMAX by each axis"},
+    {&HeidenhainSettings::is_rotary_display_reduced, "rotary display below 360 deg"},
+    {&HeidenhainSettings::is_shorter_path_usual, "MP7682 bit 2"},
+    {&HeidenhainSettings::is_m136_in_micrometres, "M136 in um"},
+    {&HeidenhainSettings::is_feed_of_all_axes, "F of the linear axes"},
+    {&HeidenhainSettings::is_stop_switching_off, "M0 leaves spindle and coolant on"},
+    {&HeidenhainSettings::is_optional_stop_on, "M1 does not stop"},
+    {&HeidenhainSettings::is_m6_halting, "M6 does not halt"}};
+
 bool is_program_end(const HeidenhainBlock& block) {
   return block.words.size() >= 2 && block.words[0].text == "END" && block.words[1].text == "PGM";
 }
 
 }  // namespace
 
+std::string to_string(const HeidenhainSettings& settings) {
+  std::string text;
+  for (const Choice& choice : kChoices) {
+    if (settings.*choice.member == HeidenhainSettings{}.*choice.member) continue;
+    text += (text.empty() ? "" : ", ") + std::string(choice.name);
+  }
+  return text.empty() ? "usual settings" : text;
+}
+
 std::vector<HeidenhainSettings> all_heidenhain_settings(bool has_tilting) {
   HeidenhainSettings usual;
   usual.has_tilting = has_tilting;
-  constexpr bool HeidenhainSettings::*kChoices[] = {
-      &HeidenhainSettings::is_rapid_straight,      &HeidenhainSettings::is_rotary_display_reduced,
-      &HeidenhainSettings::is_m136_in_micrometres, &HeidenhainSettings::is_feed_of_all_axes,
-      &HeidenhainSettings::is_stop_switching_off,  &HeidenhainSettings::is_optional_stop_on,
-      &HeidenhainSettings::is_m6_halting};
   std::vector<HeidenhainSettings> all{usual};
   HeidenhainSettings every = usual;
-  for (const auto choice : kChoices) {
+  for (const Choice& choice : kChoices) {
     HeidenhainSettings one = usual;
-    one.*choice = !(usual.*choice);
-    every.*choice = !(usual.*choice);
+    one.*choice.member = every.*choice.member = !(usual.*choice.member);
+    one.is_rotary_display_reduced |= one.is_shorter_path_usual;  // acts on a reduced display only
     all.push_back(one);
   }
-  HeidenhainSettings shorter = usual;  // acts on a reduced display only
-  shorter.is_rotary_display_reduced = shorter.is_shorter_path_usual = true;
-  every.is_shorter_path_usual = true;
-  all.push_back(shorter);
   all.push_back(every);
   return all;
 }

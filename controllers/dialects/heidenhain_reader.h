@@ -49,6 +49,9 @@ struct HeidenhainSettings {
   bool is_m6_halting = true;        ///< M6 halts the program: MP7440 bit 0. [306] p. 4-99
 };
 
+/// Where the settings differ from usual ones, for messages: "M1 does not stop, M136 in um".
+std::string to_string(const HeidenhainSettings& settings);
+
 /// Settings to read a program with: a usual control, then each setting changed by itself (their
 /// effects do not meet), then all of them.
 std::vector<HeidenhainSettings> all_heidenhain_settings(bool has_tilting);

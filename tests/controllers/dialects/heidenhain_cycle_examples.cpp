@@ -69,7 +69,7 @@ std::vector<HeidenhainExample> heidenhain_whole_examples() {
        "BEGIN PGM I INCH\r\nTRANS DATUM RESET\r\nCYCL DEF 8.0\r\nCYCL DEF 8.1\r\nCYCL DEF 10.0\r\n"
        "CYCL DEF 10.1 ROT 0\r\nCYCL DEF 11.0\r\nCYCL DEF 11.1 SCL1\r\nTOOL CALL 1 Z S100 DL+1\r\n"
        "M137\r\n\r\nL X+1 Z+0 R0 F100\r\nL X+1.00001 FU0.01\r\nL M2\r\nEND PGM I INCH\r\n",
-       "9 tool 1\n12 feed X225.4 (Y?) Z-24.6 F254\n13 feed X225.4003 (Y?) (Z-24.6) R0.254\n"
+       "9 tool 1\n12 feed X225.4 (Y?) Z-24.6 F254\n13 feed X225.40025 (Y?) (Z-24.6) R0.254\n"
        "14 end 2\n"},
       // The safe frame for five axes: cycles, plane and M128 off, retract, tool, approach
       {"safe frame",

@@ -2,18 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <sstream>
 
+#include "action_text.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
 namespace {
-
-std::string number(double value) {
-  const double rounded = std::round(value * 1e4) / 1e4;
-  return fmt::format("{:.10g}", rounded == 0.0 ? 0.0 : rounded);
-}
 
 double unit_of(int axis) { return axis < 3 ? mm : deg; }
 
@@ -23,7 +18,7 @@ std::string axes(const MachineAction& action) {
     const auto i = static_cast<std::size_t>(axis);
     const bool is_commanded = action.is_commanded[i];
     if (axis >= 3 && !is_commanded && !action.end[i]) continue;
-    const std::string value = action.end[i] ? number(*action.end[i] / unit_of(axis)) : "?";
+    const std::string value = action.end[i] ? plain_number(*action.end[i] / unit_of(axis)) : "?";
     const std::string word = letter(kAllAxes[i]) + value;
     text += is_commanded ? " " + word : " (" + word + ")";
   }
@@ -35,18 +30,18 @@ std::string feed(const MachineAction& action) {
   for (std::size_t i = 0; i < 3; ++i) is_linear = is_linear || action.is_commanded[i];
   switch (action.feed_mode) {
     case FeedMode::units_per_minute:
-      return " F" + number(action.feed / (is_linear ? mm_per_min : deg_per_min));
+      return " F" + plain_number(action.feed / (is_linear ? mm_per_min : deg_per_min));
     case FeedMode::inverse_time:
-      return " T" + number(1.0 / action.feed);
+      return " T" + plain_number(1.0 / action.feed);
     case FeedMode::units_per_revolution:
-      return " R" + number(action.feed / mm);
+      return " R" + plain_number(action.feed / mm);
   }
   return "";
 }
 
 std::string path_mode(const MachineAction& action) {
   if (!action.is_path_mode_known) return "";
-  return action.path_tolerance ? " tolerance " + number(*action.path_tolerance / mm)
+  return action.path_tolerance ? " tolerance " + plain_number(*action.path_tolerance / mm)
                                : " tolerance of the machine";
 }
 
@@ -55,7 +50,7 @@ std::string centre(const MachineAction& action) {
   for (int axis = 0; axis < 3; ++axis) {
     if (axis == action.normal_axis) continue;
     text += fmt::format(" {}{}", letter(kAllAxes[static_cast<std::size_t>(axis)]),
-                        number(action.centre[axis] / mm));
+                        plain_number(action.centre[axis] / mm));
   }
   return text + fmt::format(" turns {}", action.turns);
 }
@@ -73,11 +68,11 @@ std::string told(const MachineAction& action) {
     case ActionKind::arc:
       return "arc" + axes(action) + centre(action) + feed(action) + path_mode(action);
     case ActionKind::dwell:
-      return "dwell " + number(action.value);
+      return "dwell " + plain_number(action.value);
     case ActionKind::tool:
       return fmt::format("tool {}", action.number);
     case ActionKind::spindle:
-      return fmt::format("spindle {} S{}", action.direction, number(action.value / rpm));
+      return fmt::format("spindle {} S{}", action.direction, plain_number(action.value / rpm));
     case ActionKind::coolant:
       return fmt::format("coolant {}", action.number);
     case ActionKind::stop:

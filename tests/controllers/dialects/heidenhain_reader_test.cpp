@@ -108,7 +108,10 @@ TEST(HeidenhainReader, ExamplesNoticeEveryWrongRule) {
 // Each setting is changed by itself, so that none hides what another does.
 TEST(HeidenhainReader, SettingsDifferInOneEach) {
   const auto all = all_heidenhain_settings(true);
-  EXPECT_EQ(all.size(), 10u);
+  ASSERT_EQ(all.size(), 10u);
+  EXPECT_EQ(to_string(all[0]), "usual settings");
+  EXPECT_EQ(to_string(all[3]), "rotary display below 360 deg, MP7682 bit 2");
+  EXPECT_EQ(to_string(all[8]), "M6 does not halt");
   for (const auto& settings : all) EXPECT_TRUE(settings.has_tilting);
   EXPECT_TRUE(all.front().is_rapid_straight);
   EXPECT_FALSE(all.back().is_rapid_straight);
