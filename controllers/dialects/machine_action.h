@@ -58,6 +58,8 @@ struct MachineAction {
   double value = 0.0;   // dwell: s; spindle: rad/s
   int number = 0;
   int direction = 0;  // spindle: 1 clockwise (M3), -1 (M4), 0 off (M5)
+
+  bool operator==(const MachineAction&) const = default;
 };
 
 /// What the operator has entered in the control, and the position at the start as far as known.

@@ -1,0 +1,62 @@
+#include "sim/verification/readings.h"
+
+#include <fmt/format.h>
+
+#include "controllers/dialects/fanuc_reader.h"
+#include "controllers/dialects/heidenhain_reader.h"
+#include "controllers/dialects/siemens_reader.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim {
+namespace {
+
+const std::string kFile = "written";
+
+std::vector<Reading> fanuc_readings(const std::string& text, const controllers::ControlSetup& setup,
+                                    double resolution) {
+  std::vector<Reading> out;
+  const bool needs_IS_C = resolution < 0.99 * um;
+  for (const controllers::FanucSettings& one : controllers::all_fanuc_settings()) {
+    if (needs_IS_C && !one.is_IS_C) continue;
+    out.push_back({controllers::to_string(one),
+                   [&text, &setup, one] { return read_fanuc(text, kFile, setup, one); }});
+  }
+  return out;
+}
+
+std::vector<Reading> siemens_readings(const std::string& text,
+                                      const controllers::ControlSetup& setup) {
+  std::vector<Reading> out;
+  for (const controllers::SiemensSettings& one : controllers::all_siemens_settings()) {
+    out.push_back(
+        {fmt::format("MD20270={} MD10760={:d} M6 {} MD22550={:d} SD42940={:d}", one.default_D,
+                     one.SUPA_drops_length, one.M6_is_macro ? "a macro" : "no macro",
+                     !one.T_changes_tool, !one.length_follows_plane),
+         [&text, &setup, one] { return read_siemens(text, kFile, setup, one); }});
+  }
+  return out;
+}
+
+std::vector<Reading> heidenhain_readings(const std::string& text,
+                                         const controllers::ControlSetup& setup,
+                                         bool has_rotary_axes) {
+  std::vector<Reading> out;
+  for (const controllers::HeidenhainSettings& one :
+       controllers::all_heidenhain_settings(has_rotary_axes)) {
+    out.push_back({fmt::format("control {}", out.size() + 1),
+                   [&text, &setup, one] { return read_heidenhain(text, kFile, setup, one); }});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Reading> readings_of(const std::string& text, Dialect dialect,
+                                 const controllers::ControlSetup& setup, double resolution,
+                                 bool has_rotary_axes) {
+  if (dialect == Dialect::fanuc) return fanuc_readings(text, setup, resolution);
+  if (dialect == Dialect::siemens) return siemens_readings(text, setup);
+  return heidenhain_readings(text, setup, has_rotary_axes);
+}
+
+}  // namespace servomill::sim

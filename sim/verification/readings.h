@@ -1,0 +1,25 @@
+/// A written program under every setting of its control that could change its effect.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "controllers/dialects/machine_action.h"
+#include "sim/compensate/compensate.h"
+
+namespace servomill::sim {
+
+struct Reading {
+  std::string settings;  // for messages
+  std::function<std::vector<controllers::MachineAction>()> read;
+};
+
+/// @param text, setup  must outlive the readings
+/// @param resolution   m; Fanuc: below 1 um only controls with IS-C come into question
+/// @pre dialect is not linuxcnc
+std::vector<Reading> readings_of(const std::string& text, Dialect dialect,
+                                 const controllers::ControlSetup& setup, double resolution,
+                                 bool has_rotary_axes);
+
+}  // namespace servomill::sim
