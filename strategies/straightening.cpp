@@ -7,14 +7,22 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kDefinitions = {"joint_interpolation", "posted_location"};
 
-const std::array<ParameterSpec, 3>& specs() {
-  static const std::array<ParameterSpec, 3> kSpecs = {{
+constexpr std::array<std::string_view, 2> kFrames = {"machine", "workpiece"};
+
+const std::array<ParameterSpec, 4>& specs() {
+  static const std::array<ParameterSpec, 4> kSpecs = {{
       {.name = "definition",
        .help = "error of the tip while joints go linearly, or of posts of locations between "
                "against the line of the joints",
        .default_text = "joint_interpolation",
        .is_number = false,
        .words = kDefinitions},
+      {.name = "amplitude",
+       .help = "frame in which the error halfway gives the amplitude of the model; the machine as "
+               "published",
+       .default_text = "machine",
+       .is_number = false,
+       .words = kFrames},
       {.name = "tolerance_um",
        .help = "lines whose error is smaller by the model are left as they are",
        .unit = "um",
@@ -95,6 +103,7 @@ class Inserter {
 struct ErrorModelParams {
   plant::ErrorShape shape = plant::ErrorShape::harmonic;
   plant::NonlinearError definition = plant::NonlinearError::joint_interpolation;
+  plant::ErrorFrame frame = plant::ErrorFrame::machine;
   double tolerance = 0.0;  // m
   double spacing = 0.0;    // m
 };
@@ -110,7 +119,7 @@ class ErrorModelStrategy final : public Strategy {
     return with_points(moves, belief_, [&](const Joints& Q_0, const Joints& Q_1) {
       const plant::PostedSegment segment(inverse_, belief_.p_ST, Q_0, Q_1);
       auto points = segment.compensated_points(params_.definition, params_.shape, params_.tolerance,
-                                               params_.spacing);
+                                               params_.spacing, params_.frame);
       if (!points) throw InputError(Place{}, "the axes cannot reach a location on the way");
       return *std::move(points);
     });
@@ -145,6 +154,14 @@ std::unique_ptr<Strategy> make_error_model(plant::ErrorShape shape, const Parame
   params.definition = p.word("definition") == kDefinitions[0]
                           ? plant::NonlinearError::joint_interpolation
                           : plant::NonlinearError::posted_location;
+  params.frame =
+      p.word("amplitude") == kFrames[0] ? plant::ErrorFrame::machine : plant::ErrorFrame::workpiece;
+  if (params.frame == plant::ErrorFrame::workpiece &&
+      params.definition == plant::NonlinearError::posted_location) {
+    throw InputError({},
+                     "amplitude = \"workpiece\" needs definition = \"joint_interpolation\": "
+                     "posted locations are compared in the machine");
+  }
   params.tolerance = p.number("tolerance_um");
   params.spacing = p.number("spacing_mm");
   return std::make_unique<ErrorModelStrategy>(belief, params);

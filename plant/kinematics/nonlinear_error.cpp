@@ -62,21 +62,26 @@ std::optional<Joints> PostedSegment::joints(NonlinearError definition, double t)
   return posted(*inverse_, p_ST_, location, linear(t));
 }
 
-std::optional<Eigen::Vector3d> PostedSegment::error(NonlinearError definition, double t) const {
+std::optional<Eigen::Vector3d> PostedSegment::error(NonlinearError definition, double t,
+                                                    ErrorFrame frame) const {
   const auto Q = joints(definition, t);
   if (!Q) return {};
-  if (definition == NonlinearError::joint_interpolation) {
+  if (definition == NonlinearError::posted_location) return (*Q - linear(t)).head<3>();
+  if (frame == ErrorFrame::workpiece) {
     return forward(inverse_->chain(), *Q, p_ST_).p_WT - at(t).P;
   }
-  return (*Q - linear(t)).head<3>();
+  const auto onto_chord = inverse_fixed_rotary(inverse_->chain(), at(t).P, *Q, p_ST_);
+  if (!onto_chord) return {};
+  return (*Q - *onto_chord).head<3>();
 }
 
 std::optional<Joints> PostedSegment::compensated(NonlinearError definition, ErrorShape shape,
-                                                 const Eigen::Vector3d& amplitude, double t) const {
+                                                 const Eigen::Vector3d& amplitude, double t,
+                                                 ErrorFrame frame) const {
   auto Q = joints(definition, t);
   if (!Q) return {};
   const Eigen::Vector3d eps = amplitude * shape_at(shape, t);
-  if (definition == NonlinearError::posted_location) {
+  if (definition == NonlinearError::posted_location || frame == ErrorFrame::machine) {
     Q->head<3>() -= eps;
     return Q;
   }
@@ -87,16 +92,17 @@ std::optional<Joints> PostedSegment::compensated(NonlinearError definition, Erro
 std::optional<std::vector<PathPoint>> PostedSegment::compensated_points(NonlinearError definition,
                                                                         ErrorShape shape,
                                                                         double tolerance,
-                                                                        double spacing) const {
+                                                                        double spacing,
+                                                                        ErrorFrame frame) const {
   assert(spacing > 0.0);
-  const auto amplitude = error(definition, 0.5);
+  const auto amplitude = error(definition, 0.5, frame);
   if (!amplitude) return {};
   std::vector<PathPoint> points;
   if (amplitude->norm() > tolerance) {
     const double intervals = std::max(length(), 2.0 * amplitude->norm()) / spacing;
     for (double n = 1.0; n < intervals - kSameLength; n += 1.0) {
       const double t = n / intervals;
-      const auto Q = compensated(definition, shape, *amplitude, t);
+      const auto Q = compensated(definition, shape, *amplitude, t, frame);
       if (!Q) return {};
       points.push_back({t, *Q});
     }
@@ -106,14 +112,15 @@ std::optional<std::vector<PathPoint>> PostedSegment::compensated_points(Nonlinea
 }
 
 std::optional<NonlinearPeaks> nonlinear_peaks(const PostedSegment& segment,
-                                              NonlinearError definition, int intervals) {
-  const auto a = segment.error(definition, 0.5);
+                                              NonlinearError definition, ErrorFrame frame,
+                                              int intervals) {
+  const auto a = segment.error(definition, 0.5, frame);
   if (!a) return {};
   NonlinearPeaks peaks;
   peaks.middle = a->norm();
   for (int n = 0; n <= intervals; ++n) {
     const double t = static_cast<double>(n) / intervals;
-    const auto e = segment.error(definition, t);
+    const auto e = segment.error(definition, t, frame);
     if (!e) return {};
     const auto left = [&](ErrorShape shape) { return (*e - *a * shape_at(shape, t)).norm(); };
     peaks.error = std::max(peaks.error, e->norm());

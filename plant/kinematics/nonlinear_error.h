@@ -6,21 +6,23 @@
 /// which the paper does not keep apart:
 ///
 ///   joint_interpolation   The joints move linearly from S_0 to S_1. Error: the tip minus the point
-///                         of the chord P_0 P_1 at the same t, in the workpiece.
+///                         of the chord P_0 P_1 at the same t; or, of the same length, where the
+///                         linear axes are minus where they would bring the tip onto it.
 ///   posted_location       P and U are interpolated linearly and posted. Error: the linear joints
-///   of
-///                         the post minus the point of the line S_0 S_1 at the same t, in the
+///                         of the post minus the point of the line S_0 S_1 at the same t, in the
 ///                         machine (equation 3.3).
 ///
 /// Models of the error e(t) with a = e(1/2), t in [0, 1] (eps of equation 3.4):
 ///
 ///   harmonic    eps(t) = a sin(pi t)         (equation 3.3)
 ///   parabolic   eps(t) = 4 a t (1 - t)       e has a constant second derivative to leading order,
-///   so
-///                                            this is what the sine stands for
+///                                            so this is what the sine stands for
 ///
 /// Compensation takes eps away from the interpolated points (equation 3.4). With
-/// joint_interpolation the tip then keeps to the chord. With posted_location, as published, the
+/// joint_interpolation the tip then keeps to the chord. Its amplitude is taken in the machine, as
+/// equation 3.3 does. Of the paper's locations a parabola then leaves half as much as with that in
+/// the workpiece (example 1: 0.53 instead of 1.05 % of the peak); of others it may leave more.
+/// With posted_location, as published, the
 /// posts come to the line between S_0 and S_1: that is where the machine goes of itself, and the
 /// tip is as far from the chord as without.
 #pragma once
@@ -34,6 +36,10 @@ namespace servomill::plant {
 
 enum class NonlinearError : std::uint8_t { joint_interpolation, posted_location };
 enum class ErrorShape : std::uint8_t { harmonic, parabolic };
+
+/// Where the vector e of joint_interpolation is expressed, and with it the amplitude of a model.
+/// |e| is the same in both. An error by posted_location is always one of the machine.
+enum class ErrorFrame : std::uint8_t { machine, workpiece };
 
 /// Tip and tool axis as a CAM system gives them. The length of U does not matter for the post; it
 /// does a little for locations between.
@@ -68,21 +74,23 @@ class PostedSegment {
   std::optional<Joints> joints(NonlinearError definition, double t) const;
 
   /// e(t) (3; m).
-  std::optional<Eigen::Vector3d> error(NonlinearError definition, double t) const;
+  std::optional<Eigen::Vector3d> error(NonlinearError definition, double t,
+                                       ErrorFrame frame = ErrorFrame::machine) const;
 
   /// Joints with e - eps in place of e.
-  /// @param amplitude  a (3; m)
+  /// @param amplitude  a (3; m), in the frame
   std::optional<Joints> compensated(NonlinearError definition, ErrorShape shape,
-                                    const Eigen::Vector3d& amplitude, double t) const;
+                                    const Eigen::Vector3d& amplitude, double t,
+                                    ErrorFrame frame = ErrorFrame::machine) const;
 
   /// Points of the segment, behind its start, that are compensated with a model. Only the end if
   /// the largest error of the model, |a|, does not exceed the tolerance; else one every `spacing`
   /// of the chord, counted from the start, and the end. Where the tip stands nearly still, the way
   /// that the error takes it, 2 |a|, is divided instead.
   /// @return nullopt if a point cannot be reached
-  std::optional<std::vector<PathPoint>> compensated_points(NonlinearError definition,
-                                                           ErrorShape shape, double tolerance,
-                                                           double spacing) const;
+  std::optional<std::vector<PathPoint>> compensated_points(
+      NonlinearError definition, ErrorShape shape, double tolerance, double spacing,
+      ErrorFrame frame = ErrorFrame::machine) const;
 
  private:
   CutterLocation at(double t) const;
@@ -104,6 +112,8 @@ struct NonlinearPeaks {
 
 /// @return nullopt if a location between cannot be posted
 std::optional<NonlinearPeaks> nonlinear_peaks(const PostedSegment& segment,
-                                              NonlinearError definition, int intervals = 1000);
+                                              NonlinearError definition,
+                                              ErrorFrame frame = ErrorFrame::machine,
+                                              int intervals = 1000);
 
 }  // namespace servomill::plant

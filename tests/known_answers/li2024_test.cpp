@@ -17,6 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 using plant::CutterLocation;
+using plant::ErrorFrame;
 using plant::ErrorShape;
 using plant::NonlinearError;
 using plant::NonlinearPeaks;
@@ -58,9 +59,10 @@ const CutterLocation kExample1[2] = {
     {Vector3d(-191.4057, 13.5159, 7.9093) * mm, {0.006393, -0.068922, 0.99960}}};
 
 NonlinearPeaks peaks_of(const plant::InverseKinematics& inverse, const CutterLocation& from,
-                        const CutterLocation& to, NonlinearError definition) {
+                        const CutterLocation& to, NonlinearError definition,
+                        ErrorFrame frame = ErrorFrame::machine) {
   const auto segment = PostedSegment::post(inverse, kNoTool, from, to, Joints::Zero());
-  return *nonlinear_peaks(*segment, definition);
+  return *nonlinear_peaks(*segment, definition, frame);
 }
 
 // The largest of each over the 19 segments; residuals as shares of the segment's own peak.
@@ -160,8 +162,112 @@ TEST(Li2024, Example1WithJointInterpolation) {
   const NonlinearPeaks peaks =
       peaks_of(machine(Vector3d::Zero()), kExample1[0], kExample1[1], kJoint);
   EXPECT_NEAR(peaks.error / mm, 0.156, 0.0005);
+  EXPECT_NEAR(peaks.harmonic / peaks.error, 0.0565, 0.0005);
+  EXPECT_NEAR(peaks.parabolic / peaks.error, 0.0053, 0.0001);
+}
+
+TEST(Li2024, Example1WithAmplitudesOfTheWorkpieceLeavesTwiceAsMuchOfTheParabola) {
+  const NonlinearPeaks peaks = peaks_of(machine(Vector3d::Zero()), kExample1[0], kExample1[1],
+                                        kJoint, ErrorFrame::workpiece);
+  EXPECT_NEAR(peaks.error / mm, 0.156, 0.0005);
   EXPECT_NEAR(peaks.harmonic / peaks.error, 0.057, 0.0005);
-  EXPECT_NEAR(peaks.parabolic / peaks.error, 0.010, 0.0006);
+  EXPECT_NEAR(peaks.parabolic / peaks.error, 0.0105, 0.0001);
+}
+
+// ---- example 1 with u_x of the first location identified ----
+//
+// The printed U_0 is 0.99995 long, farther from 1 than its digits allow; u_x has one digit fewer
+// than its neighbours. A unit vector has u_x = 0.0117 +- 0.0005.
+
+CutterLocation corrected_from(double u_x) {
+  return {kExample1[0].P, {u_x, kExample1[0].U[1], kExample1[0].U[2]}};
+}
+const CutterLocation kCorrectedTo = {kExample1[1].P, {0.006393, -0.068922, 0.9976}};
+
+// Linear axes of the paper's machine that bring the tip to P, from its equations.
+Vector3d axes_of(const Vector3d& P, double A, double C, const Vector3d& m) {
+  const Vector3d d = P - m;
+  const double turned = std::sin(C) * d[0] + std::cos(C) * d[1];
+  return m + Vector3d(std::cos(C) * d[0] - std::sin(C) * d[1],
+                      std::cos(A) * turned - std::sin(A) * d[2],
+                      std::sin(A) * turned + std::cos(A) * d[2]);
+}
+
+// Joint interpolation in the machine, by the paper's equations alone: the linear axes, going
+// linearly, minus where they would bring the tip onto the chord (mm).
+struct ByHand {
+  Vector3d m, S_0, S_1;
+  double A_0, C_0, A_1, C_1;
+  CutterLocation from, to;
+
+  ByHand(const CutterLocation& first, const CutterLocation& second, const Vector3d& centre)
+      : m(centre), from(first), to(second) {
+    const auto angles = [](const Vector3d& u) {
+      return std::pair(std::atan2(std::hypot(u[0], u[1]), u[2]), std::atan2(u[0], u[1]));
+    };
+    std::tie(A_0, C_0) = angles(from.U);
+    std::tie(A_1, C_1) = angles(to.U);
+    S_0 = axes_of(from.P, A_0, C_0, m);
+    S_1 = axes_of(to.P, A_1, C_1, m);
+  }
+
+  Vector3d error(double t) const {
+    const Vector3d onto_chord =
+        axes_of(from.P + t * (to.P - from.P), A_0 + t * (A_1 - A_0), C_0 + t * (C_1 - C_0), m);
+    return (S_0 + t * (S_1 - S_0) - onto_chord) / mm;
+  }
+  double off_the_line(double t) const { return error(t).cross((S_1 - S_0).normalized()).norm(); }
+};
+
+TEST(Li2024, PrintedFirstAxisIsNoUnitVectorAndTheIdentifiedOneIs) {
+  const double half_digit = 0.5e-5 * 0.99927 + 0.5e-6 * 0.036377;  // of the length, by u_z and u_y
+  EXPECT_GT(1.0 - kExample1[0].U.norm(), 5.0 * half_digit);
+  EXPECT_LT(std::abs(1.0 - corrected_from(0.0113).U.norm()), half_digit);
+}
+
+TEST(Li2024, Table31FollowsFromTheIdentifiedAxisAboutTheZeroOfThePart) {
+  const CutterLocation from = corrected_from(0.0113);
+  const plant::InverseKinematics inverse = machine(Vector3d::Zero());
+  const NonlinearPeaks peaks = peaks_of(inverse, from, kCorrectedTo, kJoint);
+  EXPECT_NEAR(peaks.error / mm, 0.9739, 0.00005);
+  const ByHand by_hand(from, kCorrectedTo, Vector3d::Zero());
+  Joints near = Joints::Zero();  // the solution A >= 0 that the paper takes
+  near.tail<2>() << by_hand.A_0, by_hand.C_0;
+  const auto segment = PostedSegment::post(inverse, kNoTool, from, kCorrectedTo, near);
+  const Table31 table = table_3_1();
+  double squares = 0.0;
+  for (std::size_t k = 0; k < table.t.size(); ++k) {
+    const Vector3d e = *segment->error(kJoint, table.t[k]) / mm;
+    EXPECT_LT((e - by_hand.error(table.t[k])).norm(), 1e-9);
+    const Vector3d in_workpiece = *segment->error(kJoint, table.t[k], ErrorFrame::workpiece) / mm;
+    EXPECT_NEAR(e.norm(), in_workpiece.norm(), 1e-9);
+    squares += std::pow(e.norm() - table.error[k], 2);
+  }
+  EXPECT_NEAR(std::sqrt(squares / 23.0), 0.77e-3, 0.005e-3);  // mm
+}
+
+TEST(Li2024, Table31FollowsToThePrintedDigitWithAnIdentifiedCentre) {
+  const ByHand by_hand(corrected_from(0.01130455), kCorrectedTo, {0.0, 0.0, -55.2 * mm});
+  const Table31 table = table_3_1();
+  for (std::size_t k = 0; k < table.t.size(); ++k) {
+    EXPECT_LT(std::abs(by_hand.off_the_line(table.t[k]) - table.error[k]), 0.5e-4) << k + 1;
+  }
+}
+
+TEST(Li2024, AParabolaLeavesLessInTheMachineOnEverySegmentOfTable32) {
+  const auto locations = table_3_2();
+  const plant::InverseKinematics inverse = machine(Vector3d::Zero());
+  double machine_frame = 0.0, workpiece_frame = 0.0;
+  for (std::size_t i = 1; i < locations.size(); ++i) {
+    const auto left = [&](ErrorFrame frame) {
+      const auto peaks = peaks_of(inverse, locations[i - 1], locations[i], kJoint, frame);
+      return peaks.parabolic / peaks.error;
+    };
+    machine_frame = std::max(machine_frame, left(ErrorFrame::machine));
+    workpiece_frame = std::max(workpiece_frame, left(ErrorFrame::workpiece));
+  }
+  EXPECT_NEAR(machine_frame, 0.00093, 0.00001);
+  EXPECT_NEAR(workpiece_frame, 0.00151, 0.00001);
 }
 
 TEST(Li2024, Example1WithPostedLocations) {

@@ -52,11 +52,15 @@ struct Line {
 };
 
 std::vector<Move> rewritten(const Line& line, const char* strategy, const char* key = "",
-                            double value = 0.0, const char* definition = "") {
+                            double value = 0.0, const char* definition = "",
+                            const char* amplitude = "machine") {
   const Entry& entry = *find(strategy);
   Parameters parameters = default_parameters(entry);
   if (*key != '\0') parameters.set(key, value);
   if (*definition != '\0') parameters.set("definition", std::string_view(definition));
+  if (std::string_view(strategy) != "exact") {
+    parameters.set("amplitude", std::string_view(amplitude));
+  }
   return entry.make(parameters, Sign::correct, line.belief)->rewrite({line.move});
 }
 
@@ -68,6 +72,48 @@ TEST(Straightening, HarmonicLeavesASeventeenthParabolicMuchLess) {
   const double parabolic = line.bend(rewritten(line, "parabolic")) / bend;
   EXPECT_NEAR(harmonic, 0.056, 0.001);  // sin(pi t) against 4 t (1 - t)
   EXPECT_LT(parabolic, 0.003);
+}
+
+// Where the linear axes of a block are beside the line, over 4 t (1 - t): the amplitude at its end.
+Eigen::Vector3d amplitude_at(const Line& line, const Move& block) {
+  const double t = (block.s_end - line.move.s_begin) / (line.move.s_end - line.move.s_begin);
+  const Joints Q = line.belief.layout.joints(block.end_machine);
+  const Joints straight = line.Q_0 + t * (line.Q_1 - line.Q_0);
+  return (straight - Q).head<3>() / (4.0 * t * (1.0 - t));
+}
+
+TEST(Straightening, AmplitudeOfTheMachineIsTheSameForAllPointsOfALine) {
+  const Line line;
+  const auto change = [&](const char* amplitude) {
+    const auto blocks = rewritten(line, "parabolic", "spacing_mm", 0.1 * mm, "", amplitude);
+    const Eigen::Vector3d first = amplitude_at(line, blocks.front());
+    const Eigen::Vector3d last = amplitude_at(line, blocks[blocks.size() - 2]);
+    return (last - first).norm() / first.norm();
+  };
+  EXPECT_LT(change("machine"), 1e-6);
+  EXPECT_GT(change("workpiece"), 0.05);  // turned with the tables, by 5 deg
+}
+
+TEST(Straightening, WhichFrameLeavesLessDependsOnTheLine) {
+  const Line line;  // as large tilts go; of the paper's locations the machine leaves half as much
+  const double bend = line.bend({line.move});
+  const auto left = [&](const char* amplitude) {
+    return line.bend(rewritten(line, "parabolic", "spacing_mm", 0.01 * mm, "", amplitude)) / bend;
+  };
+  EXPECT_NEAR(left("machine"), 0.0076, 0.0002);
+  EXPECT_NEAR(left("workpiece"), 0.0055, 0.0002);
+}
+
+TEST(Straightening, RefusesAnAmplitudeOfTheWorkpieceForPostedLocations) {
+  try {
+    rewritten(Line(), "harmonic", "", 0.0, "posted_location", "workpiece");
+    FAIL() << "was not refused";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "<input>: error: amplitude = \"workpiece\" needs definition = \"joint_interpolation\": "
+        "posted locations are compared in the machine");
+  }
 }
 
 TEST(Straightening, ExactKeepsItsTolerance) {
