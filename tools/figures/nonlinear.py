@@ -38,12 +38,12 @@ class Segments:
         self.post_exact = self.at(self.exact, "ref_linear")
         self.straight = self.at(self.plain, "ref_linear")
 
-    def at(self, case, name):
-        """Columns X, Y, Z of a dataset at the common places."""
+    def at(self, case, name, axes="XYZ"):
+        """Columns of a dataset at the common places."""
         rows = case.samples()
         s, first = np.unique(case.column("s")[rows], return_index=True)
         rows = rows[first]
-        return np.column_stack([np.interp(self.s, s, case.column(name, axis)[rows]) for axis in "XYZ"])
+        return np.column_stack([np.interp(self.s, s, case.column(name, axis)[rows]) for axis in axes])
 
     def tip_error(self, case):
         """um, vectors."""
@@ -62,6 +62,28 @@ class Segments:
         """Way of the straight tip since the segment's begin, mm."""
         tip = self.tip_exact[places]
         return np.linalg.norm(tip - tip[0], axis=1)
+
+    def off_the_chord(self):
+        """(way along its chord (mm), tip of the case without strategy off the chord at equal t (um, vectors)) of the
+        segment with the largest error; needs no other case."""
+        places = self.longest_error()
+        tip, s = self.at(self.plain, "tool_position_true")[places], self.s[places]
+        t = (s - s[0]) / (s[-1] - s[0])
+        chord = tip[-1] - tip[0]
+        return t * np.linalg.norm(chord), (tip - tip[0] - np.outer(t, chord)) * UM_PER_MM
+
+    def off_the_line(self):
+        """The same error where the axes are, perpendicular to the line between the posts: (way along the chord (mm), um).
+        Turned into the machine by the equations of the paper for its tables A and C."""
+        places = self.longest_error()
+        way, error = self.off_the_chord()
+        A, C = np.radians(self.at(self.plain, "ref_rotary", "AC")[places]).T
+        turned = np.sin(C) * error[:, 0] + np.cos(C) * error[:, 1]
+        axes = np.column_stack([np.cos(C) * error[:, 0] - np.sin(C) * error[:, 1],
+                                np.cos(A) * turned - np.sin(A) * error[:, 2],
+                                np.sin(A) * turned + np.cos(A) * error[:, 2]])
+        line = self.straight[places][-1] - self.straight[places][0]
+        return way, np.linalg.norm(np.cross(axes, line / np.linalg.norm(line)), axis=1)
 
 
 def _models(way, error):

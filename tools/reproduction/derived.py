@@ -10,7 +10,8 @@ import numpy as np
 from figures import experiment2, nonlinear, probed_points, results as files, straightness
 from figures.results import NotInFile
 
-TABLE31 = pathlib.Path(__file__).resolve().parents[2] / "scenarios" / "li2024" / "table31.csv"
+SCENARIOS = pathlib.Path(__file__).resolve().parents[2] / "scenarios"
+TABLE31 = SCENARIOS / "li2024" / "table31.csv"
 
 
 def scenario_key(results, run, key, unit=""):
@@ -81,6 +82,42 @@ def volumetric_error(results, run, case):
     if one is None or not one.has("imposed_linear"):
         raise NotInFile(f"{run} holds no imposed displacement of {case}")
     return float(np.linalg.norm(np.column_stack([one.column("imposed_linear", a) for a in "XYZ"]), axis=1).max())
+
+
+def largest_of(results, run, quantity, cases):
+    """The largest value of a quantity over cases and axes."""
+    found = [row["value"] for row in results.compared(run) if row["quantity"] == quantity and row["case"] in cases]
+    missing = set(cases) - {row["case"] for row in results.compared(run) if row["quantity"] == quantity}
+    if missing or not np.isfinite(found).all():
+        raise NotInFile(f"{run} holds no {quantity} of {', '.join(sorted(missing) or cases)}")
+    return float(np.abs(found).max())
+
+
+PATHS = "plane, circle, diamond, square"   # sections of experiment 2 on which parts are finished
+
+
+def effectiveness(results, run, case, generated, base, axis):
+    """What a case takes away of the displacement of another one, both relative to a third: 100 % less what it leaves."""
+    def largest(one):
+        found = [row["value"] for row in results.compared(run)
+                 if (row["case"], row["quantity"], row.get("axis"), row.get("sections")) ==
+                 (one, "trajectory_difference", axis, PATHS) and row.get("base", base) == base]
+        if len(found) != 1 or not math.isfinite(found[0]):
+            raise NotInFile(f"{run} holds no trajectory_difference of {one}, {axis}")
+        return found[0]
+    return 100.0 * (1.0 - largest(case) / largest(generated))
+
+
+def height_of_pass(results, run, case, section, above):
+    """How far the tool's Z on a section is above that on another one: medians, mm."""
+    one = results.opened(run).cases.get(case)
+    heights = []
+    for name in (section, above):
+        rows = one.samples((name,)) if one is not None and one.finished else []
+        if not len(rows):
+            raise NotInFile(f"{run} holds no {name} of {case}")
+        heights.append(float(np.median(one.column("ref_linear", "Z")[rows])))
+    return heights[0] - heights[1]
 
 
 # Parts ----------------------------------------------------------------------------------------------------------------
@@ -215,14 +252,32 @@ def chord(results, run):
     return float(_segment(results, run)[0][-1])
 
 
-def share_at_point(results, run, k):
-    """Error of the tip at point k of table 3.1, in % of the largest of the points."""
-    way, error = _segment(results, run)
+def error_at_point(results, run, k, off="chord"):
+    """Error at point k of table 3.1, um. off: "chord" of the tip in the workpiece; "line" between the posts, where the
+    axes are."""
+    segments = _segments(results, run)
+    if off == "line":
+        way, error = segments.off_the_line()
+    else:
+        way, vectors = segments.off_the_chord()
+        error = np.linalg.norm(vectors, axis=1)
     points = points_of(way[-1])
     if k > len(points):
         raise NotInFile(f"the segment has {len(points)} points")
-    values = np.interp(points, way, error)
-    return float(100.0 * values[k - 1] / values.max())
+    return float(np.interp(points, way, error)[k - 1])
+
+
+def error_of_length(results, run, location):
+    """How far the tool axis of a location of the scenario's .cls file is from unit length, over what its printed digits
+    allow (half a unit of the last one of j and k); below 1 it may be a unit vector."""
+    results.opened(run)   # of a scenario that was not run there is no value
+    path = SCENARIOS / "li2024" / f"{run}.cls"
+    points = [line.split("/")[1].split(",")[3:] for line in path.read_text(encoding="utf-8").splitlines()
+              if line.startswith("GOTO/")]
+    words = points[location - 1]
+    i, j, k = map(float, words)
+    allowed = sum(0.5 * 10.0 ** -len(word.split(".")[1]) * abs(value) for word, value in zip(words[1:], (j, k)))
+    return abs(float(np.linalg.norm([i, j, k])) - 1.0) / allowed
 
 
 def left_of_table31(results, model):
@@ -250,7 +305,7 @@ def peak_over_segments(results, run, case, lowest=False):
 
 
 FUNCTIONS = {one.__name__: one for one in (
-    scenario_key, sweep_spread, sweep_departure_from_proportional, slope_correlation, volumetric_error, points_of_segment,
+    scenario_key, largest_of, effectiveness, height_of_pass, sweep_spread, sweep_departure_from_proportional, slope_correlation, volumetric_error, points_of_segment,
     probed_residual, part_minus_trajectory, largest_after_best_fit, difference_after_best_fit, cutting_minus_air, stiffness_needed,
     wear_needed, chord,
-    share_at_point, left_of_table31, peak_over_segments)}
+    error_at_point, error_of_length, left_of_table31, peak_over_segments)}

@@ -45,11 +45,11 @@ def accepted(row):
 
 
 def summary(lines):
-    """{verdict: {kind: count}} of the verdicts that occur, in their order; a series counts once a verdict."""
+    """{verdict: {kind: count}} of the verdicts that occur, in their order; a series counts once a verdict and kind."""
     counts = {}
     for verdict in verdicts.ALL:
-        having = {line.row.part_of or line.row.id: line.row.kind for line in lines if line.verdict == verdict}
-        kinds = list(having.values())
+        having = {(line.row.part_of or line.row.id, line.row.kind) for line in lines if line.verdict == verdict}
+        kinds = [kind for _, kind in having]
         if kinds:
             counts[verdict] = {kind: kinds.count(kind) for kind in vocabulary.KINDS if kind in kinds}
     return counts
@@ -69,8 +69,10 @@ INTRODUCTION = (
     "Every number of Guevel et al. 2025 [G] and of Li 2024 [L] beside ours. Verdicts are computed from tolerances that are "
     "stored with their reasons in tools/reproduction/rows.toml.",
     "Kinds: identified numbers fixed a parameter and prove nothing by themselves; predicted ones followed; chosen ones follow "
-    "from an input that the paper does not give, and are never called reproduced; a bound is one that the model has no "
-    "cause to reach; given ones are the paper's own inputs. A table of values counts once in the summary.")
+    "from an input that the paper does not give; what is built in the model contains, so that it could not say otherwise; "
+    "given ones are the paper's own inputs and what follows from its numbers alone. Only predictions are called reproduced; "
+    "within bound are predictions that the paper gives a limit for, and chosen ones. A table of values counts once a kind in "
+    "the summary.")
 
 
 def markdown(lines, drawn, begun):
@@ -114,7 +116,7 @@ table { border-collapse: collapse; width: 100%; font-size: 13px; margin: .4em 0 
 th, td { text-align: left; vertical-align: top; padding: .3em .55em; border-bottom: 1px solid #ddd; }
 th { border-bottom: 2px solid #888; } .number { white-space: nowrap; } small { color: #666; } td.why { color: #444; min-width: 20em; }
 .verdict { white-space: nowrap; font-weight: bold; padding: .05em .4em; border-radius: .3em; }
-.reproduced { background: #d3ecd4; } .within-bound { background: #e3eed0; } .as-given { background: #e6eef6; } .not-reproduced { background: #f6cfc9; }
+.reproduced { background: #d3ecd4; } .within-bound { background: #e3eed0; } .as-given, .as-identified, .built-in { background: #e6eef6; } .not-reproduced { background: #f6cfc9; }
 .not-explained { background: #fbdcb0; } .cannot-be-compared { background: #e4e4e4; } .no-value-here { background: #f3b5d5; }
 figure { margin: 1.2em 0 2.2em; } figure img { max-width: 100%; } figcaption { color: #333; max-width: 62em; }
 nav a { margin-right: 1em; } h2 { margin-top: 1.8em; } .missing { background: #f3f3f3; padding: 1em; }

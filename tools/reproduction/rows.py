@@ -15,9 +15,9 @@ PAPERS = {"G": "Guevel et al. 2025", "L": "Li 2024"}
 # lies.
 MEANINGS = ("equal", "below", "above", "between")
 # What our number is worth. identified: a parameter was fixed with the paper's number; predicted: it followed;
-# chosen: it follows from an input that the paper does not give; bound: the model has no cause to reach it; given: an input
-# that is the paper's.
-KINDS = ("identified", "predicted", "chosen", "bound", "given")
+# chosen: it follows from an input that the paper does not give; built in: the model contains it and could not say
+# otherwise; given: an input that is the paper's, or what follows from its numbers alone.
+KINDS = ("identified", "predicted", "chosen", "built in", "given")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -66,19 +66,20 @@ def _row(table, where):
 
 
 def _expanded(table):
-    # a series stands for one row a value: {k} and {value} in its texts
+    # a series stands for one row a value: {k} and {value} in its texts; some of its points may be identified or built in
     if "series" not in table:
         return [table]
-    series = table["series"]
-    rest = {key: value for key, value in table.items() if key != "series"}
-    scale = max(series) if rest.pop("of_largest_percent", False) else None
+    series, scale = table["series"], table.get("scale", 1.0)
+    kinds = {k: kind for key, kind in (("identified", "identified"), ("built_in", "built in")) for k in table.get(key, [])}
+    rest = {key: value for key, value in table.items() if key not in ("series", "scale", "identified", "built_in")}
     found = []
     for k, value in enumerate(series, 1):
         one = {key: text.replace("{k}", str(k)).replace("{value}", f"{value:g}") if isinstance(text, str) else text
                for key, text in rest.items()}
         one["here"] = {**rest["here"], "k": k}
         one["part_of"] = rest["id"]
-        one["value"] = 100.0 * value / scale if scale else value
+        one["value"] = scale * value
+        one["kind"] = kinds.get(k, rest["kind"])
         found.append(one)
     return found
 

@@ -94,12 +94,14 @@ def _number(wanted, results, unit):
         if below == 0.0:
             raise NotInFile("the value that it is compared with is 0")
         return above / below * (100.0 if unit == "%" else 1.0)
+    if "of" in wanted:   # in percent of a number
+        return 100.0 * _compared(wanted, results, None) / wanted["of"]
     return _compared(wanted, results, unit)
 
 
 def find(row, results):
-    """Value of a row: of `here` either a row of the comparison (run, case, quantity, ...), the ratio of two (over), or
-    what a function of derived.py makes of the files (derived and its arguments)."""
+    """Value of a row: of `here` either a row of the comparison (run, case, quantity, ...), the ratio of two (over), its
+    share of a number (of), or what a function of derived.py makes of the files (derived and its arguments)."""
     if not row.here:
         return Value(None, row.lacks)
     try:

@@ -3,12 +3,14 @@ import math
 
 REPRODUCED = "reproduced"
 WITHIN = "within bound"
+IDENTIFIED = "as identified"
+BUILT_IN = "built in"
 GIVEN = "as given"
 NOT_REPRODUCED = "not reproduced"
 NOT_EXPLAINED = "not explained"
 NOT_COMPARED = "cannot be compared"
 MISSING = "no value here"
-ALL = (REPRODUCED, WITHIN, GIVEN, NOT_REPRODUCED, NOT_EXPLAINED, NOT_COMPARED, MISSING)
+ALL = (REPRODUCED, WITHIN, IDENTIFIED, BUILT_IN, GIVEN, NOT_REPRODUCED, NOT_EXPLAINED, NOT_COMPARED, MISSING)
 
 
 def limits(row):
@@ -28,7 +30,8 @@ def limits(row):
 def verdict(row, value):
     """The verdict over our value (None: there is none).
 
-    What follows from a chosen input is never "reproduced": lying within the limits is all that can be said.
+    Only predictions are reproduced or within a bound: what a parameter was set for, what the model contains and what was
+    given hold by themselves, and what follows from a chosen input can at most lie within the limits. All of them can fail.
     A miss whose cause the paper leaves open is "not explained" rather than "not reproduced".
     """
     if value is None or not math.isfinite(value):
@@ -36,8 +39,9 @@ def verdict(row, value):
     if row.lacks:
         return NOT_COMPARED
     low, high = limits(row)
-    if low <= value <= high and row.kind == "given":
-        return GIVEN
-    if low <= value <= high:
-        return REPRODUCED if row.meaning == "equal" and row.kind != "chosen" else WITHIN
-    return NOT_EXPLAINED if row.open else NOT_REPRODUCED
+    if not low <= value <= high:
+        return NOT_EXPLAINED if row.open else NOT_REPRODUCED
+    by_themselves = {"given": GIVEN, "identified": IDENTIFIED, "built in": BUILT_IN}
+    if row.kind in by_themselves:
+        return by_themselves[row.kind]
+    return REPRODUCED if row.meaning == "equal" and row.kind == "predicted" else WITHIN
