@@ -287,7 +287,10 @@ void SweepTable::make(const Scenario& base) {
   reason.attach_scale(point, 0);
   Hdf5Dataset character = group.fixed("character", kReasonBytes, Storage::int32, 0.0,
                                       {"1", "place of a character in a text, counted from 1"});
-  character.make_scale("character");
+  // netCDF's name of a dimension without a variable: readers then join the characters to a text,
+  // and a table of the points has one row a point, not one a character
+  character.make_scale(
+      fmt::format("This is a netCDF dimension but not a netCDF variable.{:10}", kReasonBytes));
   numbers.resize(kReasonBytes);
   std::iota(numbers.begin(), numbers.end(), 1.0);
   character.write(0, numbers);

@@ -117,6 +117,11 @@ class Table(Sweeps):
         with xarray.open_dataset(self.path("out.h5"), group="sweep", engine="h5netcdf") as table:
             self.assertEqual(table.sizes["point"], 40)
             self.assertEqual(table["table_imposed_curve_residual_Y_max_flank"].dims, ("point",))
+            self.assertEqual(table["reason"].dims, ("point",))
+            rows = table.to_dataframe()
+            self.assertEqual(len(rows), 40)
+            self.assertIn(b"response_time_ms = -1.0; must be >= 0", rows["reason"].iloc[2])
+            self.assertEqual(rows["reason"].iloc[0], b"")
 
     def test_keeps_signals_that_compare_reads(self):
         self.sweep("out.h5", "--points", "1-3", "--series")
