@@ -12,6 +12,8 @@
 namespace servomill::controllers {
 namespace {
 
+constexpr double kLongestDwell = 1e6;  // s
+
 bool is_stop(int M) { return M == 0 || M == 1; }
 bool is_end(int M) { return M == 2 || M == 17 || M == 30; }
 
@@ -216,7 +218,9 @@ class Reader {
       }
       seconds = block_.S->value * minute / *state_.S;
     }
-    if (seconds < 0.0) fail("the dwell time must be >= 0");
+    if (!(seconds >= 0.0 && seconds <= kLongestDwell)) {
+      fail(fmt::format("a dwell of {:g} s; must be from 0 to {:g} s", seconds, kLongestDwell));
+    }
     add(ActionKind::dwell).value = seconds;
   }
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kLongestLine = 512;  // characters (M)
 constexpr std::size_t kLongestBlockNumber = 9;
+constexpr double kLargestNumber = 1e9;  // beyond any machine, so that squares stay finite
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -184,6 +185,9 @@ class LineReader {
     const auto result = std::from_chars(first, line_.data() + at_, value);
     if (result.ec != std::errc() || !std::isfinite(value)) {
       fail(begin, fmt::format("{}: the number is too long", name));
+    }
+    if (std::abs(value) > kLargestNumber) {
+      fail(begin, fmt::format("{} = {}; must be between -1e9 and 1e9", name, value));
     }
     return value;
   }

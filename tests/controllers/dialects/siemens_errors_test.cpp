@@ -57,6 +57,8 @@ TEST(SiemensErrors, TextThatIsNoBlock) {
   EXPECT_EQ(fault_of(std::string(600, 'X')),
             "p.mpf:1:513: error: the line has 600 characters; a block has at most 512");
   EXPECT_EQ(fault_of("X" + std::string(400, '9')), "p.mpf:1:2: error: X: the number is too long");
+  EXPECT_EQ(fault_of("X-2000000000"),
+            "p.mpf:1:2: error: X = -2000000000; must be between -1e9 and 1e9");
 }
 
 TEST(SiemensErrors, WordsThatAreNotRead) {
@@ -114,6 +116,7 @@ TEST(SiemensErrors, WordsThatDoNotGoTogether) {
           {"G4", "1:1: error: G4 needs a block of its own, with F in seconds or S in revolutions"},
           {"G4 F1 M3",
            "1:1: error: G4 needs a block of its own, with F in seconds or S in revolutions"},
+          {"G4 F-1", "1:1: error: a dwell of -1 s; must be from 0 to 1e+06 s"},
           {"M3 M5", "1:4: error: two M functions of one kind in one block"},
           {"T1 M6 G0", "1:1: error: a tool change needs a block of its own, with T, M6 and D only"},
           {"G0 X1 M8",
