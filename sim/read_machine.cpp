@@ -153,11 +153,10 @@ void read_direction(Reader& axis, plant::ChainAxis& chain_axis) {
   }
 }
 
-// Where the axis lies and how far it goes.
+// Where the axis lies.
 void read_axis_geometry(Reader& axis, int j, MachineSettings& machine) {
   const auto lane = static_cast<std::size_t>(j);
   const bool linear = j < kLinearJoints;
-  read_travel(axis, linear, j, machine.nc);
   if (axis.has(kRetractKey)) axis.real(kRetractKey, kLength);  // of programs, not of a simulation
   auto& chain_axis = machine.chain.at(*machine.chain.layout.axis[lane]);
   if (!linear) {
@@ -198,6 +197,7 @@ void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machi
                                  axis.place("velocity_bandwidth"), winding_place(axis)};
   refuse_unbearable_load(axis, machine.drives[lane], machine.nc.cascade[lane], linear);
   read_dynamic_limits(axis, linear, j, machine.nc);
+  read_travel(axis, linear, j, machine.nc);
   read_encoders(axis, j, common.noise_seed, machine);
   read_axis_geometry(axis, j, machine);
 }
@@ -291,6 +291,7 @@ MachineSettings read_geometry(Reader& table, ErrorModels* errors) {
       if (!axis.has(limits[k])) continue;
       (*into[k])[j] = axis.real(limits[k], of[k], {at_least(kLeastLimit), at_most(kMostLimit)});
     }
+    read_travel(axis, j < kLinearJoints, j, machine.nc);
     read_axis_geometry(axis, j, machine);
   }
   read_models(table, machine.chain.layout, errors);

@@ -17,6 +17,7 @@
 #include "sim/compensate/dialect_writer.h"
 #include "sim/compensate/linuxcnc_writer.h"
 #include "sim/compensate/walk.h"
+#include "sim/compensate/work_knowledge.h"
 #include "sim/read_errors.h"
 #include "sim/read_file.h"
 #include "sim/read_machine.h"
@@ -57,146 +58,14 @@ const plant::ErrorModel& model_of(const ErrorModels& models, const CompensateReq
                                             did_you_mean(name, names), there_are));
 }
 
-// "X=10,C=90" in mm and deg; `rotation` takes R.
-struct AxisValues {
-  AxisWords words = AxisWords::Zero();
-  std::array<bool, kAxisWords> given{};
-  double rotation = 0.0;  // rad
-};
-
-AxisValues axis_values(const std::string& option, std::string_view text, const JointLayout& layout,
-                       bool takes_rotation) {
-  AxisValues out;
-  const Place place{option + " " + std::string(text)};
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t end = std::min(text.find(',', from), text.size());
-    const std::string_view item = text.substr(from, end - from);
-    from = end + 1;
-    const double value =
-        item.size() > 2 && item[1] == '=' ? number_of(std::string(item.substr(2))) : std::nan("");
-    const bool is_rotation = takes_rotation && !item.empty() && (item[0] == 'R' || item[0] == 'r');
-    const auto axis = item.empty() ? std::nullopt : axis_of(item.front());
-    if (!std::isfinite(value) || (!axis && !is_rotation)) {
-      throw InputError(place, "must be positions in mm and deg, such as X=10,Y=-5.5");
-    }
-    if (is_rotation) {
-      out.rotation = value * deg;
-      continue;
-    }
-    if (!layout.joint_of(*axis)) {
-      throw InputError(place, fmt::format("the machine has no axis {}", letter(*axis)));
-    }
-    out.words[index_of(*axis)] = value * (is_linear(*axis) ? mm : deg);
-    out.given[static_cast<std::size_t>(index_of(*axis))] = true;
-  }
-  return out;
-}
-
-constexpr std::array<std::string_view, 9> kWorkSystems = {"G54", "G55",   "G56",   "G57",  "G58",
-                                                          "G59", "G59.1", "G59.2", "G59.3"};
-
-// What the control knows before the program, and which work systems are known.
-struct Known {
-  controllers::ProgramSetup setup;
-  std::set<int> work_systems;  // 1 ... 9
-  bool is_assumed = false;     // nothing was said of work offsets
-};
-
-Known read_known(const CompensateRequest& request, const JointLayout& layout) {
-  Known known;
-  known.setup = program_setup(request.inputs, request.program_file);
-  if (!request.inputs.parameter_file.empty()) {
-    for (int system = 1; system <= controllers::kWorkSystems; ++system) {
-      known.work_systems.insert(system);
-    }
-  }
-  for (const std::string& text : request.work_offsets) {
-    const std::size_t colon = text.find(':');
-    const std::string name = colon == std::string::npos ? "G54" : text.substr(0, colon);
-    const auto found = std::find(kWorkSystems.begin(), kWorkSystems.end(), name);
-    if (found == kWorkSystems.end()) {
-      throw InputError({"--work-offset " + text},
-                       fmt::format("'{}' is none of {}", name, fmt::join(kWorkSystems, ", ")));
-    }
-    const auto k = static_cast<std::size_t>(found - kWorkSystems.begin());
-    const AxisValues values = axis_values(
-        "--work-offset", std::string_view(text).substr(colon == std::string::npos ? 0 : colon + 1),
-        layout, true);
-    known.setup.work_offset[k] = values.words;
-    known.setup.work_rotation[k] = values.rotation;
-    known.work_systems.insert(static_cast<int>(k) + 1);
-  }
-  known.is_assumed = known.work_systems.empty();
-  if (known.is_assumed) known.work_systems.insert(1);
-  return known;
-}
-
-// Moves in a work system that nobody has said the place of would be corrected for another place.
-void refuse_unknown_system(const controllers::ExecutedBlock& block,
-                           const CompensateRequest& request, std::set<int>& known) {
-  if (block.request == nullptr) return;
-  const auto& words = *block.request;
-  const int system = block.state->work_system;
-  if (words.code(controllers::Group::g_non_modal) == 100 && words.has('P')) {  // G10 says it
-    const int P = static_cast<int>(std::lround(words['P']));
-    known.insert(P == 0 ? system : P);
-  }
-  if (known.contains(system)) return;
-  const auto& chosen = words.of(controllers::Group::g_work_system);
-  const auto name = kWorkSystems[static_cast<std::size_t>(system - 1)];
-  throw InputError(
-      {request.program_file, block.line, chosen.column},
-      fmt::format("where {0} lies in the machine is not known, and with it the errors; "
-                  "--work-offset {0}:X=...,Y=... or --parameter-file say it",
-                  name));
-}
-
-std::string words_text(const AxisWords& words, const JointLayout& layout) {
-  std::string out;
-  for (const Axis axis : kAllAxes) {
-    if (!layout.joint_of(axis)) continue;
-    out += fmt::format("{}{}{:g}", out.empty() ? "" : " ", letter(axis),
-                       words[index_of(axis)] / (is_linear(axis) ? mm : deg));
-  }
-  return out;
-}
-
-// Where a work system lies: what the request says, else the parameter file. m, rad
-struct WorkSystemPlace {
-  AxisWords offset = AxisWords::Zero();
-  double rotation = 0.0;
-};
-
-WorkSystemPlace place_of(const controllers::ProgramSetup& setup, int system) {
-  const auto k = static_cast<std::size_t>(system - 1);
-  const auto stored = [&](int number) {
-    const auto found = setup.stored.find(number);
-    return found == setup.stored.end() ? 0.0 : found->second;
-  };
-  WorkSystemPlace place{setup.work_offset[k], setup.work_rotation[k]};
-  for (const Axis axis : kAllAxes) {
-    const int i = index_of(axis);
-    if (place.offset[i] != 0.0) continue;
-    place.offset[i] =
-        stored(controllers::parameter::work_offset(system) + i) * (is_linear(axis) ? mm : deg);
-  }
-  if (place.rotation == 0.0) {
-    place.rotation = stored(controllers::parameter::work_rotation(system)) * deg;
-  }
-  return place;
-}
-
 // What the result relies on.
-std::vector<std::string> assumptions(const CompensateRequest& request, const Known& known,
+std::vector<std::string> assumptions(const CompensateRequest& request, const WorkKnowledge& known,
                                      const Summary& summary, const JointLayout& layout) {
   std::vector<std::string> out;
-  if (known.is_assumed) {
-    out.emplace_back("G54 lies at machine zero: no --work-offset and no --parameter-file say more");
-  }
   for (const int system : known.work_systems) {
     const WorkSystemPlace place = place_of(known.setup, system);
     const bool is_there = !place.offset.isZero(0.0) || place.rotation != 0.0;
-    if (known.is_assumed || (!is_there && system != 1)) continue;
+    if (!is_there && system != 1) continue;
     out.push_back(fmt::format(
         "{} lies at {}{}", kWorkSystems[static_cast<std::size_t>(system - 1)],
         words_text(place.offset, layout),
@@ -225,14 +94,9 @@ std::vector<std::string> unrolled(const Summary& summary) {
   return out;
 }
 
-std::vector<Fault> warnings_of(const CompensateRequest& request, const Known& known,
-                               const Summary& summary, const JointLayout& layout) {
+std::vector<Fault> warnings_of(const CompensateRequest& request, const Summary& summary,
+                               const JointLayout& layout) {
   std::vector<Fault> out;
-  if (known.is_assumed) {
-    out.push_back({{request.program_file},
-                   "nothing says where G54 lies, and errors depend on it: taken at machine zero; "
-                   "--work-offset or --parameter-file say it"});
-  }
   if (summary.outside) {
     out.push_back(
         {{request.program_file, summary.outside->line},
@@ -275,7 +139,7 @@ WalkOptions walk_options(const CompensateRequest& request, const MachineSettings
   options.fit.tolerance_turn = request.tolerance / kLever;
   options.fit.max_block = request.max_block;
   if (request.max_block > 0.0) options.fit.look = std::min(options.fit.look, request.max_block);
-  options.fit.allow_arcs = request.dialect == Dialect::linuxcnc;
+  options.is_for_other_control = request.dialect != Dialect::linuxcnc;
   options.splits_rapids = request.splits_rapids;
   options.lower = machine.nc.lower;
   options.upper = machine.nc.upper;
@@ -290,12 +154,56 @@ std::string header_line(const CompensateRequest& request, const std::string& mac
                      fs::path(request.program_file).filename().string(), machine, model);
 }
 
-std::unique_ptr<ProgramWriter> writer_of(const CompensateRequest& request, Walk& walk,
+// IS-B and the like; Siemens computes in finer steps than anyone measures.
+double resolution_of(const CompensateRequest& request) {
+  if (request.resolution > 0.0) return request.resolution;
+  return request.dialect == Dialect::siemens ? 10e-9 : 1e-6;
+}
+
+DialectSettings dialect_settings(const CompensateRequest& request,
+                                 const MachineDescription& described) {
+  if (request.splits_rapids) {
+    throw InputError({"--split-rapids"},
+                     "is for LinuxCNC; on other controls a rapid need not follow a line");
+  }
+  DialectSettings settings;
+  settings.dialect = request.dialect;
+  settings.name = request.program_name;
+  settings.program_number = request.program_number;
+  settings.resolution = resolution_of(request);
+  settings.preset = request.preset;
+  const auto retract = request.retract_Z ? request.retract_Z : described.retract_Z;
+  if (!retract) {
+    throw InputError({"--retract"},
+                     "is missing: programs for other controls retract before and after; --retract "
+                     "Z=... in machine coordinates, or axis.Z.retract_mm of the machine file");
+  }
+  settings.retract_Z = *retract;
+  if (request.dialect == Dialect::fanuc && request.program_number == 0) {
+    throw InputError({"--program-number"},
+                     "is missing: Fanuc programs have a number, 1 ... 9999, and the name of the "
+                     "file gives none");
+  }
+  const JointLayout& layout = described.machine.chain.layout;
+  settings.has_rotary_axes = layout.has(kLinearJoints) || layout.has(kLinearJoints + 1);
+  return settings;
+}
+
+std::unique_ptr<ProgramWriter> writer_of(const CompensateRequest& request,
+                                         const MachineDescription& described, Walk& walk,
                                          Summary& summary) {
   if (request.dialect != Dialect::linuxcnc) {
-    return std::make_unique<DialectWriter>(walk, summary, request.dialect, request.program_file);
+    return std::make_unique<DialectWriter>(walk, summary, dialect_settings(request, described),
+                                           request.program_file);
   }
   return std::make_unique<LinuxCncWriter>(walk, summary, decimals_for(request.tolerance));
+}
+
+std::string path_line(const CompensateRequest& request) {
+  const std::string line =
+      fmt::format("path within {:g} um of the corrected one", request.tolerance / um);
+  if (request.dialect == Dialect::linuxcnc) return line;
+  return fmt::format("{}, positions rounded to {:g} um", line, resolution_of(request) / um);
 }
 
 }  // namespace
@@ -309,7 +217,8 @@ Compensated compensate(const CompensateRequest& request) {
   if (!request.error_file.empty()) models = read_error_file(request.error_file, layout);
   std::string model;
   Correction correction(machine.chain, model_of(models, request, model), request.axes);
-  Known known = read_known(request, layout);
+  WorkKnowledge known = read_work_knowledge(request, layout);
+  known.depends_on_place = depends_on_place(correction, machine.nc.lower, machine.nc.upper);
   WalkOptions options = walk_options(request, machine, known.setup);
   if (!request.start.empty()) {
     const AxisValues start = axis_values("--start", request.start, layout, false);
@@ -320,11 +229,11 @@ Compensated compensate(const CompensateRequest& request) {
   Compensated out;
   Walk walk(options, known.setup.tools, correction, out.summary,
             request.records ? &out.record : nullptr);
-  const auto writer = writer_of(request, walk, out.summary);
+  const auto writer = writer_of(request, described, walk, out.summary);
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
                                        known.setup);
   while (const auto block = interpreter.next_block()) {
-    refuse_unknown_system(*block, request, known.work_systems);
+    refuse_unknown_system(*block, request, known);
     if (block->text.starts_with(kHeader)) {
       out.warnings.push_back({{request.program_file, block->line},
                               "this program has been corrected before; it is corrected again"});
@@ -334,10 +243,18 @@ Compensated compensate(const CompensateRequest& request) {
 
   Summary& summary = out.summary;
   summary.assumed = assumptions(request, known, summary, layout);
+  for (std::string& clause : writer->assumptions()) {
+    out.warnings.push_back({{request.program_file}, "assumes that " + clause});
+    summary.assumed.push_back(std::move(clause));
+  }
+  for (std::string& sentence : writer->warnings()) {
+    out.warnings.push_back({{request.program_file}, std::move(sentence)});
+  }
   std::vector<std::string> header = {header_line(request, machine.name, model)};
-  header.push_back(fmt::format("path within {:g} um of the corrected one", request.tolerance / um));
+  header.push_back(path_line(request));
   for (const std::string& one : unrolled(summary)) header.push_back(one);
   for (const std::string& one : summary.assumed) header.push_back("assumed: " + one);
+  for (const std::string& one : writer->warnings()) header.push_back("warning: " + one);
   out.program = writer->finish(header);
 
   out.report = summary.report(layout);
@@ -345,7 +262,7 @@ Compensated compensate(const CompensateRequest& request) {
   for (const std::string& one : summary.assumed) out.report.push_back("assumed: " + one);
   out.warnings.insert(out.warnings.end(), interpreter.warnings().begin(),
                       interpreter.warnings().end());
-  const auto more = warnings_of(request, known, summary, layout);
+  const auto more = warnings_of(request, summary, layout);
   out.warnings.insert(out.warnings.end(), more.begin(), more.end());
   out.json = summary.json(layout);
   out.machine = machine.name;

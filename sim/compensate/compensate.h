@@ -1,23 +1,18 @@
 /// Any milling program, corrected for the errors of the machine that runs it.
 #pragma once
 
-#include <array>
-#include <cstdint>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/canon.h"
+#include "sim/compensate/dialect.h"
 #include "sim/compensate/path_record.h"
 #include "sim/compensate/summary.h"
 #include "strategies/compensation.h"
 
 namespace servomill::sim {
-
-enum class Dialect : std::uint8_t { linuxcnc, heidenhain, fanuc, siemens };
-inline constexpr std::array<std::string_view, 4> kDialects = {"linuxcnc", "heidenhain", "fanuc",
-                                                              "siemens"};
 
 struct CompensateRequest {
   std::string program_file, machine_file;
@@ -29,8 +24,14 @@ struct CompensateRequest {
   bool splits_rapids = false;
   strategies::DisplacedAxes axes = strategies::DisplacedAxes::linear;
   Dialect dialect = Dialect::linuxcnc;
-  ProgramInputs inputs;                   // of the program; `machine` is the one above
+  std::string program_name;         // other dialects: as the file is called, without extension
+  int program_number = 0;           // Fanuc: O; 0: not given
+  double resolution = 0.0;          // m, of positions in other dialects; 0: the usual one
+  std::optional<double> retract_Z;  // m, machine coordinate; absent: that of the machine's file
+  std::optional<int> preset;        // Heidenhain: number of the preset
+  ProgramInputs inputs;             // of the program; `machine` is the one above
   std::vector<std::string> work_offsets;  // "X=10,Y=-5" (G54) or "G55:X=10,R=30"; mm, deg
+  std::vector<std::string> tool_lengths;  // "1=50": tool 1 is 50 mm long
   std::string start;                      // "X=0,Y=0": machine coordinates; or empty
   bool records = false;                   // the path
 };

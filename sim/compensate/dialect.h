@@ -1,10 +1,12 @@
-/// How other controls than LinuxCNC say what a program of straight blocks asks for.
+/// Programs for other controls than LinuxCNC: lines, modes in force, safe frames.
 ///
 /// | | blocks | numbers | source |
 /// |---|---|---|---|
-/// | Heidenhain conversational | `12 L X+10 Y-3.5 R0 FMAX M3` | 0.1 um, 0.0001 deg | User's Manual
-/// iTNC 530 | | Fanuc | `N12 G0 X10. Y-3.5` | 0.1 um (IS-C), 0.0001 deg | Operator's Manual 30i |
-/// | Siemens 840D | `N12 G0 X10 Y-3.5` | 10 nm, 0.00001 deg | Programming Manual, Fundamentals |
+/// | Heidenhain | `12 L X+10 Y-3.5 R0 FMAX M3` | 1 um, 0.001 deg | TNC 426/430, iTNC 530 manuals |
+/// | Fanuc | `N12 G0 X10. Y-3.5` | 1 um, 0.001 deg (IS-B) | B-63844EN/02, B-63944EN |
+/// | Siemens 840D | `N12 G0 X10 Y-3.5` | 10 nm, 0.00001 deg | 6FC5397-0BP10-2BA0 |
+///
+/// "M" marks a rule that was not found in a manual.
 #pragma once
 
 #include <memory>
@@ -16,60 +18,135 @@
 
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/move.h"
-#include "sim/compensate/compensate.h"
+#include "plant/vocabulary/units.h"
 
 namespace servomill::sim {
 
-/// Positions of one block, in mm and deg.
+enum class Dialect : std::uint8_t { linuxcnc, heidenhain, fanuc, siemens };
+inline constexpr std::array<std::string_view, 4> kDialects = {"linuxcnc", "heidenhain", "fanuc",
+                                                              "siemens"};
+
+/// What a program for another control needs beside its moves.
+struct DialectSettings {
+  Dialect dialect = Dialect::fanuc;
+  std::string name;              // of the program, as its file is called
+  int program_number = 0;        // Fanuc: O
+  double resolution = 1e-6;      // m; a power of ten
+  double retract_Z = 0.0;        // m, machine coordinate
+  bool has_rotary_axes = false;  // of the machine
+  std::optional<int> preset;     // Heidenhain: number in the preset table that is activated
+  double smoothing = 0.0;        // m, tolerance of the control's smoothing; 0: not set
+};
+
+/// An arc in the XY plane, or a helix.
+struct DialectArc {
+  bool is_counter_clockwise = false;
+  double x = 0.0, y = 0.0;    // centre, as positions
+  double dx = 0.0, dy = 0.0;  // centre from the begin
+  double share = 1.0;         // of the length of the path: the arc without Z
+};
+
+/// Positions of one block, in mm (inch in inch programs) and deg.
 struct DialectMotion {
   bool is_rapid = false;
   bool is_place = false;  // of the machine: without work offset and tool length
   std::vector<std::pair<Axis, double>> words;
-  double feed = 0.0;        // mm/min or deg/min; 1/min with is_inverse
-  bool is_inverse = false;  // G93
+  std::optional<DialectArc> arc;
+  FeedMode feed_mode = FeedMode::units_per_minute;
+  double feed = 0.0;    // mm/min or deg/min, mm or deg a revolution, 1/min
+  int work_system = 1;  // 1: G54
+  int length = 0;       // number of the tool whose length is in force; 0: none
+  int tool = 0;         // in the spindle
+
+  bool names(Axis axis) const;
 };
 
-/// What a dialect cannot say, as a part of a sentence.
+/// What a dialect cannot express, as a part of a sentence.
 struct Unsayable {
   std::string why;
 };
 
-/// Lines without numbers; a DialectPrinter knows what is in force. Functions throw Unsayable.
+/// Writes lines without numbers and keeps account of what is in force at the control. Functions
+/// throw Unsayable.
 class DialectPrinter {
  public:
-  explicit DialectPrinter(std::vector<std::string>& lines) : lines_(lines) {}
+  DialectPrinter(const DialectSettings& settings, std::vector<std::string>& lines)
+      : settings_(settings), lines_(lines) {}
   virtual ~DialectPrinter() = default;
 
-  virtual int decimals() const = 0;  // of mm and deg
-  virtual void begin(const std::string& name, const std::vector<std::string>& header) = 0;
+  int decimals(Axis axis) const;
+  /// m or rad
+  double unit(Axis axis) const;
+  /// @return false where positions of the program are in mm all the same
+  virtual bool set_inches(bool) { return false; }
+
+  /// Header and the first blocks, which bring any control into one state: the state that a printer
+  /// begins with.
+  virtual void begin(const std::vector<std::string>& header) = 0;
   /// In as many lines as it takes.
   void comment(std::string_view text);
   virtual void message(std::string_view text) { comment(text); }
   virtual void motion(const DialectMotion& motion) = 0;
-  /// G54 is 1. Known to be in force at the start.
-  virtual void work_system(int system) = 0;
-  /// @param offset  number of the tool whose length is in force; 0: none
-  /// @param tool    in the spindle
-  virtual void tool_length(int offset, int tool) = 0;
+  /// Whether the arc can be written as one. False for a block that changes the tool length, too.
+  virtual bool takes_arc(const DialectMotion& motion, bool is_helix) const = 0;
+  /// Z to settings.retract_Z, without tool length.
+  virtual void retract() = 0;
+  /// G28 of Z alone. @return false if Z is at settings.retract_Z, true if at the control's
+  /// reference
+  virtual bool reference_Z() {
+    retract();
+    return false;
+  }
   virtual void path_mode(PathMode mode, double tolerance) = 0;
   virtual void preselect(int tool) = 0;
-  virtual void tool(int number, double rpm) = 0;
-  virtual void spindle(int direction, double rpm) = 0;
+  /// Everything but units is unknown behind it and restated.
+  /// @param work_system  in force behind it
+  virtual void tool(int number, double rpm, int work_system) = 0;
+  /// @param is_named  the program names the direction (M3, M4, M5): it is written in any case
+  virtual void spindle(int direction, double rpm, bool is_named) = 0;
+  /// Whether the control may have stopped the spindle by itself.
+  virtual bool is_spindle_known() const = 0;
   virtual void coolant(int code) = 0;  // 7, 8, 9
   virtual void dwell(double seconds) = 0;
   virtual void stop(int code) = 0;  // 0, 1
   virtual void end() = 0;           // M30
+  /// Ends what must not be in force at a tool change and at the end.
+  virtual void end_smoothing() {}
 
   /// The whole text, numbered.
-  virtual std::string text(const std::string& name) const = 0;
+  virtual std::string text() const = 0;
+  /// What the operator has to make sure of, one clause each.
+  const std::vector<std::string>& assumptions() const { return assumptions_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
  protected:
   virtual void put_comment(std::string_view text) = 0;
   void put(std::string line) { lines_.push_back(std::move(line)); }
+  void assume(std::string clause);
+  void warn(std::string sentence);
+  /// A feed or a speed. @throws Unsayable if nothing of it stays
+  std::string rate(double x, int decimals, std::string_view name) const;
+  void check_positions(const DialectMotion& motion, double most) const;
+
+  const DialectSettings& settings_;
   std::vector<std::string>& lines_;
+  bool is_inch_ = false;
+
+ private:
+  std::vector<std::string> assumptions_, warnings_;
 };
 
-/// @pre dialect is not linuxcnc
-std::unique_ptr<DialectPrinter> make_dialect(Dialect dialect, std::vector<std::string>& lines);
+/// Letters and signs that every control shows.
+std::string plain(std::string_view text, bool is_upper);
+
+/// @pre settings.dialect is not linuxcnc
+std::unique_ptr<DialectPrinter> make_dialect(const DialectSettings& settings,
+                                             std::vector<std::string>& lines);
+std::unique_ptr<DialectPrinter> make_fanuc(const DialectSettings& settings,
+                                           std::vector<std::string>& lines);
+std::unique_ptr<DialectPrinter> make_siemens(const DialectSettings& settings,
+                                             std::vector<std::string>& lines);
+std::unique_ptr<DialectPrinter> make_heidenhain(const DialectSettings& settings,
+                                                std::vector<std::string>& lines);
 
 }  // namespace servomill::sim

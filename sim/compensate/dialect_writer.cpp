@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <span>
 
 #include "controllers/gcode/canned_cycles.h"
 #include "controllers/gcode/modal_state.h"
@@ -19,16 +16,6 @@ namespace {
 
 using controllers::Code;
 using controllers::Group;
-
-// A name that every control takes.
-std::string program_name(const std::string& file) {
-  std::string out;
-  for (const char c : std::filesystem::path(file).stem().string()) {
-    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || c == '_';
-    out += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : is_plain ? c : '_';
-  }
-  return out.empty() ? "PROGRAM" : out;
-}
 
 // Whether moves, or modes that go into their numbers, are all that a code is about.
 bool is_in_the_moves(const Code& code) {
@@ -80,13 +67,14 @@ bool is_spoken(std::string_view text) {
 
 }  // namespace
 
-DialectWriter::DialectWriter(Walk& walk, Summary& summary, Dialect dialect, std::string file)
+DialectWriter::DialectWriter(Walk& walk, Summary& summary, const DialectSettings& settings,
+                             std::string file)
     : walk_(walk),
       summary_(summary),
-      dialect_(dialect),
+      settings_(settings),
       file_(std::move(file)),
-      name_(program_name(file_)),
-      printer_(make_dialect(dialect, lines_)) {}
+      printer_(make_dialect(settings_, lines_)),
+      height_(settings.retract_Z) {}
 DialectWriter::~DialectWriter() = default;
 
 void DialectWriter::check_codes(const Block& block) const {
@@ -95,16 +83,27 @@ void DialectWriter::check_codes(const Block& block) const {
     if (chosen.code == nullptr || is_in_the_moves(*chosen.code)) continue;
     const bool is_M = chosen.code->group >= Group::m_input_output;
     throw InputError({file_, block.line, chosen.column},
-                     fmt::format("{} cannot be said for {}",
+                     fmt::format("{} cannot be expressed for {}",
                                  controllers::code_name(is_M ? 'M' : 'G', chosen.code->tenths),
-                                 kDialects[static_cast<std::size_t>(dialect_)]));
+                                 kDialects[static_cast<std::size_t>(settings_.dialect)]));
+  }
+}
+
+// What follows is written for the state that the block leaves: the operator's switch must not
+// decide about it.
+void DialectWriter::refuse_slash(const Block& block) const {
+  if (block.request == nullptr) return;
+  for (const LinePiece& piece : line_pieces(block)) {
+    if (piece.kind != PieceKind::block_delete) continue;
+    throw InputError({file_, block.line, static_cast<int>(piece.begin) + 1},
+                     "the operator decides about blocks with '/', and what follows depends on "
+                     "them; take the slash away, or leave them out by --block-delete");
   }
 }
 
 void DialectWriter::note_what_became_numbers(const Block& block) {
   for (const LinePiece& piece : line_pieces(block)) {
     if (piece.kind == PieceKind::o_word) summary_.unrolled = true;
-    if (piece.kind == PieceKind::block_delete) summary_.takes_blocks_with_slash = true;
     if (!piece.is_constant) summary_.has_expressions = true;
     if (piece.kind != PieceKind::comment) continue;
     const std::string text = comment_text(piece.of(block.text));
@@ -117,58 +116,96 @@ void DialectWriter::note_what_became_numbers(const Block& block) {
   summary_.has_cutter_compensation |= block.request->code(Group::g_cutter_compensation) > 400;
 }
 
+// One unit for the whole program.
+void DialectWriter::note_unit(const Block& block) {
+  const bool moves = std::any_of(block.moves.begin(), block.moves.end(),
+                                 [](const Move& move) { return is_motion(move.kind); });
+  if (!moves) return;
+  const bool is_inch = block.state->unit != mm;
+  if (!is_inch_) {
+    is_inch_ = is_inch;
+    printer_->set_inches(is_inch);
+  }
+  if (*is_inch_ == is_inch || !printer_->set_inches(*is_inch_)) return;
+  throw InputError(
+      {file_, block.line},
+      fmt::format("moves in {}, moves before were in {}: {} changes origin offsets "
+                  "and tool lengths with G20 and G21; write the program in one unit",
+                  is_inch ? "inches (G20)" : "mm (G21)", is_inch ? "mm (G21)" : "inches (G20)",
+                  kDialects[static_cast<std::size_t>(settings_.dialect)]));
+}
+
 void DialectWriter::write(const Block& block) {
+  if (has_ended_) return;
   if (block.block != nullptr && block.block->deleted) return printer_->comment(block.text);
   if (is_skipped(block)) summary_.unrolled = true;
   says_path_ =
       says_path_ || (block.request != nullptr && block.request->code(Group::g_path_control) >= 0);
+  refuse_slash(block);
   note_what_became_numbers(block);
   check_codes(block);
+  note_unit(block);
   try {
-    say(block);
+    write_moves(block);
   } catch (const Unsayable& what) {
     throw InputError({file_, block.line},
-                     fmt::format("{}; that cannot be said for {}", what.why,
-                                 kDialects[static_cast<std::size_t>(dialect_)]));
+                     fmt::format("{}; that cannot be expressed for {}", what.why,
+                                 kDialects[static_cast<std::size_t>(settings_.dialect)]));
   }
 }
 
-void DialectWriter::say(const Block& block) {
+void DialectWriter::write_moves(const Block& block) {
   if (block.request != nullptr && block.request->has('T') &&
       block.request->code(Group::m_tool) < 0) {
     printer_->preselect(block.state->selected_tool);
   }
-  for (const Move& move : block.moves) {
-    if (is_motion(move.kind)) {
-      say_step(block, walk_.next(move, block));
+  const int code = block.request == nullptr ? -1 : block.request->code(Group::g_non_modal);
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < block.moves.size(); ++i) {
+    if (is_motion(block.moves[i].kind)) last = i;
+  }
+  for (std::size_t i = 0; i < block.moves.size(); ++i) {
+    const Move& move = block.moves[i];
+    if (!is_motion(move.kind)) {
+      write_other(move, block, i);
+    } else if (code == 280 || code == 300) {
+      write_reference(move, block, i == last);
     } else {
-      say_other(move);
+      write_step(block, walk_.next(move, block));
     }
   }
 }
 
-void DialectWriter::say_other(const Move& move) {
+void DialectWriter::write_other(const Move& move, const Block& block, std::size_t i) {
+  const bool ends = !block.moves.empty() && block.moves.back().kind == MoveKind::end;
+  const auto code = [&](Group group) {
+    return block.request == nullptr ? -1 : block.request->code(group);
+  };
   switch (move.kind) {
     case MoveKind::tool:
-      tool_ = move.number;
-      return printer_->tool(move.number, rpm_);
-    case MoveKind::spindle:
+      return change_tool(move.number, block);
+    case MoveKind::spindle: {
       rpm_ = move.value / rpm;
-      return printer_->spindle(move.direction, rpm_);
+      direction_ = move.direction;
+      const bool is_last = i + 1 == block.moves.size() || block.moves[i + 1].kind != move.kind;
+      const bool is_ending = ends && code(Group::m_spindle) < 0 && move.direction == 0;
+      if (!is_last || is_ending) return;
+      const int M = code(Group::m_spindle);
+      return printer_->spindle(direction_, rpm_, M >= 30 && M <= 50);
+    }
     case MoveKind::coolant: {
-      const int added = move.number & ~coolant_;
-      if (move.number == 0) printer_->coolant(9);
-      if ((added & controllers::kMist) != 0) printer_->coolant(7);
-      if ((added & controllers::kFlood) != 0) printer_->coolant(8);
+      const int M = code(Group::m_coolant);
       coolant_ = move.number;
-      return;
+      if (ends && M < 0) return;
+      known_coolant_ = coolant_;
+      return printer_->coolant(M == 70 || M == 80 ? M / 10 : 9);
     }
     case MoveKind::dwell:
       return printer_->dwell(move.value);
     case MoveKind::stop:
-      return printer_->stop(move.number);
+      return write_stop(move.number);
     case MoveKind::end:
-      return printer_->end();
+      return write_end();
     case MoveKind::message:
       return printer_->message(move.text);
     default:
@@ -176,84 +213,53 @@ void DialectWriter::say_other(const Move& move) {
   }
 }
 
-// What holds for motion, said before the first that it holds for.
-void DialectWriter::say_modes(const Block& block, const Step& step) {
-  const Move& move = *step.move;
-  if (move.feed_mode != FeedMode::units_per_minute && move.feed_mode != FeedMode::inverse_time) {
-    throw Unsayable{"feeds per revolution (G95)"};
-  }
-  if (move.work_offset != work_system_) printer_->work_system(move.work_offset);
-  work_system_ = move.work_offset;
-  const std::string path =
-      fmt::format("{} {}", static_cast<int>(move.path_mode), move.path_tolerance);
-  // a canned cycle follows its path exactly, whatever is in force
-  const bool is_of_cycle =
-      block.request != nullptr && controllers::is_canned_cycle(block.request->motion_code());
-  if (path != path_ && says_path_ && !is_of_cycle) {
-    printer_->path_mode(move.path_mode, move.path_tolerance);
-    path_ = path;
-  }
-  const bool minds_length =
-      move.kind != MoveKind::rapid || step.programmed.begin[2] != step.programmed.end[2];
-  if (is_place_of_machine(block) || !minds_length) return;
-  const bool is_new = move.tool_offset != tool_offset_;
-  // the control may take a length of itself
-  if (is_new || dialect_ == Dialect::heidenhain) {
-    printer_->tool_length(move.tool_offset, tool_);
-    must_name_Z_ = is_new;
-  }
-  tool_offset_ = move.tool_offset;
+// The operator may have jogged behind it.
+void DialectWriter::write_stop(int number) {
+  printer_->stop(number == 1 ? 1 : 0);
+  if (coolant_ != 0) known_coolant_.reset();
+  forget_positions();
 }
 
-void DialectWriter::say_step(const Block& block, const Step& step) {
-  const Move& move = *step.move;
-  const controllers::ModalState& state = *block.state;
-  say_modes(block, step);
-  DialectMotion motion;
-  motion.is_rapid = move.kind == MoveKind::rapid;
-  motion.is_place = is_place_of_machine(block);
-  // work coordinates without rotation and shift
-  AxisWords origin = AxisWords::Zero();
-  if (!motion.is_place) origin = state.work_offset + state.tool_offset;
-  const double turned = step.programmed.turns_axes()
-                            ? (step.programmed.end - step.programmed.begin).tail<3>().norm()
-                            : 0.0;
-  const double length = step.programmed.length();
-  AxisWords at = walk_.out() - origin;
-  const double grid = std::pow(10.0, -printer_->decimals());
-  for (const FittedBlock& fitted : step.blocks) {
-    const AxisWords target = step.programmed.frame.machine(fitted.end) - origin;
-    motion.words.clear();
-    double way = 0.0;
-    for (const Axis axis : kAllAxes) {
-      const int i = index_of(axis);
-      const double unit = is_linear(axis) ? mm : deg;
-      const double value = std::round(target[i] / unit / grid) * grid;
-      const bool is_forced = axis == Axis::Z && must_name_Z_ && walk_.is_known(Axis::Z);
-      const bool moves = std::abs(target[i] - at[i]) > 0.5 * grid * unit;
-      if (!moves && !is_forced) continue;
-      if (is_linear(axis)) way = std::hypot(way, value * unit - at[i]);
-      motion.words.emplace_back(axis, value);
-      at[i] = value * unit;
-    }
-    if (motion.words.empty()) continue;
-    must_name_Z_ = false;
-    const double share = std::max(fitted.t_end - fitted.t_begin, 1e-6);
-    motion.is_inverse = !motion.is_rapid && turned > 0.0 && way > 0.0;
-    motion.feed = motion.is_inverse
-                      ? move.feed * minute / ((length > 0.0 ? length : turned) * share)
-                      : move.feed / (length > 0.0 ? mm_per_min : deg_per_min);
-    printer_->motion(motion);
-  }
-  walk_.arrive(step, at + origin);
+void DialectWriter::write_end() {
+  if (has_ended_) return;
+  has_ended_ = true;
+  printer_->end_smoothing();
+  if (known_coolant_ != 0) printer_->coolant(9);
+  printer_->retract();
+  printer_->spindle(0, 0.0, true);
+  printer_->end();
+}
+
+// Macros of builders move axes, stop the coolant and leave modes behind.
+void DialectWriter::change_tool(int number, const Block& block) {
+  tool_ = number;
+  printer_->tool(number, rpm_, block.state->work_system);
+  if (coolant_ != 0) known_coolant_.reset();
+  path_.clear();
+  forget_positions();
+}
+
+void DialectWriter::forget_positions() {
+  walk_.forget_positions();
+  out_known_.fill(false);
+  height_.reset();
+}
+
+void DialectWriter::restate_spindle_and_coolant() {
+  if (!printer_->is_spindle_known()) printer_->spindle(direction_, rpm_, true);
+  if (known_coolant_ == coolant_) return;
+  if ((coolant_ & controllers::kMist) != 0) printer_->coolant(7);
+  if ((coolant_ & controllers::kFlood) != 0) printer_->coolant(8);
+  known_coolant_ = coolant_;
 }
 
 std::string DialectWriter::finish(const std::vector<std::string>& header) {
+  write_end();
   std::vector<std::string> body;
   body.swap(lines_);
-  printer_->begin(name_, header);
+  printer_->begin(header);
   lines_.insert(lines_.end(), body.begin(), body.end());
-  return printer_->text(name_);
+  return printer_->text();
 }
 
 }  // namespace servomill::sim

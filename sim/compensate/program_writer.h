@@ -12,11 +12,15 @@ namespace servomill::sim {
 class ProgramWriter {
  public:
   virtual ~ProgramWriter() = default;
-  /// @throws InputError for what cannot be corrected, or not be said in this dialect
+  /// @throws InputError for what cannot be corrected, or not be expressed in this dialect
   virtual void write(const controllers::ExecutedBlock& block) = 0;
   /// The text.
   /// @param header  lines for its first comment
   virtual std::string finish(const std::vector<std::string>& header) = 0;
+  /// What the operator has to make sure of at the control, one clause each.
+  virtual std::vector<std::string> assumptions() const { return {}; }
+  /// What was left out or written from memory.
+  virtual std::vector<std::string> warnings() const { return {}; }
 };
 
 }  // namespace servomill::sim

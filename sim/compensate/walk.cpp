@@ -19,6 +19,7 @@ using controllers::Group;
 // By how much of the tolerance the output may stand beside the corrected begin of a move.
 constexpr double kBeside = 0.25;
 constexpr double kLookForLeftover = 5e-3;  // m, between two looks, about
+constexpr double kStill = 1e-12;           // m, rad: what rounding leaves of positions
 
 bool is_named(const ExecutedBlock& block, int i) {
   return block.request != nullptr &&
@@ -63,51 +64,91 @@ Walk::Walk(const WalkOptions& options, const controllers::ToolTable& tools, Corr
       programmed_(options.start),
       out_(options.start),
       known_(options.is_start_known) {
+  // the other control retracts first
+  if (options.is_for_other_control) known_[static_cast<std::size_t>(index_of(Axis::Z))] = false;
+  know_missing_axes();
+}
+
+void Walk::know_missing_axes() {
   for (int i = 0; i < kAxisWords; ++i) {
-    if (!correction.layout().joint_of(kAllAxes[static_cast<std::size_t>(i)])) {
+    if (!correction_.layout().joint_of(kAllAxes[static_cast<std::size_t>(i)])) {
       known_[static_cast<std::size_t>(i)] = true;
     }
   }
+}
+
+void Walk::forget_positions() {
+  known_.fill(false);
+  know_missing_axes();
 }
 
 bool Walk::knows_all() const {
   return std::all_of(known_.begin(), known_.end(), [](bool one) { return one; });
 }
 
-// Which axes have a position that the program says.
-void Walk::learn(const Move& move, const ExecutedBlock& block) {
+// Which axes have a position that the program names. @return those of the move
+AxisFlags Walk::learn(const Move& move, const ExecutedBlock& block) {
   const bool is_absolute = !block.state->is_incremental || is_place_of_machine(block);
   const bool goes_home = (non_modal(block) == 280 || non_modal(block) == 300) && !names_any(block);
+  AxisFlags commanded{};
   for (int i = 0; i < kAxisWords; ++i) {
+    const auto k = static_cast<std::size_t>(i);
     const bool is_polar = i < 2 && block.request != nullptr && block.request->has_polar();
-    if (goes_home || (is_absolute && (is_named(block, i) || is_polar))) {
-      known_[static_cast<std::size_t>(i)] = true;
-    }
-    const Axis axis = kAllAxes[static_cast<std::size_t>(i)];
+    const bool names = is_named(block, i) || is_polar;
+    commanded[k] = goes_home || names || std::abs(move.end_machine[i] - programmed_[i]) > kStill;
+    if (goes_home || (is_absolute && names)) known_[k] = true;
+    const Axis axis = kAllAxes[k];
     if (is_named(block, i) && !correction_.layout().joint_of(axis)) {
       throw InputError({options_.file, move.line, block.request->word(letter(axis)).column},
                        fmt::format("moves {0}; the machine has no axis {0}", letter(axis)));
     }
   }
+  return commanded;
 }
 
-void Walk::refuse(const Move& move) const {
+// Blocks for another control name absolute positions in coordinates that are not turned.
+void Walk::refuse_unknown_begin(const Move& move, const ExecutedBlock& block,
+                                const AxisFlags& commanded) const {
+  if (!options_.is_for_other_control || is_place_of_machine(block)) return;
+  const bool is_turned = block.state->sin_rotation != 0.0;
+  for (int i = 0; i < kAxisWords; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const bool is_mixed = is_turned && i < 2 && (commanded[0] || commanded[1]);
+    if (known_[k] || !(commanded[k] || is_mixed)) continue;
+    const char name = letter(kAllAxes[k]);
+    throw InputError(
+        {options_.file, move.line},
+        is_mixed ? fmt::format("moves in a turned work system while the position of {0} is not "
+                               "known; name X and Y together",
+                               name)
+                 : fmt::format("moves {0} by an increment from a position that nothing has named; "
+                               "name {0} under G90 before",
+                               name));
+  }
+}
+
+void Walk::refuse(const Move& move, const AxisFlags& was_known) const {
   if (move.tool_control != ToolControl::none) {
     throw InputError({options_.file, move.line},
                      "moves under tool-centre-point control or in a tilted work plane cannot be "
                      "compensated; post the program to moves of the axes");
   }
-  if (move.kind == MoveKind::rapid || knows_all()) return;
   std::string axes;
   for (const Axis axis : kAllAxes) {
-    if (is_known(axis)) continue;
+    if (move.kind == MoveKind::rapid || was_known[static_cast<std::size_t>(index_of(axis))])
+      continue;
     axes += fmt::format("{}{}", axes.empty() ? "" : ", ", letter(axis));
   }
+  if (axes.empty()) return;
   throw InputError(
       {options_.file, move.line},
-      fmt::format("feeds while the position of {0} is not known, and with it the errors: no block "
-                  "before this names it; --start {1}=... says where the machine stands",
-                  axes, axes.front()));
+      options_.is_for_other_control
+          ? fmt::format("feeds while the position of {0} is not known: no block since the start, "
+                        "the last tool change or the last stop names it; name it in a rapid",
+                        axes)
+          : fmt::format("feeds while the position of {0} is not known, and with it the errors: no "
+                        "block before this names it; --start {1}=... says where the machine stands",
+                        axes, axes.front()));
 }
 
 // The tool whose length is in force, or else that in the spindle.
@@ -124,10 +165,12 @@ void Walk::choose_tool(const controllers::ModalState& state) {
 }
 
 Step Walk::next(const Move& move, const ExecutedBlock& block) {
-  learn(move, block);
-  refuse(move);
   Step step;
   step.move = &move;
+  step.was_known = known_;
+  step.is_commanded = learn(move, block);
+  refuse_unknown_begin(move, block, step.is_commanded);
+  refuse(move, step.was_known);
   WorkFrame& frame = step.programmed.frame;
   frame.cos = block.state->cos_rotation;
   frame.sin = block.state->sin_rotation;
@@ -139,33 +182,61 @@ Step Walk::next(const Move& move, const ExecutedBlock& block) {
                                    move.arc.centre, move.arc.normal_axis, move.arc.turns);
   }
   step.begin = frame.work(out_);
-  const bool is_place = is_place_of_machine(block);
-  step.is_corrected = !is_place && knows_all();
+  step.is_corrected = !is_place_of_machine(block) && knows_all();
   if (!step.is_corrected) {
-    AxisWords end = step.begin;
-    const bool goes_home = is_place && !names_any(block);
+    AxisWords end = out_;
     for (int i = 0; i < kAxisWords; ++i) {
-      if (goes_home ? move.end_machine[i] != programmed_[i] : is_named(block, i))
-        end[i] = move.end[i];
+      if (step.is_commanded[static_cast<std::size_t>(i)]) end[i] = move.end_machine[i];
     }
-    step.blocks = {{0.0, 1.0, end, {}}};
+    step.blocks = {{0.0, 1.0, frame.work(end), {}}};
     return step;
   }
   choose_tool(*block.state);
   if (move.kind == MoveKind::rapid && !options_.splits_rapids) {
     step.blocks = {{0.0, 1.0, corrected(step.programmed, correction_, 1.0), {}}};
-    return step;
+  } else {
+    fit_feed(step, options_.fit);
   }
+  if (move.kind == MoveKind::rapid) hold_axes(step);
+  return step;
+}
+
+void Walk::fit_feed(Step& step, const FitOptions& options) const {
+  step.blocks.clear();
   const AxisWords c_begin = corrected(step.programmed, correction_, 0.0);
   const AxisWords off = c_begin - step.begin;
-  if (off.head<3>().norm() > kBeside * options_.fit.tolerance ||
-      off.tail<3>().norm() > kBeside * options_.fit.tolerance_turn) {
+  if (off.head<3>().norm() > kBeside * options.tolerance ||
+      off.tail<3>().norm() > kBeside * options.tolerance_turn) {
     step.blocks.push_back({0.0, 0.0, c_begin, {}});
   }
   const AxisWords& from = step.blocks.empty() ? step.begin : c_begin;
-  const auto fitted = fit(step.programmed, correction_, from, options_.fit);
+  const auto fitted = fit(step.programmed, correction_, from, options);
   step.blocks.insert(step.blocks.end(), fitted.begin(), fitted.end());
+}
+
+Step Walk::without_arcs(Step step) const {
+  FitOptions options = options_.fit;
+  options.allow_arcs = false;
+  fit_feed(step, options);
   return step;
+}
+
+// What the original leaves where it is stays.
+void Walk::hold_axes(Step& step) const {
+  const WorkFrame& frame = step.programmed.frame;
+  AxisFlags holds{};
+  for (int i = 0; i < kAxisWords; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    holds[k] = step.was_known[k] && std::abs(step.move->end_machine[i] - programmed_[i]) <= kStill;
+  }
+  const bool is_turned = frame.sin != 0.0 && holds[0] != holds[1];
+  for (FittedBlock& block : step.blocks) {
+    AxisWords end = is_turned ? frame.machine(block.end) : block.end;
+    for (int i = 0; i < kAxisWords; ++i) {
+      if (holds[static_cast<std::size_t>(i)]) end[i] = is_turned ? out_[i] : step.begin[i];
+    }
+    block.end = is_turned ? frame.work(end) : end;
+  }
 }
 
 void Walk::look_for_leftover(const Step& step) {
@@ -189,7 +260,8 @@ void Walk::warn_of_travel(const Step& step) {
     const Joints Q = layout.joints(at);
     bool is_outside = false;
     for (int j = 0; j < kJoints; ++j) {
-      if (layout.has(j)) is_outside |= Q[j] < options_.lower[j] || Q[j] > options_.upper[j];
+      if (!layout.has(j) || !is_known(*layout.axis[static_cast<std::size_t>(j)])) continue;
+      is_outside |= Q[j] < options_.lower[j] || Q[j] > options_.upper[j];
     }
     if (!is_outside) continue;
     ++summary_.outside_count;
@@ -213,7 +285,8 @@ void Walk::count(const Step& step) {
     const AxisWords at = step.programmed.at(block.t_end);
     const AxisWords d = frame.turned(block.end - at);
     summary_.largest_turn = std::max(summary_.largest_turn, d.tail<3>().cwiseAbs().maxCoeff());
-    if (d.head<3>().norm() <= summary_.largest.correction.head<3>().norm()) continue;
+    const double most = std::max(kStill, summary_.largest.correction.head<3>().norm());
+    if (d.head<3>().norm() <= most) continue;
     summary_.largest = {move.line, frame.machine(at), d};
   }
   if (move.kind == MoveKind::rapid) return;
@@ -249,6 +322,14 @@ void Walk::arrive(const Step& step, const AxisWords& machine) {
   warn_of_travel(step);
   programmed_ = step.move->end_machine;
   out_ = machine;
+}
+
+void Walk::arrive_elsewhere(const Move& move) {
+  ++summary_.blocks_before;
+  ++summary_.blocks_after;
+  const int Z = index_of(Axis::Z);
+  known_[static_cast<std::size_t>(Z)] = false;
+  programmed_[Z] = out_[Z] = move.end_machine[Z];
 }
 
 }  // namespace servomill::sim

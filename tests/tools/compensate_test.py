@@ -61,12 +61,16 @@ M30
 def check_names(servomill):
     """Corrected programs are called as the control calls its programs."""
     with tempfile.TemporaryDirectory() as folder:
-        pathlib.Path(folder, "part.ngc").write_text("G21 G90 G0 X1 Y2 Z3\nG1 X5 F100\nM2\n")
+        pathlib.Path(folder, "part.ngc").write_text("G21 G90 T1 M6 G43 H1\nG0 X1 Y2 Z3\nG1 X5 F100\nM2\n")
         for dialect in ("linuxcnc", "heidenhain", "fanuc", "siemens"):
-            subprocess.run([servomill, "compensate", "part.ngc", "--machine", MACHINE, "--dialect", dialect, "-q"],
+            number = ["--program-number", "17"] if dialect == "fanuc" else []
+            subprocess.run([servomill, "compensate", "part.ngc", "--machine", MACHINE, "--dialect", dialect, "-q",
+                            "--work-offset", "X=0,Y=0,Z=0", "--tool-length", "1=50", "--retract", "Z=0", *number],
                            cwd=folder, check=True)
         names = {one.name for one in pathlib.Path(folder).iterdir()} - {"part.ngc"}
-        assert names == {f"part.compensated.{end}" for end in ("ngc", "h", "nc", "mpf")}, names
+        assert names == {"part.compensated.ngc", "part_compensated.h", "O0017.nc", "part_compensated.mpf"}, names
+        assert "BEGIN PGM PART_COMPENSATED MM" in pathlib.Path(folder, "part_compensated.h").read_text()
+        assert "O0017 (O0017)" in pathlib.Path(folder, "O0017.nc").read_text()
 
 
 def library_path(exe):

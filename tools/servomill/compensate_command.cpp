@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -7,6 +8,7 @@
 #include "sim/compensate/compensate.h"
 #include "sim/output_name.h"
 #include "sim/store.h"
+#include "sim/sweep/design.h"
 #include "sim/write_file.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/program_options.h"
@@ -23,12 +25,93 @@ sim::Dialect dialect_of(const Options& options) {
 // As programs are called on each control; of LinuxCNC as the one that was read.
 constexpr std::array<std::string_view, 4> kExtensions = {"", ".h", ".nc", ".mpf"};
 
-std::string program_name(const Options& options) {
+// A name that every control takes: letters, digits, '_'.
+std::string plain_name(const std::string& stem) {
+  std::string out;
+  for (const char c : stem) {
+    const bool is_plain =
+        (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_';
+    out += is_plain ? c : '_';
+  }
+  return out.empty() ? "program" : out;
+}
+
+std::string upper(std::string text) {
+  for (char& c : text) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  return text;
+}
+
+// Of Fanuc: as given, or the digits of a file called 1234.ngc or O1234.ngc; 0: none.
+int program_number(const Options& options) {
+  constexpr int kMost = 9999;
+  const bool is_given = options.has("program-number");
+  std::string text = is_given ? options.get<std::string>("program-number")
+                              : fs::path(options.word()).stem().string();
+  if (!is_given && !text.empty() && (text[0] == 'O' || text[0] == 'o')) text.erase(0, 1);
+  const bool is_number = !text.empty() && text.size() <= 4 &&
+                         text.find_first_not_of("0123456789") == std::string::npos;
+  const int number = is_number ? std::stoi(text) : 0;
+  if (number >= 1 && number <= kMost) return number;
+  if (!is_given) return 0;
+  throw InputError({"--program-number " + text}, "must be 1 ... 9999");
+}
+
+std::string output_name(const Options& options) {
   if (options.has("output")) return options.get<std::string>("output");
   const fs::path path(options.word());
-  std::string extension(kExtensions[static_cast<std::size_t>(dialect_of(options))]);
-  if (extension.empty()) extension = path.extension().string();
-  return (path.parent_path() / (path.stem().string() + ".compensated" + extension)).string();
+  const sim::Dialect dialect = dialect_of(options);
+  const std::string extension(kExtensions[static_cast<std::size_t>(dialect)]);
+  std::string name = path.stem().string() + ".compensated" + path.extension().string();
+  if (dialect == sim::Dialect::fanuc && program_number(options) > 0) {
+    name = fmt::format("O{:04}{}", program_number(options), extension);
+  } else if (dialect != sim::Dialect::linuxcnc) {
+    name = plain_name(path.stem().string()) + "_compensated" + extension;
+  }
+  return (path.parent_path() / name).string();
+}
+
+// Of the program as of its file.
+std::string program_name(const Options& options) {
+  const std::string output = output_name(options);
+  const bool is_file = output != "-";
+  const std::string stem = fs::path(is_file ? output : options.word()).stem().string();
+  const std::string name = plain_name(stem);
+  if (is_file && name != stem && dialect_of(options) == sim::Dialect::heidenhain) {
+    throw InputError({"--output " + output},
+                     "must be called by letters, digits and '_', as the program in it is");
+  }
+  return upper(name);
+}
+
+// "Z=-5": mm
+std::optional<double> retract_of(const Options& options) {
+  if (!options.has("retract")) return std::nullopt;
+  const auto& text = options.get<std::string>("retract");
+  const bool names_Z = text.size() > 2 && (text[0] == 'Z' || text[0] == 'z') && text[1] == '=';
+  const double value = names_Z ? sim::number_of(text.substr(2)) : std::nan("");
+  if (std::isfinite(value)) return value * mm;
+  throw InputError({"--retract " + text}, "must be Z=NUMBER, a machine coordinate in mm");
+}
+
+// A power of ten in mm, so that positions have whole digits.
+double resolution_of(const Options& options) {
+  const double resolution = positive_option(options, "resolution", sim::kLength).value_or(0.0);
+  if (resolution == 0.0) return 0.0;
+  const double digits = -std::log10(resolution / mm);
+  if (std::abs(digits - std::round(digits)) < 1e-6 && digits > 1.5 && digits < 6.5) {
+    return resolution;
+  }
+  throw InputError({"--resolution"}, "must be 0.01 mm, 1 um, 0.1 um, ... or 1 nm");
+}
+
+std::optional<int> preset_of(const Options& options) {
+  if (!options.has("preset")) return std::nullopt;
+  const auto& text = options.get<std::string>("preset");
+  const double number = sim::number_of(text);
+  if (number >= 0.0 && number <= 9999.0 && number == std::floor(number)) {
+    return static_cast<int>(number);
+  }
+  throw InputError({"--preset " + text}, "must be a row of the preset table, 0 ... 9999");
 }
 
 std::string text_of(const Options& options, const std::string& name) {
@@ -54,7 +137,13 @@ sim::CompensateRequest request_of(const Options& options) {
   request.inputs = program_inputs(options);
   request.inputs.machine.clear();  // tool-centre-point control is not corrected
   request.work_offsets = options.list("work-offset");
+  request.tool_lengths = options.list("tool-length");
   request.start = text_of(options, "start");
+  request.program_name = program_name(options);
+  request.program_number = program_number(options);
+  request.resolution = resolution_of(options);
+  request.retract_Z = retract_of(options);
+  request.preset = preset_of(options);
   request.records = options.has("record");
   return request;
 }
@@ -95,7 +184,8 @@ int compensate_command(const Arguments& arguments) {
                 "changes a key of the machine, such as errors.measured.EC0Y.um_per_m=120");
   options.add()("output,o", text()->value_name("OUT"),
                 "corrected program; - for standard output. Default: PROGRAM with .compensated "
-                "before its extension, which is .h, .nc or .mpf for heidenhain, fanuc, siemens");
+                "before its extension; PROGRAM_compensated.h or .mpf for heidenhain, siemens, "
+                "O1234.nc for fanuc");
   options.add()("tolerance", text()->default_value("1 um")->value_name("\"1 um\""),
                 "by which the path may leave the exactly corrected one");
   options.add()("max-block", text()->value_name("\"1 mm\""),
@@ -105,11 +195,23 @@ int compensate_command(const Arguments& arguments) {
   options.add()("axes", text()->default_value("linear")->value_name("linear|all"),
                 "axes that correct: X, Y, Z, or rotary axes, too");
   options.add()("dialect", text()->default_value("linuxcnc")->value_name("NAME"),
-                "linuxcnc, or lines for heidenhain, fanuc, siemens");
+                "linuxcnc, or blocks for heidenhain, fanuc, siemens");
+  options.add()("retract", text()->value_name("Z=-5"),
+                "other dialects: machine coordinate to which Z retracts before and after, mm; "
+                "default: axis.Z.retract_mm of the machine file");
+  options.add()("program-number", text()->value_name("1234"),
+                "fanuc: number of the program; default: that of a file called 1234 or O1234");
+  options.add()("resolution", text()->value_name("\"1 um\""),
+                "other dialects: least step of a position; default: 1 um (IS-B), siemens 10 nm");
+  options.add()("preset", text()->value_name("N"),
+                "heidenhain: activates this row of the preset table (cycle 247) as G54; default: "
+                "the active preset is G54");
   add_program_options(options);
   options.add()("work-offset", texts()->value_name("X=10,Y=-5"),
                 "where G54 lies in the machine, mm and deg; G55:X=10,R=30 for another one and with "
-                "a rotation");
+                "a rotation; several of one system add up");
+  options.add()("tool-length", texts()->value_name("1=50"),
+                "length of tool 1, mm, in place of that of --tools");
   options.add()("start", text()->value_name("X=0,Y=0"),
                 "where the machine stands before the program, in machine coordinates: for programs "
                 "that feed before every axis was named");
@@ -119,7 +221,7 @@ int compensate_command(const Arguments& arguments) {
   options.add()("quiet,q", "prints nothing but warnings and faults");
   if (!options.parse(arguments)) return kDone;
 
-  const std::string name = program_name(options);
+  const std::string name = output_name(options);
   const bool to_stdout = name == "-", force = options.has("force");
   const sim::CompensateRequest request = request_of(options);
   refuse_outputs(options, name);

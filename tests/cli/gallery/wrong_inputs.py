@@ -25,6 +25,8 @@ def program(title, old, new, commands=None):
 
 ERRORS = "[errors.measured]\nEC0Y = { um_per_m = 120.0 }\n"
 COMPENSATE_IT = "servomill compensate cut.ngc --machine machine.toml --errors errors.toml -o out.ngc"
+AT_ZERO = COMPENSATE_IT + " --work-offset X=0,Y=0,Z=0"
+FOR_FANUC = AT_ZERO + " --dialect fanuc --retract Z=0 --program-number 12"
 CUT = "G21 G90\nG0 X0 Y0 Z5\nG1 X10 F100\nM2\n"
 
 
@@ -42,16 +44,25 @@ COMPENSATE = [
                 COMPENSATE_IT + " --work-offset X10", COMPENSATE_IT + " --work-offset G60:X=10",
                 COMPENSATE_IT + " --work-offset A=10", COMPENSATE_IT + " --start X=one", COMPENSATE_IT + " --parameter '#101'"),
     compensated("a program that is there", CUT, "servomill compensate cut.ngc --machine machine.toml --errors errors.toml -o cut.ngc"),
-    compensated("a feed from nobody knows where", CUT.replace(" Y0", "")),
-    compensated("an axis that the machine lacks", CUT.replace("X10", "A10")),
+    compensated("a feed from nobody knows where", CUT.replace(" Y0", ""), AT_ZERO),
+    compensated("an axis that the machine lacks", CUT.replace("X10", "A10"), AT_ZERO),
     compensated("a work system that nobody said the place of", CUT.replace("G1", "G55 G1"), COMPENSATE_IT,
-                COMPENSATE_IT + " --work-offset X=10"),
+                COMPENSATE_IT + " --work-offset X=10", AT_ZERO + " --work-offset X=10"),
     compensated("moves under tool-centre-point control", CUT.replace("G1", "G43.4 H1\nG1"),
-                COMPENSATE_IT + " --tools tools.tbl", **{"tools.tbl": "T1 P1 Z+40\n"}),
+                AT_ZERO + " --tools tools.tbl", **{"tools.tbl": "T1 P1 Z+40\n"}),
     compensated("parameter files of compensate", CUT, COMPENSATE_IT + " --parameter-file none.var",
                 COMPENSATE_IT + " --parameter-file wrong.var",
                 **{"wrong.var": "5221 1.5\n5222\n12 1\n5220 10\n5210 1\n"}),
-    compensated("what a dialect cannot say", CUT.replace("G1", "G64 P0.01\nG1"), COMPENSATE_IT + " --dialect fanuc"),
+    compensated("what a dialect cannot express", CUT.replace("G1", "G59.1\nG1"), FOR_FANUC + " --work-offset G59.1:X=0"),
+    compensated("options of other dialects that are missing or cannot be", CUT, AT_ZERO + " --dialect fanuc",
+                AT_ZERO + " --dialect fanuc --retract Z=0", FOR_FANUC + "345", FOR_FANUC + " --resolution '3 um'",
+                FOR_FANUC + " --split-rapids", AT_ZERO + " --retract 5", AT_ZERO + " --preset -1",
+                AT_ZERO + " --tool-length 50", COMPENSATE_IT.replace("out.ngc", "my-part.h") + " --dialect heidenhain"),
+    compensated("unknown positions for another control", "G21 G90\nG91 G0 Z5\nM2\n", FOR_FANUC),
+    compensated("a feed behind a stop", CUT.replace("G1", "M0\nG1"), FOR_FANUC),
+    compensated("a move that the operator may leave out", CUT.replace("G1", "/ G0 X5\nG1"), FOR_FANUC),
+    compensated("a program in two units for a control that changes its offsets with the unit",
+                CUT.replace("G1", "G20\nG1"), FOR_FANUC),
 ]
 
 COMMAND_LINE = [

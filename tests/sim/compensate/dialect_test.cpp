@@ -27,6 +27,9 @@ std::string said(Dialect dialect, const std::string& program) {
   Trial trial(program, "plate.ngc");
   trial.request.error_file = written("none.toml", "[errors.none]\nEXX = { constant_um = 0.0 }\n");
   trial.request.dialect = dialect;
+  trial.request.program_name = "PLATE";
+  trial.request.program_number = 1234;
+  trial.request.retract_Z = -2 * mm;
   const std::string text = trial.run().program;
   std::string out;
   for (std::size_t from = 0; from < text.size();) {
@@ -34,8 +37,8 @@ std::string said(Dialect dialect, const std::string& program) {
     const std::string line = text.substr(from, end - from);
     from = end + 1;
     const auto has = [&](const char* word) { return line.find(word) != std::string::npos; };
-    if (!has("servomill") && !has("SERVOMILL") && !has("assumed") && !has("ASSUMED") &&
-        !has("path within") && !has("PATH WITHIN")) {
+    if (!has("POSITIONS ROUNDED") && !has("servomill") && !has("SERVOMILL") && !has("assumed") &&
+        !has("ASSUMED") && !has("path within") && !has("PATH WITHIN")) {
       out += line + "\n";
     }
   }
@@ -54,77 +57,106 @@ std::string refusal(Dialect dialect, const std::string& program) {
 
 TEST(Dialect, HeidenhainConversational) {
   EXPECT_EQ(said(Dialect::heidenhain, kProgram),
-            "0 BEGIN PGM COMPENSATE_PLATE MM\n"
-            "6 ; a plate\n"
-            "7 TOOL CALL 1 Z\n"
-            "8 TOOL CALL S12000\n"
-            "9 L M3\n"
-            "10 L X+10 Y+20 Z+5 R0 FMAX\n"
-            "11 L M8\n"
-            "12 ; plunge\n"
-            "13 L Z-1 F300\n"
-            "14 L X+20.5 F1200\n"
-            "15 CYCL DEF 9.0 DWELL TIME\n"
-            "16 CYCL DEF 9.1 DWELL 1.5\n"
-            "17 ; half done\n"
-            "18 L M0\n"
-            "19 L Z+0 FMAX M91\n"
-            "20 L Z+5 FMAX\n"
-            "21 L M9\n"
-            "22 L M5\n"
-            "23 L M30\n"
-            "24 END PGM COMPENSATE_PLATE MM\n");
+            "0 BEGIN PGM PLATE MM\n"
+            "9 CYCL DEF 7.0 DATUM SHIFT\n"
+            "10 CYCL DEF 7.1 X+0\n"
+            "11 CYCL DEF 7.2 Y+0\n"
+            "12 CYCL DEF 7.3 Z+0\n"
+            "13 CYCL DEF 8.0 MIRROR IMAGE\n"
+            "14 CYCL DEF 8.1\n"
+            "15 CYCL DEF 10.0 ROTATION\n"
+            "16 CYCL DEF 10.1 ROT+0\n"
+            "17 CYCL DEF 11.0 SCALING\n"
+            "18 CYCL DEF 11.1 SCL 1\n"
+            "19 L Z-2 R0 FMAX M91\n"
+            "20 ; a plate\n"
+            "21 TOOL CALL 1 Z\n"
+            "22 TOOL CALL S12000\n"
+            "23 L M3\n"
+            "24 L X+10 Y+20 R0 FMAX\n"
+            "25 L Z+5 FMAX\n"
+            "26 L M8\n"
+            "27 ; plunge\n"
+            "28 L Z-1 F300\n"
+            "29 L X+20.5 F1200\n"
+            "30 CYCL DEF 9.0 DWELL TIME\n"
+            "31 CYCL DEF 9.1 DWELL 1.5\n"
+            "32 ; half done\n"
+            "33 L M0\n"
+            "34 L M3\n"
+            "35 L M8\n"
+            "36 L Z+0 FMAX M91\n"
+            "37 L Z+5 FMAX\n"
+            "38 L M9\n"
+            "39 L Z-2 R0 FMAX M91\n"
+            "40 L M5\n"
+            "41 L M30\n"
+            "42 END PGM PLATE MM\n");
 }
 
 TEST(Dialect, Fanuc) {
   EXPECT_EQ(said(Dialect::fanuc, kProgram),
             "%\n"
-            "O0001 (COMPENSATE_PLATE)\n"
-            "N1 G21 G17 G40 G49 G80 G90 G94\n"
+            "O1234 (PLATE)\n"
+            "N1 G21\n"
+            "N2 G17 G40 G80 G90 G94\n"
+            "N3 G69\n"
+            "N4 G15\n"
+            "N5 G50\n"
+            "N6 G50.1 X0. Y0. Z0.\n"
+            "N7 G90 G49 G53 G0 Z-2.\n"
             "(A PLATE)\n"
-            "N2 T1 M6\n"
-            "N3 S12000\n"
-            "N4 M3\n"
-            "N5 G54\n"
-            "N6 G43 H1 G0 X10. Y20. Z5.\n"
-            "N7 M8\n"
+            "N8 T1 M6\n"
+            "N9 G90 G54 G17 G94 G40 G80\n"
+            "N10 S12000 M3\n"
+            "N11 G0 X10. Y20.\n"
+            "N12 G43 H1 Z5.\n"
+            "N13 M8\n"
             "(PLUNGE)\n"
-            "N8 G1 Z-1. F300.\n"
-            "N9 X20.5 F1200.\n"
-            "N10 G4 X1.5\n"
+            "N14 G1 Z-1. F300.\n"
+            "N15 X20.5 F1200.\n"
+            "N16 G4 X1.5\n"
             "(HALF DONE)\n"
-            "N11 M0\n"
-            "N12 G53 G0 Z0.\n"
-            "N13 Z5.\n"
-            "N14 M9\n"
-            "N15 M5\n"
-            "N16 M30\n"
+            "N17 M0\n"
+            "N18 M3\n"
+            "N19 M8\n"
+            "N20 G90 G49 G53 G0 Z0.\n"
+            "N21 G43 H1 Z5.\n"
+            "N22 M9\n"
+            "N23 G90 G49 G53 G0 Z-2.\n"
+            "N24 M5\n"
+            "N25 M30\n"
             "%\n");
 }
 
 TEST(Dialect, Siemens) {
   EXPECT_EQ(said(Dialect::siemens, kProgram),
-            "; COMPENSATE_PLATE\n"
-            "N10 G710 G17 G40 G90 G94\n"
+            "; PLATE\n"
+            "N10 G17 G40 G90 G94 G710\n"
+            "N20 TRANS\n"
+            "N30 SUPA G0 Z-2 D0\n"
             "; a plate\n"
-            "N20 T1\n"
-            "N30 M6\n"
-            "N40 S12000\n"
-            "N50 M3\n"
-            "N60 G54\n"
-            "N70 D1 G0 X10 Y20 Z5\n"
-            "N80 M8\n"
+            "N40 T1\n"
+            "N50 M6\n"
+            "N60 G17 G40 G90 G94 G54\n"
+            "N70 S12000 M3\n"
+            "N80 G0 X10 Y20\n"
+            "N90 D1 Z5\n"
+            "N100 M8\n"
             "; plunge\n"
-            "N90 G1 Z-1 F300\n"
-            "N100 X20.5 F1200\n"
-            "N110 G4 F1.5\n"
-            "N120 MSG(\"half done\")\n"
-            "N130 M0\n"
-            "N140 SUPA D0 G0 Z0\n"
-            "N150 D1 Z5\n"
-            "N160 M9\n"
-            "N170 M5\n"
-            "N180 M30\n");
+            "N110 G1 Z-1 F300\n"
+            "N120 X20.5 F1200\n"
+            "N130 G4 F1.5\n"
+            "N140 MSG(\"half done\")\n"
+            "N150 M0\n"
+            "N160 M3\n"
+            "N170 M8\n"
+            "N180 SUPA G0 Z0 D0\n"
+            "N190 D1 Z5\n"
+            "N200 M9\n"
+            "N210 SUPA G0 Z-2 D0\n"
+            "N220 M5\n"
+            "N230 M30\n");
 }
 
 // G55 of the trial is turned by 12.5 deg: 1 inch along X is 24.798 mm and 5.498 mm.
@@ -136,33 +168,36 @@ TEST(Dialect, ShiftsRotationsInchesAndIncrementsAreInTheNumbers) {
                                 "G91 X1\n"
                                 "M2\n");
   EXPECT_EQ(text,
-            "; COMPENSATE_PLATE\n"
-            "N10 G710 G17 G40 G90 G94\n"
-            "N20 G55\n"
-            "N30 G0 X0 Y0 Z0\n"
-            "N40 G1 X24.79792 Y5.49757 F254\n"
-            "N50 X49.59584 Y10.99513\n"
-            "N60 M30\n");
+            "; PLATE\n"
+            "N10 G17 G40 G90 G94 G710\n"
+            "N20 TRANS\n"
+            "N30 SUPA G0 Z-2 D0\n"
+            "N40 G55\n"
+            "N50 G0 X0 Y0\n"
+            "N60 Z0\n"
+            "N70 G1 X24.79792 Y5.49757 F254\n"
+            "N80 X49.59584 Y10.99513\n"
+            "N90 SUPA G0 Z-2 D0\n"
+            "N100 M5\n"
+            "N110 M30\n");
 }
 
-TEST(Dialect, WhatItCannotSayIsRefusedWithItsPlace) {
+TEST(Dialect, WhatItCannotExpressIsRefusedWithItsPlace) {
   const std::string start = "G21 G90\nT1 M6 G43 H1\nS1000 M3\nG0 X0 Y0 Z5\n";
   EXPECT_EQ(refusal(Dialect::heidenhain, start + "G55 G1 X1 F100\nM2\n"),
             "plate.ngc:5: error: selects a work system other than G54; presets are the control's; "
-            "that cannot be said for heidenhain");
-  EXPECT_EQ(refusal(Dialect::fanuc, start + "G64 P0.01 G1 X1 F100\nM2\n"),
-            "plate.ngc:5: error: gives a tolerance (G64 P); that cannot be said for fanuc");
+            "that cannot be expressed for heidenhain");
   EXPECT_EQ(refusal(Dialect::siemens, start + "G61 G1 X1 F100\nM2\n"),
-            "plate.ngc:5: error: asks for G61 as LinuxCNC means it; that cannot be said for "
+            "plate.ngc:5: error: asks for G61 as LinuxCNC means it; that cannot be expressed for "
             "siemens");
   EXPECT_EQ(refusal(Dialect::siemens, start + "G10 L2 P1 X3\nM2\n"),
-            "plate.ngc:5:1: error: G10 cannot be said for siemens");
+            "plate.ngc:5:1: error: G10 cannot be expressed for siemens");
   EXPECT_EQ(
       refusal(Dialect::heidenhain, start + "M7\nM2\n"),
       "plate.ngc:5: error: switches mist (M7), which is the machine builder's; that cannot be "
-      "said for heidenhain");
+      "expressed for heidenhain");
   EXPECT_EQ(refusal(Dialect::fanuc, start + "M48\nM2\n"),
-            "plate.ngc:5:1: error: M48 cannot be said for fanuc");
+            "plate.ngc:5:1: error: M48 cannot be expressed for fanuc");
 }
 
 }  // namespace

@@ -62,23 +62,27 @@ double distance(const Vector3d& p, const std::vector<MoveCurve>& ways) {
   return best;
 }
 
-// The largest distance of the true tip from the ideal way, on feed moves and at the ends of rapids.
+// The largest distance of the true tip from the ideal way on feed moves. Rapids end where the axes
+// that do not move still have their old corrections; a short feed then leads to the path.
 double residual(const std::string& program, const std::string& corrected, const Trial& trial,
                 const Truth& truth) {
   const auto ways = programmed_ways(moves_of(program, trial.request));
   const Vector3d p_ST = truth.ideal_tip(AxisWords::Zero());
+  constexpr double kLongestLead = 0.3e-3;  // m
   double worst = 0.0;
   AxisWords at = AxisWords::Zero();
-  bool is_first = true;
+  bool is_behind_rapid = true;
   for (const Move& move : moves_of(corrected, trial.request)) {
     if (!is_motion(move.kind)) continue;
     const MoveCurve curve(at, move);
     constexpr int kLooks = 4;
-    for (int i = move.kind == MoveKind::rapid ? kLooks : 1; i <= kLooks && !is_first; ++i) {
+    const bool is_rapid = move.kind == MoveKind::rapid;
+    const bool leads = is_behind_rapid && move.s_end - move.s_begin < kLongestLead;
+    for (int i = leads ? kLooks : 1; i <= kLooks && !is_rapid; ++i) {
       const Vector3d tip = truth.tip(curve.at(static_cast<double>(i) / kLooks));
       worst = std::max(worst, distance(tip - p_ST, ways));
     }
-    is_first = false;
+    is_behind_rapid = is_rapid;
     at = move.end_machine;
   }
   return worst;

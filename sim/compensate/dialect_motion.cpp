@@ -1,0 +1,260 @@
+// Moves of a corrected program in the words of another control.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "controllers/gcode/canned_cycles.h"
+#include "controllers/gcode/modal_state.h"
+#include "controllers/gcode/request.h"
+#include "plant/vocabulary/units.h"
+#include "sim/compensate/dialect_writer.h"
+
+namespace servomill::sim {
+
+using controllers::Group;
+
+namespace {
+
+constexpr double kShortestShare = 1e-3;     // of a move, for the time of blocks that lead to it
+constexpr double kLeastSweep = 1e-3 * deg;  // of an arc, and of what it lacks of a full circle
+constexpr double kMostRadiusError = 5e-6;   // m, between begin and end of an arc
+constexpr double kMostTurnOff = 0.25 * std::numbers::pi;  // rad: farther off, an arc goes round
+
+}  // namespace
+
+// G28 and G30 go to places that LinuxCNC has stored: on another control only "up" is meant.
+void DialectWriter::write_reference(const Move& move, const Block& block, bool is_last) {
+  const controllers::Request& request = *block.request;
+  const bool is_G28 = request.code(Group::g_non_modal) == 280;
+  for (const Axis axis : kAllAxes) {
+    if (axis != Axis::Z && !request.has(letter(axis))) continue;
+    if (axis == Axis::Z && request.has('Z')) continue;
+    throw Unsayable{fmt::format("{} of other axes than Z goes to places that LinuxCNC has stored",
+                                is_G28 ? "G28" : "G30")};
+  }
+  if (block.state->is_incremental && request['Z'] != 0.0) {
+    throw Unsayable{"goes home by way of an increment; name Z0 under G91"};
+  }
+  if (!is_last) {
+    if (!block.state->is_incremental) write_step(block, walk_.next(move, block));
+    return;
+  }
+  restate_spindle_and_coolant();
+  bool is_at_reference = false;
+  if (is_G28) {
+    is_at_reference = printer_->reference_Z();
+  } else {
+    printer_->retract();
+  }
+  if (!is_at_reference) height_ = settings_.retract_Z;
+  out_known_[static_cast<std::size_t>(index_of(Axis::Z))] = false;
+  walk_.arrive_elsewhere(move);
+}
+
+void DialectWriter::write_path_mode(const Block& block, const Move& move) {
+  const std::string path =
+      fmt::format("{} {}", static_cast<int>(move.path_mode), move.path_tolerance);
+  // a canned cycle follows its path exactly, whatever is in force
+  const bool is_of_cycle =
+      block.request != nullptr && controllers::is_canned_cycle(block.request->motion_code());
+  if (path == path_ || !says_path_ || is_of_cycle) return;
+  printer_->path_mode(move.path_mode, move.path_tolerance);
+  path_ = path;
+}
+
+DialectMotion DialectWriter::motion_of(const Block& block, const Step& step) const {
+  const Move& move = *step.move;
+  DialectMotion motion;
+  motion.is_rapid = move.kind == MoveKind::rapid;
+  motion.is_place = is_place_of_machine(block);
+  motion.work_system = move.work_offset;
+  motion.length = move.tool_offset;
+  motion.tool = tool_;
+  AxisWords across = block.state->tool_offset;
+  across[index_of(Axis::Z)] = 0.0;
+  if (!motion.is_place && !across.isZero(0.0)) {
+    throw Unsayable{
+        fmt::format("moves with offsets of tool {} in other axes than Z", move.tool_offset)};
+  }
+  return motion;
+}
+
+void DialectWriter::set_feed(DialectMotion& motion, const Step& step,
+                             const FittedBlock& fitted) const {
+  const Move& move = *step.move;
+  if (motion.is_rapid) return;
+  const double turned = step.programmed.turns_axes()
+                            ? (step.programmed.end - step.programmed.begin).tail<3>().norm()
+                            : 0.0;
+  const double length = step.programmed.length();
+  const bool has_linear = std::any_of(motion.words.begin(), motion.words.end(),
+                                      [](const auto& word) { return is_linear(word.first); });
+  if (turned > 0.0 && (has_linear || move.feed_mode == FeedMode::inverse_time)) {
+    if (move.feed_mode == FeedMode::units_per_revolution) {
+      throw Unsayable{"feeds rotary axes per revolution of the spindle (G95)"};
+    }
+    const double share = std::max(fitted.t_end - fitted.t_begin, kShortestShare);
+    motion.feed_mode = FeedMode::inverse_time;
+    motion.feed = move.feed * minute / ((length > 0.0 ? length : turned) * share);
+    return;
+  }
+  const Axis axis = length > 0.0 ? Axis::X : Axis::C;
+  if (move.feed_mode == FeedMode::units_per_revolution) {
+    motion.feed_mode = move.feed_mode;
+    motion.feed = move.value / printer_->unit(axis);
+  } else {
+    motion.feed = move.feed * minute / printer_->unit(axis);
+  }
+}
+
+// As the control reads it.
+AxisWords DialectWriter::on_grid(const AxisWords& target) const {
+  AxisWords out = target;
+  for (const Axis axis : kAllAxes) {
+    const int i = index_of(axis);
+    const double grid = std::pow(10.0, -printer_->decimals(axis)), unit = printer_->unit(axis);
+    out[i] = std::round(target[i] / unit / grid) * grid * unit;
+  }
+  return out;
+}
+
+// Places of the machine have to be there to the digit.
+void DialectWriter::check_place(const Step& step, const AxisWords& on_grid) const {
+  constexpr double kExact = 1e-12;  // m, rad
+  for (const Axis axis : kAllAxes) {
+    const int i = index_of(axis);
+    const double target = step.move->end_machine[i];
+    if (!step.is_commanded[static_cast<std::size_t>(i)] || std::abs(on_grid[i] - target) < kExact) {
+      continue;
+    }
+    throw Unsayable{
+        fmt::format("goes to {}{:.7g} of the machine, which has more digits than the "
+                    "resolution of {:g} um (--resolution)",
+                    letter(axis), target / printer_->unit(axis), settings_.resolution / um)};
+  }
+}
+
+// Those that change, and of those without a known position all that the move names.
+DialectWriter::Words DialectWriter::words_of(const Step& step, const AxisWords& target,
+                                             const AxisWords& at) const {
+  Words out;
+  for (const Axis axis : kAllAxes) {
+    const int i = index_of(axis);
+    const auto k = static_cast<std::size_t>(i);
+    const double unit = printer_->unit(axis), grid = std::pow(10.0, -printer_->decimals(axis));
+    const bool is_feed = step.move->kind != MoveKind::rapid;
+    const bool moves = out_known_[k] ? std::abs(target[i] - at[i]) > 0.5 * grid * unit
+                                     : step.is_commanded[k] || is_feed;
+    if (moves && walk_.has(axis)) out.emplace_back(axis, target[i] / unit);
+  }
+  return out;
+}
+
+std::optional<DialectArc> DialectWriter::arc_of(const Step& step, const FittedBlock& fitted,
+                                                const AxisWords& origin, const AxisWords& from,
+                                                const AxisWords& to) const {
+  if (fitted.arc->normal_axis != 2 || std::abs(fitted.arc->turns) != 1) return std::nullopt;
+  AxisWords centre = AxisWords::Zero();
+  centre.head<3>() = fitted.arc->centre;
+  centre = step.programmed.frame.machine(centre) - origin;
+  const double unit = printer_->unit(Axis::X), grid = std::pow(10.0, -printer_->decimals(Axis::X));
+  const Eigen::Vector2d begin = from.head<2>(), end = to.head<2>();
+  const Eigen::Vector2d d = (((centre.head<2>() - begin) / unit / grid).array().round()) * grid;
+  const Eigen::Vector2d a = -d * unit, b = end - begin + a;  // from the centre
+  if (std::abs(a.norm() - b.norm()) > kMostRadiusError) return std::nullopt;
+  // start = end is a full circle: the digits must not make one, nor miss one
+  const double wanted = step.programmed.arc->sweep * (fitted.t_end - fitted.t_begin);
+  const double full = 2.0 * std::numbers::pi, sign = wanted > 0.0 ? 1.0 : -1.0;
+  double sweep = sign * std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+  if (sweep < 0.0) sweep += full;
+  const bool is_closed = (end - begin).cwiseAbs().maxCoeff() < 0.5 * grid * unit;
+  if (is_closed) sweep = full;
+  if (!is_closed && (sweep < kLeastSweep || sweep > full - kLeastSweep)) return std::nullopt;
+  if (std::abs(sweep - std::abs(wanted)) > kMostTurnOff) return std::nullopt;
+  DialectArc arc;
+  arc.is_counter_clockwise = sign > 0.0;
+  arc.dx = d.x();
+  arc.dy = d.y();
+  arc.x = begin.x() / unit + d.x();
+  arc.y = begin.y() / unit + d.y();
+  const double round = a.norm() * sweep, rise = to[2] - from[2];
+  arc.share = rise == 0.0 ? 1.0 : round / std::hypot(round, rise);
+  return arc;
+}
+
+// Whether every arc of the step can be written as one.
+bool DialectWriter::takes_arcs(const DialectMotion& motion, const Step& step,
+                               const AxisWords& origin) const {
+  AxisWords at = walk_.out() - origin;
+  for (const FittedBlock& fitted : step.blocks) {
+    const AxisWords target = on_grid(step.programmed.frame.machine(fitted.end) - origin);
+    DialectMotion one = motion;
+    one.words = words_of(step, target, at);
+    if (fitted.arc) {
+      one.arc = arc_of(step, fitted, origin, at, target);
+      if (!one.arc || !printer_->takes_arc(one, one.names(Axis::Z))) return false;
+    }
+    at = target;
+  }
+  return true;
+}
+
+// @param height  of the end, machine coordinate (m)
+void DialectWriter::write_rapid(DialectMotion motion, double height) {
+  const auto Z = std::find_if(motion.words.begin(), motion.words.end(),
+                              [](const auto& word) { return word.first == Axis::Z; });
+  if (Z == motion.words.end() || motion.words.size() == 1) return printer_->motion(motion);
+  DialectMotion up = motion;
+  up.words = {*Z};
+  motion.words.erase(Z);
+  const bool rises = height_ && height > *height_;
+  printer_->motion(rises ? up : motion);
+  printer_->motion(rises ? motion : up);
+}
+
+// Both words, so that a circle has an end, too.
+void DialectWriter::name_end(DialectMotion& motion, const AxisWords& target) const {
+  const bool rises = motion.names(Axis::Z);
+  motion.words.clear();
+  for (const Axis axis : {Axis::X, Axis::Y, Axis::Z}) {
+    if (axis == Axis::Z && !rises) continue;
+    motion.words.emplace_back(axis, target[index_of(axis)] / printer_->unit(axis));
+  }
+}
+
+void DialectWriter::write_step(const Block& block, const Step& given) {
+  restate_spindle_and_coolant();
+  DialectMotion motion = motion_of(block, given);
+  AxisWords origin = AxisWords::Zero();  // of work coordinates without rotation and shift
+  if (!motion.is_place) origin = block.state->work_offset + block.state->tool_offset;
+  write_path_mode(block, *given.move);
+  const Step step = takes_arcs(motion, given, origin) ? given : walk_.without_arcs(given);
+  AxisWords at = walk_.out() - origin;
+  for (const FittedBlock& fitted : step.blocks) {
+    const AxisWords target = on_grid(step.programmed.frame.machine(fitted.end) - origin);
+    motion.words = words_of(step, target, at);
+    motion.arc.reset();
+    if (fitted.arc) {
+      motion.arc = arc_of(step, fitted, origin, at, target);
+      name_end(motion, target);
+    }
+    if (motion.is_place) check_place(step, target);
+    if (motion.words.empty()) continue;
+    set_feed(motion, step, fitted);
+    if (motion.is_rapid) {
+      write_rapid(motion, target[index_of(Axis::Z)] + origin[index_of(Axis::Z)]);
+    } else {
+      printer_->motion(motion);
+    }
+    for (const auto& [axis, value] : motion.words) {
+      at[index_of(axis)] = target[index_of(axis)];
+      out_known_[static_cast<std::size_t>(index_of(axis))] = true;
+      if (axis == Axis::Z) height_ = target[index_of(Axis::Z)] + origin[index_of(Axis::Z)];
+    }
+  }
+  walk_.arrive(step, at + origin);
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,136 @@
+// Siemens 840D: 6FC5397-0BP10-2BA0 (W1, Tool Offset), ISO Dialects Milling 04.07.
+#include <fmt/format.h>
+
+#include "controllers/gcode/number_text.h"
+#include "sim/compensate/iso_dialect.h"
+
+namespace servomill::sim {
+namespace {
+
+using controllers::fixed_text;
+
+constexpr std::size_t kMostNumbered = 99'999'999;  // N has nine digits, tens of them are used
+constexpr double kMostPosition = 999999.999;       // M
+
+class Siemens final : public IsoDialect {
+ public:
+  using IsoDialect::IsoDialect;
+
+  void begin(const std::vector<std::string>& header) override {
+    comment(settings_.name);
+    for (const std::string& line : header) comment(line);
+    put("G17 G40 G90 G94 G710");
+    put("TRANS");  // without words: no programmable frame, whatever ROT, SCALE or MIRROR left
+    if (settings_.has_rotary_axes) put("TRAFOOF");
+    put(retract_text());
+  }
+  void put_comment(std::string_view text) override { put("; " + plain(text, false)); }
+  void message(std::string_view text) override {
+    put(fmt::format("MSG(\"{}\")", plain(text, false)));
+  }
+
+  // Tool length acts on G0, G1, POLY and POS only: no arc in a block that changes it (W1 p. 13).
+  bool takes_arc(const DialectMotion& motion, bool) const override {
+    return !motion.names(Axis::Z) || modes_.length == edge(motion);
+  }
+
+  void motion(const DialectMotion& motion) override {
+    check_positions(motion, kMostPosition);
+    if (motion.is_place) return place(motion);
+    if (modes_.work_system != motion.work_system) work_system(motion.work_system);
+    std::string prefix;
+    if (motion.names(Axis::Z)) {
+      const int wanted = edge(motion);
+      if (modes_.length != wanted) prefix = fmt::format("D{}", wanted);
+      modes_.length = wanted;
+      if (wanted != 0) {
+        assume(fmt::format("D1 of tool {} holds its length", motion.tool));
+      }
+    }
+    put(motion_text(motion, prefix));
+  }
+
+  void retract() override {
+    put(retract_text());
+    modes_.code = "G0";
+    modes_.length = 0;
+  }
+  void path_mode(PathMode mode, double tolerance) override {
+    if (mode == PathMode::exact_path) throw Unsayable{"asks for G61 as LinuxCNC means it"};
+    if (mode == PathMode::exact_stop) return put("G60");
+    put(tolerance > 0.0 ? fmt::format("G642 CTOL={}", fixed_text(tolerance / mm, 5)) : "G64");
+  }
+  // T may change the tool by itself (MD22550 = 0; W1 p. 33): only with its M6.
+  void preselect(int) override {}
+  void tool(int number, double, int system) override {
+    put(fmt::format("T{}", number));
+    put("M6");
+    assume("T selects the tool and M6 changes it");
+    forget_modes();
+    modes_.feed_mode = FeedMode::units_per_minute;
+    modes_.work_system = system;
+    put(fmt::format("G17 G40 G90 G94 {}", system_code(system)));
+  }
+  void dwell(double seconds) override { put("G4 F" + rate(seconds, 4, "dwell")); }
+
+  std::string text() const override {
+    std::string out;
+    std::size_t blocks = 0;
+    for (const std::string& line : lines_) blocks += line.front() != ';' ? 1 : 0;
+    const std::size_t step = blocks > kMostNumbered ? 1000 : 1;
+    std::size_t n = 0;
+    for (const std::string& line : lines_) {
+      if (line.front() != ';' && n++ % step == 0)
+        out += fmt::format("N{} ", 10 * ((n - 1) / step + 1));
+      out += line + "\n";
+    }
+    return out;
+  }
+
+ private:
+  // Whether G53 and SUPA drop the length is MD10760's matter: D0 says it (W1; ISO Dialects p.
+  // 3-42).
+  std::string retract_text() const {
+    return fmt::format("SUPA G0 Z{} D0", fixed_text(settings_.retract_Z / mm, decimals(Axis::Z)));
+  }
+
+  void place(const DialectMotion& motion) {
+    assume("machine coordinates count from the same zero as in the original");
+    modes_.code.reset();
+    std::string text = motion_text(motion, "SUPA");
+    if (motion.names(Axis::Z)) {
+      if (motion.arc) throw Unsayable{"goes along an arc in machine coordinates"};
+      add_word(text, "D0");
+      modes_.length = 0;
+    }
+    put(text);
+  }
+
+  static int edge(const DialectMotion& motion) {
+    if (motion.length != 0 && motion.length != motion.tool) {
+      throw Unsayable{
+          fmt::format("moves with the length of tool {} while tool {} is in the spindle; D1 is "
+                      "that of the tool",
+                      motion.length, motion.tool)};
+    }
+    return motion.length == 0 ? 0 : 1;
+  }
+  static std::string system_code(int system) {
+    return system <= 4 ? fmt::format("G{}", 53 + system) : fmt::format("G{}", 500 + system);
+  }
+  void work_system(int system) {
+    put(system_code(system));
+    modes_.work_system = system;
+  }
+  int feed_decimals() const override { return 4; }
+  std::string speed(double rpm) const override { return fixed_text(rpm, 3); }
+};
+
+}  // namespace
+
+std::unique_ptr<DialectPrinter> make_siemens(const DialectSettings& settings,
+                                             std::vector<std::string>& lines) {
+  return std::make_unique<Siemens>(settings, lines);
+}
+
+}  // namespace servomill::sim
