@@ -22,6 +22,7 @@ RUNS = (
     Run("experiment1_friction", "guevel2025/experiment1_friction.toml", "[G] experiment 1 with dry friction"),
     Run("experiment1_part", "guevel2025/experiment1_part.toml", "[G] experiment 1 on the part: cut and probed"),
     Run("experiment2", "guevel2025/experiment2.toml", "[G] experiment 2: three parts in air, cut, probed"),
+    Run("z_hypotheses", "guevel2025/z_hypotheses.toml", "[G] experiment 2: hypotheses for Z while cutting"),
     Run("experiment2_workspace", "guevel2025/experiment2_workspace.toml", "[G] experiment 2: the errors over the workspace"),
     Run("rotation_of_c", "words/rotation_of_c.toml", "[G] the table C turned"),
     Run("sudden_error", "words/sudden_error.toml", "[G] a sudden error"),
