@@ -10,7 +10,8 @@ import unittest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
-WORDS = os.path.join(HERE, "..", "..", "scenarios", "words")
+SCENARIOS = os.path.join(HERE, "..", "..", "scenarios")
+WORDS = os.path.join(SCENARIOS, "words")
 SHARE = 0.01     # numbers at the heads have three digits
 CHORD_UM = 0.2   # chord tolerance of rewritten programs and path tolerance, 0.1 um each
 
@@ -92,6 +93,49 @@ class Words(unittest.TestCase):
             behind = float(row[column["feedback_response_time_Y_flank"]])
             period = 0.2                 # ms, of the position loop: within it, it takes what the model gives
             self.assertAlmostEqual(behind, 1e3 / Kv + 1.5e-3 * model, delta=period)
+
+    def test_the_table_of_axis_C_has_no_impact_but_its_errors_have(self):
+        found = self.values("rotation_of_c.toml", "trajectory_difference")
+        self.assertEqual(set(found.values()), {0.0})
+        tip = self.values("rotation_of_c.toml", "tool_tip_deviation")
+        self.assertAlmostEqual(tip["turned_180"], tip["nominal"], delta=0.01)
+        self.assertAlmostEqual(tip["off_centre"] - tip["off_centre_0"], 20.0, delta=0.6)
+
+    def swept(self, name):
+        """Columns of a sweep of discriminating/, as numbers."""
+        done = self.servomill("sweep", os.path.join(SCENARIOS, "discriminating", name), "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.out[:-3] + ".csv", encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        return {key.split(" [")[0]: [float(row[key]) for row in rows] for key in rows[0] if key not in ("status", "reason")}
+
+    def test_another_gain_or_feed_forward_tells_where_a_table_enters(self):
+        found = self.swept("table_entry.toml")
+        gain, share = found["machine_nc_Kv"], found["machine_nc_velocity_feed_forward"]
+        behind, fed = (found[case + "_imposed_curve_residual_Y_max_flank"] for case in ("behind_tap", "fed_forward"))
+
+        def span(values, feed_forward, low, high):
+            chosen = [v for v, k, f in zip(values, gain, share) if f == feed_forward and low < k < high]
+            self.assertEqual(len(chosen), 3)
+            return round(min(chosen), 1), round(max(chosen), 1)
+
+        for values, wanted in ((behind, ((20.0, 20.0), (24.0, 25.5), (18.1, 18.6), (20.0, 20.0))),
+                               (fed, ((20.0, 20.0), (20.0, 20.0), (20.0, 20.0), (22.0, 22.7)))):
+            self.assertEqual((span(values, 1.0, 60, 90), span(values, 1.0, 30, 50), span(values, 1.0, 90, 140),
+                              span(values, 0.5, 60, 90)), wanted)
+
+    def test_a_step_of_the_table_tells_lag_dead_time_and_update_period_apart(self):
+        found = self.swept("table_step.toml")
+
+        def span(case, window, statistic="mean"):
+            values = found[f"{case}_trajectory_difference_Y_{statistic}_{window}_ms"]
+            return round(min(values), 1), round(max(values), 1)
+
+        for case, early, late, largest in (("lag", (4.2, 4.8), (16.0, 16.1), (5.8, 6.4)),
+                                           ("dead_time", (0.0, 0.0), (19.1, 19.6), (0.0, 0.0)),
+                                           ("update", (2.3, 7.0), (19.3, 19.6), (10.1, 17.9))):
+            self.assertEqual((span(case, "10_to_20"), span(case, "60_to_100"), span(case, "10_to_20", "max")),
+                             (early, late, largest), case)
 
 
 if __name__ == "__main__":
