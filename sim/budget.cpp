@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "plant/vocabulary/units.h"
+#include "sim/config/quantity.h"
 #include "sim/preparation_cache.h"
 
 namespace servomill::sim {
@@ -37,7 +38,6 @@ constexpr std::array<CauseInfo, kCauses> kInfos = {{
 
 constexpr double kFine = 0.01;        // share of tolerances that are taken away
 constexpr double kLeastChord = 1e-9;  // m
-constexpr double kOutOfReach = 1e3;   // m, rad and these per s
 
 using Causes = std::set<Cause>;
 // What the signal goes through, in this order.
@@ -52,16 +52,32 @@ MachineSettings& own_machine(const Scenario& scenario, CaseSpec& one) {
   return *one.machine;
 }
 
-// Sets a parameter; whether it had another value.
-bool set(Parameters& parameters, std::string_view name, std::string_view word) {
-  if (parameters.is_word(name) && parameters.word(name) == word) return false;
-  parameters.set(name, word);
+// Sets a parameter to its ideal; whether it had another value.
+bool idealise(const ParameterSpec& spec, Parameters& parameters) {
+  const bool is_word =
+      std::find(spec.words.begin(), spec.words.end(), spec.ideal) != spec.words.end();
+  if (is_word) {
+    if (parameters.is_word(spec.name) && parameters.word(spec.name) == spec.ideal) return false;
+    parameters.set(spec.name, spec.ideal);
+    return true;
+  }
+  const ParsedUnit unit = parse_unit(spec.unit);
+  const double ideal = std::stod(std::string(spec.ideal)) * (unit.unit ? unit.unit->factor : 1.0);
+  if (!parameters.is_word(spec.name) && parameters.number(spec.name) == ideal) return false;
+  parameters.set(spec.name, ideal);
   return true;
 }
-bool set(Parameters& parameters, std::string_view name, double value) {
-  if (parameters.number(name) == value) return false;
-  parameters.set(name, value);
-  return true;
+
+// Takes a shortcoming away from all strategies that have it; whether any had.
+bool idealise(CaseSpec& one, Shortcoming shortcoming) {
+  bool any = false;
+  for (StrategySpec& strategy : one.strategies) {
+    for (const ParameterSpec& spec : strategy.entry->parameters) {
+      if (spec.shortcoming != shortcoming || spec.ideal.empty()) continue;
+      any |= idealise(spec, strategy.parameters);
+    }
+  }
+  return any;
 }
 
 bool remove_friction(MachineSettings& machine) {
@@ -98,41 +114,13 @@ bool remove_measurement(MachineSettings& machine) {
 
 bool remove_delay(Scenario& scenario, CaseSpec& one) {
   constexpr Tick kNone = 0, kLeast = 1;
-  const bool has_feedback = one.has_feedback();
+  const bool needs_hardware = one.needs_feedback_hardware();
   MachineSettings& machine = own_machine(scenario, one);
   bool any = machine.scale_delay != kNone ||
              (one.feedback_hardware && scenario.hardware.signal_delay != kNone) ||
-             (has_feedback && scenario.hardware.model_period != kLeast);
+             (needs_hardware && scenario.hardware.model_period != kLeast);
   machine.scale_delay = kNone;
-  for (StrategySpec& strategy : one.strategies) {
-    if (strategy.entry->name != "table") continue;
-    for (const char* key : {"response_time_ms", "dead_time_ms", "update_period_ms"}) {
-      any |= set(strategy.parameters, key, 0.0);
-    }
-  }
-  return any;
-}
-
-bool remove_saturation(CaseSpec& one) {
-  bool any = false;
-  for (StrategySpec& strategy : one.strategies) {
-    if (strategy.entry->name != "feedback") continue;
-    for (const char* key : {"max_um", "max_rate_mm_per_s", "max_mrad", "max_rate_mrad_per_s"}) {
-      any |= set(strategy.parameters, key, kOutOfReach);
-    }
-  }
-  return any;
-}
-
-// A word of a parameter, in all strategies that know it.
-bool set_word(CaseSpec& one, std::string_view name, std::string_view word) {
-  bool any = false;
-  for (StrategySpec& strategy : one.strategies) {
-    const auto known =
-        std::any_of(strategy.entry->parameters.begin(), strategy.entry->parameters.end(),
-                    [&](const ParameterSpec& spec) { return spec.name == name; });
-    if (known) any |= set(strategy.parameters, name, word);
-  }
+  any |= idealise(one, Shortcoming::delay);
   return any;
 }
 
@@ -148,7 +136,7 @@ bool has_strategy(const CaseSpec& one, strategies::Sign sign) {
 }
 
 bool remove_identification(const Scenario& scenario, CaseSpec& one) {
-  bool any = set_word(one, "rewritten_for", "case");
+  bool any = idealise(one, Shortcoming::identification);
   const std::string& truth = truth_of(scenario, one);
   for (StrategySpec& strategy : one.strategies) {
     if (!strategy.entry->reads_errors) continue;
@@ -175,10 +163,11 @@ bool remove_interpolation(const Scenario& scenario, CaseSpec& one) {
   nc.filter = {};
   nc.block_time = 0.0;
   for (StrategySpec& strategy : one.strategies) {
-    if (strategy.entry->name != "gcode") continue;
-    Parameters& p = strategy.parameters;
-    p.set("tolerance_um", std::max(kLeastChord, kFine * p.number("tolerance_um")));
-    p.set("tolerance_urad", std::max(kLeastChord, kFine * p.number("tolerance_urad")));
+    for (const ParameterSpec& spec : strategy.entry->parameters) {
+      if (spec.shortcoming != Shortcoming::chord_tolerance) continue;
+      Parameters& p = strategy.parameters;
+      p.set(spec.name, std::max(kLeastChord, kFine * p.number(spec.name)));
+    }
   }
   return true;  // there is always a tolerance
 }
@@ -192,13 +181,13 @@ bool remove(Cause cause, Scenario& scenario, CaseSpec& one) {
       return had;
     }
     case Cause::table:
-      return set_word(one, "form", "exact");
+      return idealise(one, Shortcoming::points);
     case Cause::delay:
       return remove_delay(scenario, one);
     case Cause::saturation:
-      return remove_saturation(one);
+      return idealise(one, Shortcoming::saturation);
     case Cause::one_step:
-      return set_word(one, "iterations", "converged");
+      return idealise(one, Shortcoming::one_step);
     case Cause::identification:
       return remove_identification(scenario, one);
     case Cause::friction:
@@ -230,7 +219,7 @@ Causes all_causes() {
 bool moves_on_purpose(const CaseSpec& one) {
   return has_strategy(one, strategies::Sign::generate) ||
          std::any_of(one.strategies.begin(), one.strategies.end(), [](const StrategySpec& spec) {
-           return !spec.entry->reads_errors && spec.entry->name != "none";
+           return !spec.entry->reads_errors && spec.entry->acts;
          });
 }
 

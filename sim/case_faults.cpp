@@ -91,10 +91,10 @@ void refuse_unread_scale(const StrategySpec& spec, const strategies::Strategy& s
     const auto& feedback = machine.nc.functions[static_cast<std::size_t>(j)].position_feedback;
     if (j >= kLinearJoints && !strategy.displaces_rotary()) continue;
     if (feedback.kind != controllers::PositionFeedback::motor) continue;
-    throw InputError(
-        spec.place, fmt::format("case {}: strategy feedback: displaces the scale of axis {}, whose "
-                                "position loop reads the motor (position_feedback = \"motor\")",
-                                case_name, machine.chain.layout.letter_of(j)));
+    throw InputError(spec.place,
+                     fmt::format("case {}: strategy {}: displaces the scale of axis {}, whose "
+                                 "position loop reads the motor (position_feedback = \"motor\")",
+                                 case_name, spec.entry->name, machine.chain.layout.letter_of(j)));
   }
 }
 

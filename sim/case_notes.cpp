@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "controllers/path/slowed_motion.h"
 #include "plant/kinematics/inverse.h"
 #include "plant/vocabulary/units.h"
@@ -23,15 +25,42 @@ std::string note_of(const Fault& warning) {
   return fmt::format("{}: warning: {}", to_string(warning.place), warning.message);
 }
 
+// The strategy of a case that displaces its feedback.
+std::string_view displacing_strategy(const NotedCase& one) {
+  for (std::size_t k = 0; k < one.strategies.size(); ++k) {
+    if (one.strategies[k]->displaces_feedback()) return one.spec.strategies[k].entry->name;
+  }
+  return {};
+}
+
+// Cases that the feedback hardware delays beside others that it does not.
+std::optional<std::string> uneven_hardware(const Scenario& scenario) {
+  std::vector<std::string_view> with, without;
+  double delay = 0.0;
+  for (const CaseSpec& one : scenario.cases) {
+    const auto its = scenario.signal_delay_of(one);
+    if (!its) continue;
+    delay = std::max(delay, *its);
+    (*its > 0.0 ? with : without).push_back(one.name);
+  }
+  if (with.empty() || without.empty()) return std::nullopt;
+  constexpr double kFeed = 2.4 / 60.0;  // m/s, of the paper's experiments
+  return fmt::format(
+      "warning: feedback hardware is connected in {}, not in {}: its delay of {:g} us displaces "
+      "those by {:.2g} um at {:g} m/min; feedback_hardware.connected = true puts it in all cases",
+      fmt::join(with, ", "), fmt::join(without, ", "), delay / us, delay * kFeed / um,
+      kFeed * 60.0);
+}
+
 // "part.ngc:12: warning: case one: strategy feedback: virtual displacement of Y saturated ..."
 std::string note_of(const NotedCase& one, const strategies::Saturation& held) {
   controllers::Trajectory::Cursor cursor{};
   const int line = one.motion.trajectory.at(held.first, cursor).line;
   const bool linear = held.joint < kLinearJoints;
   return fmt::format(
-      "{}:{}: warning: case {}: strategy feedback: {} of {} saturated at {:g} {}{}, first here, "
+      "{}:{}: warning: case {}: strategy {}: {} of {} saturated at {:g} {}{}, first here, "
       "{:.2f} s in all",
-      one.scenario.program.file, line, one.spec.name,
+      one.scenario.program.file, line, one.spec.name, displacing_strategy(one),
       held.of_rate ? "rate of the virtual displacement" : "virtual displacement",
       one.scenario.machine.chain.layout.letter_of(held.joint),
       held.limit / (linear ? held.of_rate ? mm : um : 1e-3),
@@ -67,6 +96,7 @@ std::vector<std::string> notes_of_run(const NotedCase& one,
     out.push_back(note_of(
         {{one.scenario.program.file, slowed.line}, to_string(slowed, chain_of(one).layout)}));
   }
+  if (auto uneven = uneven_hardware(one.scenario)) out.push_back(std::move(*uneven));
   for (const strategies::Saturation& saturation : held) out.push_back(note_of(one, saturation));
   return out;
 }
@@ -100,14 +130,14 @@ std::vector<std::string> notes_of_uncorrectable(const NotedCase& one) {
 std::vector<std::string> notes_of_left_tables(const NotedCase& one) {
   const JointLayout& layout = chain_of(one).layout;
   std::vector<std::string> out;
-  for (const auto& strategy : one.strategies) {
-    for (const LeftTable& left : left_tables(one.program.path, *strategy, layout)) {
+  for (std::size_t k = 0; k < one.strategies.size(); ++k) {
+    for (const LeftTable& left : left_tables(one.program.path, *one.strategies[k], layout)) {
       const char axis = layout.letter_of(left.table.joint);
       out.push_back(fmt::format(
-          "{}:{}: warning: case {}: strategy table: the table over {} ends at {:.4f} mm, the "
+          "{}:{}: warning: case {}: strategy {}: the table over {} ends at {:.4f} mm, the "
           "program goes on to {:.4f} mm; from here on the last value stays",
-          one.scenario.program.file, left.line, one.spec.name, axis, left.table.end / mm,
-          left.farthest / mm));
+          one.scenario.program.file, left.line, one.spec.name, one.spec.strategies[k].entry->name,
+          axis, left.table.end / mm, left.farthest / mm));
     }
   }
   return out;

@@ -362,6 +362,15 @@ Noted evaluate_probe(const QuantitySpec& spec, const CaseData& one, const CaseDa
   return {found.value, found.note};
 }
 
+// What distinguishes a case from its base beside what they are compared for: readings that are late
+// displace an axis by its speed times that.
+std::string unlike(const CaseData& one, const CaseData& base) {
+  if (!one.signal_delay || !base.signal_delay) return {};
+  if (*one.signal_delay == *base.signal_delay) return {};
+  return fmt::format("feedback hardware delays readings by {:g} us, those of {} by {:g} us",
+                     *one.signal_delay / us, base.name, *base.signal_delay / us);
+}
+
 Compared* find(std::deque<Compared>& cases, std::string_view name) {
   for (Compared& one : cases) {
     if (one.data.name == name) return &one;
@@ -444,6 +453,9 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
                       : Noted{evaluate(spec, *one, base != nullptr ? &base->data : nullptr)};
       row.value = found.value;
       row.note = found.note;
+      if (row.note.empty() && !missing && base != nullptr) {
+        row.note = unlike(one->data, base->data);
+      }
       rows.push_back(std::move(row));
     }
   }

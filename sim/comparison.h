@@ -1,6 +1,7 @@
 /// Comparison of cases along the programmed path: what a scenario asks of its recorded signals.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,6 +46,8 @@ struct CaseData {
   bool finished = true;
   plant::MachineChain chain = {};                      // the ideal machine
   const std::vector<ProbedFeature>* probes = nullptr;  // of the part; nullptr: none
+  // s, of the feedback hardware, 0 where none is connected; none of an ideal servo
+  std::optional<double> signal_delay = {};
 };
 
 /// One line of the printed comparison.
@@ -52,7 +55,7 @@ struct ComparisonRow {
   std::string case_name, quantity, axis, statistic, unit, reference, kind;
   std::string sections;
   double value = 0.0;     // NaN where the case stopped or the samples are missing
-  std::string note = {};  // why there is no value, where that is known
+  std::string note = {};  // why there is no value, where that is known, or what is not alike
 };
 
 /// Evaluates all quantities, in the order of the scenario. Cases are compared at equal arc length

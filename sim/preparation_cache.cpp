@@ -213,10 +213,10 @@ void add_linear_axis(MemoKey& key, const MachineSettings& linear, int joint) {
   for (const Tick period : {position, velocity, current}) key.add(period);
   {
     const auto& [kind, r, J, M, k, c, gap, b_motor, b_load, Kt, i_max, T_i, L, R, Ke, F_load,
-                 friction, cogging] = linear.drives[j];
+                 friction, cogging, solver_tolerance] = linear.drives[j];
     key.add(kind);
-    for (const double value :
-         {r, J, M, k, c, gap, b_motor, b_load, Kt, i_max, T_i, L, R, Ke, F_load}) {
+    for (const double value : {r, J, M, k, c, gap, b_motor, b_load, Kt, i_max, T_i, L, R, Ke,
+                               F_load, solver_tolerance}) {
       key.add(value);
     }
   }

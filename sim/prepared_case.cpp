@@ -431,6 +431,7 @@ CaseOutput PreparedCase::output(CaseResult result) const {
   out.blocks = p.motion->blocks;
   out.sections = sections();
   out.chain = p.machine().chain;
+  out.signal_delay = p.scenario.signal_delay_of(p.spec);
   if (!p.scenario.probes.empty() && out.result.outcome.finished) {
     ProbedPart part =
         probe_part({p.spec.name, out.result.servo, p.program->path, p.scenario.program.cutters,
@@ -514,8 +515,9 @@ std::vector<Fault> PreparedCase::circular_faults(PreparationCache* cache) const 
 }
 
 CaseData CaseOutput::data() const {
-  return {name,   &result.servo,           sections, duration,
-          blocks, result.outcome.finished, chain,    probes.empty() ? nullptr : &probes};
+  return {name,        &result.servo,           sections, duration,
+          blocks,      result.outcome.finished, chain,    probes.empty() ? nullptr : &probes,
+          signal_delay};
 }
 
 std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(

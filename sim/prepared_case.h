@@ -28,9 +28,10 @@ struct CaseOutput {
   double blocks = 0.0;
   std::vector<std::string> notes;  // what the NC put right or could not do as programmed
   std::vector<std::string> sections;
-  plant::MachineChain chain;          // the ideal machine
-  std::vector<ProbedFeature> probes;  // empty: nothing is probed, or the case stopped
-  std::optional<PartFit> part_fit;    // of them, where there is a nominal part
+  plant::MachineChain chain;           // the ideal machine
+  std::optional<double> signal_delay;  // s, of the feedback hardware; none of an ideal servo
+  std::vector<ProbedFeature> probes;   // empty: nothing is probed, or the case stopped
+  std::optional<PartFit> part_fit;     // of them, where there is a nominal part
   CaseData data() const;
 };
 

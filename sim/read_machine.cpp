@@ -36,6 +36,8 @@ constexpr std::string_view kRetractKey = "retract_mm";
 
 constexpr double kLeastBase = 0.1 * us;  // more ticks than that no run can count
 constexpr double kLongestPeriod = 1.0;   // s
+constexpr double kFinestSolver = 1e-14;  // m; what rounding leaves of a position of 1 m is 1e-16
+constexpr double kCoarsestSolver = 1 * um;
 
 Tick period(Reader& nc, std::string_view key, double fallback, double base) {
   const std::size_t before = nc.faults();
@@ -341,6 +343,9 @@ MachineSettings read_machine(Reader& table, ErrorModels* errors) {
   machine.scale_delay = delay_ticks.value_or(0);
 
   machine.integrator = static_cast<Integrator>(table.choice_or("integrator", 0, kIntegrators));
+  const double solver_tolerance =
+      table.real_or("solver_tolerance_nm", plant::kSolverTolerance, kLength,
+                    {at_least(kFinestSolver), at_most(kCoarsestSolver)});
   Common common;
   common.servo = read_common_servo(nc);
   common.Kv_place = nc.place("Kv");
@@ -359,6 +364,7 @@ MachineSettings read_machine(Reader& table, ErrorModels* errors) {
     if (!machine.chain.layout.has(j)) continue;
     Reader axis = axes.table(std::string(1, machine.chain.layout.letter_of(j)));
     read_axis(axis, common, j, machine);
+    machine.drives[static_cast<std::size_t>(j)].solver_tolerance = solver_tolerance;
   }
   read_models(table, machine.chain.layout, errors);
   return machine;

@@ -86,6 +86,7 @@ class ScenarioReader {
     std::vector<Reader> cases = root.tables("case");
     cases_are_known_ = root.faults() == before;
     for (Reader& table : cases) read_case(table);
+    connect_hardware();
     for (Reader& table : root.tables_or_none("quantity")) read_quantity(table);
     if (root.has("sweep")) {
       Reader sweep = root.table("sweep");
@@ -278,6 +279,7 @@ class ScenarioReader {
   void read_hardware(Reader& root) {
     FeedbackHardware& hardware = out_.hardware;
     Reader table = root.table_or_empty("feedback_hardware");
+    says_connected_ = table.has("connected");
     hardware.connected = table.boolean_or("connected", false);
     hardware.signal_delay = ticks(table, "signal_delay_us", 10 * us, 0);
     if (table.faults() == 0 &&
@@ -376,6 +378,7 @@ class ScenarioReader {
       Reader words = table.table("work_offset");
       spec.work_offset = read_offsets(words, out_.machine.chain.layout);
     }
+    const bool says_hardware = table.has("feedback_hardware");
     spec.feedback_hardware = table.boolean_or("feedback_hardware", out_.hardware.connected);
     read_case_cutting(table, out_.cutting, spec);
     spec.servo = static_cast<ServoModel>(table.choice_or("servo", 0, kServos));
@@ -397,13 +400,31 @@ class ScenarioReader {
       read_strategy(strategy, spec);
     }
     if (table.has("machine_override")) note_machine_override(table);
-    if (spec.has_feedback()) {
-      if (table.has("feedback_hardware") && !spec.feedback_hardware) {
-        table.fault("feedback_hardware", "a case with the strategy feedback needs its hardware");
+    if (const strategies::Entry* user = user_of_hardware(spec)) {
+      if (says_hardware && !spec.feedback_hardware) {
+        table.fault("feedback_hardware",
+                    fmt::format("a case with the strategy {} needs its hardware", user->name));
       }
       spec.feedback_hardware = true;
+    } else if (!says_hardware && !says_connected_) {
+      follows_others_.push_back(out_.cases.size());
     }
     out_.cases.push_back(std::move(spec));
+  }
+
+  static const strategies::Entry* user_of_hardware(const CaseSpec& spec) {
+    for (const StrategySpec& strategy : spec.strategies) {
+      if (strategy.entry->uses_feedback_hardware) return strategy.entry;
+    }
+    return nullptr;
+  }
+
+  // Hardware that one case needs delays the readings of all, as on one machine: unless they say
+  // otherwise, cases differ in their strategies alone.
+  void connect_hardware() {
+    const bool any = std::any_of(out_.cases.begin(), out_.cases.end(),
+                                 [](const CaseSpec& one) { return one.needs_feedback_hardware(); });
+    for (const std::size_t index : follows_others_) out_.cases[index].feedback_hardware = any;
   }
 
   // Read when all else is known to be right: on top of a faulty machine nothing can be said.
@@ -488,21 +509,24 @@ class ScenarioReader {
       }
       read_parameter(table, parameter, strategy.parameters);
     }
-    if (strategy.entry->name == "feedback" && spec.has_feedback()) {
+    if (strategy.entry->uses_feedback_hardware && spec.needs_feedback_hardware()) {
       table.fault("type", "a case has one feedback hardware: this is the second");
     }
     const auto same = [&](const StrategySpec& other) {
       return other.entry == strategy.entry && other.model == strategy.model;
     };
     const auto adds_start = [](const StrategySpec& one) {
-      return one.parameters.word("at_reference") == "error";
+      return one.entry->holds_error_at_reference != nullptr &&
+             one.entry->holds_error_at_reference(one.parameters);
     };
-    if (strategy.entry->name == "table" && adds_start(strategy) &&
+    if (adds_start(strategy) &&
         std::any_of(spec.strategies.begin(), spec.strategies.end(),
                     [&](const StrategySpec& other) { return same(other) && adds_start(other); })) {
-      table.fault("type",
-                  "a second table strategy for this model adds the value at the start once more; "
-                  "use axis = \"all\", or at_reference = \"zero\" for all but one");
+      table.fault(
+          "type",
+          fmt::format("a second {} strategy for this model adds the value at the start once "
+                      "more; use axis = \"all\", or at_reference = \"zero\" for all but one",
+                      strategy.entry->name));
     }
     spec.strategies.push_back(std::move(strategy));
   }
@@ -587,16 +611,12 @@ class ScenarioReader {
     }
     std::vector<std::string> all;
     for (const CaseSpec& one : out_.cases) all.push_back(one.name);
-    spec.cases = table.texts_or("cases", all);
-    for (const std::string& name : spec.cases) {
-      if (cases_are_known_)
-        must_be_known(table, "cases", name, fmt::format("case '{}'", name), all);
-    }
     if (info.needs_base || (info.probes > 0 && table.has("base"))) {
       spec.base = table.text("base");
       if (table.is("base", Value::Type::text) && cases_are_known_)
         must_be_known(table, "base", spec.base, "case", all);
     }
+    read_cases_of(table, all, spec);
     if (info.needs_imposed && out_.imposed.empty()) {
       table.fault("name", "needs the key 'imposed' of the scenario");
     }
@@ -618,6 +638,17 @@ class ScenarioReader {
       add_location_errors(spec);
     } else {
       out_.quantities.push_back(std::move(spec));
+    }
+  }
+
+  // A case compared with itself has no row of its own, unless it is asked for.
+  void read_cases_of(Reader& table, std::vector<std::string> all, QuantitySpec& spec) {
+    std::vector<std::string> others = all;
+    if (others.size() > 1) std::erase(others, spec.base);
+    spec.cases = table.texts_or("cases", others);
+    for (const std::string& name : spec.cases) {
+      if (cases_are_known_)
+        must_be_known(table, "cases", name, fmt::format("case '{}'", name), all);
     }
   }
 
@@ -714,14 +745,16 @@ class ScenarioReader {
   Scenario& out_;
   std::vector<std::string> error_models_;        // names, as far as read
   bool cases_are_known_ = true;                  // all have names of their own
+  bool says_connected_ = false;                  // [feedback_hardware] does
+  std::vector<std::size_t> follows_others_;      // cases that have the hardware if any needs it
   std::map<std::size_t, Value> case_overrides_;  // machine_override, by index of the case
 };
 
 }  // namespace
 
-bool CaseSpec::has_feedback() const {
+bool CaseSpec::needs_feedback_hardware() const {
   return std::any_of(strategies.begin(), strategies.end(),
-                     [](const StrategySpec& one) { return one.entry->name == "feedback"; });
+                     [](const StrategySpec& one) { return one.entry->uses_feedback_hardware; });
 }
 
 const CaseSpec* Scenario::find_case(std::string_view case_name) const {
@@ -729,6 +762,11 @@ const CaseSpec* Scenario::find_case(std::string_view case_name) const {
     if (one.name == case_name) return &one;
   }
   return nullptr;
+}
+
+std::optional<double> Scenario::signal_delay_of(const CaseSpec& one) const {
+  if (one.servo == ServoModel::ideal) return std::nullopt;
+  return machine.nc.periods.seconds(one.feedback_hardware ? hardware.signal_delay : 0);
 }
 
 Scenario read_document(ScenarioDocument scenario, const std::string& name, InputFiles& files) {

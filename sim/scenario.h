@@ -61,7 +61,8 @@ struct CaseSpec {
   CuttingWear wear;                        // then
   std::optional<MachineSettings> machine;  // where the case overrides keys of the machine
 
-  bool has_feedback() const;  ///< among its strategies
+  /// Whether a strategy of its passes its signals through the feedback hardware.
+  bool needs_feedback_hardware() const;
 };
 
 /// What a quantity asks of a ball in the spindle and sensors on the table.
@@ -138,6 +139,9 @@ struct Scenario {
   const MachineSettings& machine_of(const CaseSpec& one) const {
     return one.machine ? *one.machine : machine;
   }
+  /// By which the feedback hardware delays the readings of a case (s); none of an ideal servo,
+  /// which has no loops to read them.
+  std::optional<double> signal_delay_of(const CaseSpec& one) const;
 };
 
 /// Reads a scenario and the files that it names (paths relative to it).

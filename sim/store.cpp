@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/units.h"
@@ -161,6 +162,12 @@ plant::MachineChain chain_of(const Scenario& scenario, const std::string& name) 
   return (one != nullptr ? scenario.machine_of(*one) : scenario.machine).chain;
 }
 
+// Of the feedback hardware of a case.
+std::optional<double> signal_delay_of(const Scenario& scenario, const std::string& name) {
+  const CaseSpec* one = scenario.find_case(name);
+  return one != nullptr ? scenario.signal_delay_of(*one) : std::nullopt;
+}
+
 void check_schema(const InputFile& file, const std::string& path, const std::string& kind) {
   if (!file.has_attribute("/", "schema_version")) {
     throw InputError({path}, "is not a result file of servomill");
@@ -283,7 +290,7 @@ StoredRun read_run(const std::string& path) {
     run.cases.push_back({name, run.series.back().get(), split_lines(file.text(group, "sections")),
                          file.number(group, "duration_s"), file.number(group, "blocks"),
                          file.number(group, "finished") != 0.0, chain_of(scenario, name),
-                         probes.empty() ? nullptr : &probes});
+                         probes.empty() ? nullptr : &probes, signal_delay_of(scenario, name)});
   }
   return run;
 }

@@ -76,7 +76,9 @@ const ParameterSpec kIterationsSpec = {
     .help = "1: one step, as the paper; converged: exact where a displacement changes the error",
     .default_text = "1",
     .is_number = false,
-    .words = kWords};
+    .words = kWords,
+    .shortcoming = Shortcoming::one_step,
+    .ideal = "converged"};
 
 const ParameterSpec kAxesSpec = {
     .name = "axes",

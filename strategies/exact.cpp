@@ -15,12 +15,14 @@ const std::array<ParameterSpec, 2>& specs() {
        .help = "by which the tip may leave the chord",
        .unit = "um",
        .default_text = "0.1",
-       .min = 1e-3},
+       .min = 1e-3,
+       .shortcoming = Shortcoming::chord_tolerance},
       {.name = "axis_tolerance_urad",
        .help = "by which the tool axis may leave its great circle",
        .unit = "urad",
        .default_text = "100",
-       .min = 1e-2},
+       .min = 1e-2,
+       .shortcoming = Shortcoming::chord_tolerance},
   }};
   return kSpecs;
 }

@@ -20,22 +20,30 @@ const std::array<ParameterSpec, 9>& specs() {
        .help = "saturation of the virtual displacement of an axis",
        .unit = "um",
        .default_text = "500",
-       .min = 0.0},
+       .min = 0.0,
+       .shortcoming = Shortcoming::saturation,
+       .ideal = "1e9"},
       {.name = "max_rate_mm_per_s",
        .help = "saturation of its rate of change",
        .unit = "mm/s",
        .default_text = "10",
-       .min = 0.0},
+       .min = 0.0,
+       .shortcoming = Shortcoming::saturation,
+       .ideal = "1e6"},
       {.name = "max_mrad",
        .help = "the same of a rotary axis",
        .unit = "mrad",
        .default_text = "10",
-       .min = 0.0},
+       .min = 0.0,
+       .shortcoming = Shortcoming::saturation,
+       .ideal = "1e6"},
       {.name = "max_rate_mrad_per_s",
        .help = "saturation of its rate of change",
        .unit = "mrad/s",
        .default_text = "100",
-       .min = 0.0},
+       .min = 0.0,
+       .shortcoming = Shortcoming::saturation,
+       .ideal = "1e6"},
       {.name = "lead_ms",
        .help = "evaluates the model where the axis will be after this time; auto: 1/Kv",
        .unit = "ms",
@@ -368,8 +376,10 @@ Approach approach_in_lanes() {
 }
 
 Entry feedback_entry() {
-  return {"feedback", "modifies the position feedback (virtual encoder)", specs(), make,
-          /*reads_gains=*/true};
+  Entry entry = {"feedback", "modifies the position feedback (virtual encoder)", specs(), make};
+  entry.reads_gains = true;
+  entry.uses_feedback_hardware = true;
+  return entry;
 }
 
 }  // namespace servomill::strategies

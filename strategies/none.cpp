@@ -12,6 +12,7 @@ std::unique_ptr<Strategy> make(const Parameters&, Sign, const Belief&) {
 Entry none_entry() {
   Entry entry = {"none", "leaves everything as it is", {}, make};
   entry.reads_errors = false;
+  entry.acts = false;
   return entry;
 }
 

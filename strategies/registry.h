@@ -11,6 +11,7 @@
 
 namespace servomill::strategies {
 
+/// All that the other rooms know of a strategy: they ask what it can do and never compare its name.
 struct Entry {
   std::string_view name;
   std::string_view summary;
@@ -19,6 +20,13 @@ struct Entry {
   std::unique_ptr<Strategy> (*make)(const Parameters&, Sign, const Belief&);
   bool reads_gains = false;  ///< false: Belief::Kv is NaN, so that nothing depends on it
   bool reads_errors = true;  ///< false: knows no geometric errors, and takes neither model nor sign
+  bool acts = true;          ///< false: leaves everything as it is
+  /// Whether its signals pass through the feedback hardware: a case has one, and so one such
+  /// strategy.
+  bool uses_feedback_hardware = false;
+  /// Whether it adds the error where the machine starts, which two strategies of a case that know
+  /// the same model must not both do; nullptr: no parameter decides that.
+  bool (*holds_error_at_reference)(const Parameters&) = nullptr;
 };
 
 /// All strategies, sorted by name.

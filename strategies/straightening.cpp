@@ -32,7 +32,8 @@ const std::array<ParameterSpec, 4>& specs() {
        .help = "of the points that are put in, along the way of the tip",
        .unit = "mm",
        .default_text = "0.1",
-       .min = 1e-3},
+       .min = 1e-3,
+       .shortcoming = Shortcoming::block_length},
   }};
   return kSpecs;
 }

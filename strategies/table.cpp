@@ -36,7 +36,9 @@ const std::array<ParameterSpec, 15>& specs() {
            "axes with points everywhere would give it",
        .default_text = "lines",
        .is_number = false,
-       .words = kForms},
+       .words = kForms,
+       .shortcoming = Shortcoming::points,
+       .ideal = "exact"},
       {.name = "axis",
        .help = "axes over which tables run; all: each linear axis",
        .default_text = "all",
@@ -94,19 +96,25 @@ const std::array<ParameterSpec, 15>& specs() {
        .unit = "ms",
        .default_text = "0",
        .min = 0.0,
-       .max = 1e4},
+       .max = 1e4,
+       .shortcoming = Shortcoming::delay,
+       .ideal = "0"},
       {.name = "dead_time_ms",
        .help = "delay before the NC answers",
        .unit = "ms",
        .default_text = "0",
        .min = 0.0,
-       .max = 1e4},
+       .max = 1e4,
+       .shortcoming = Shortcoming::delay,
+       .ideal = "0"},
       {.name = "update_period_ms",
        .help = "how often the NC looks into the table; 0: every position period",
        .unit = "ms",
        .default_text = "0",
        .min = 0.0,
-       .max = 1e4},
+       .max = 1e4,
+       .shortcoming = Shortcoming::delay,
+       .ideal = "0"},
       kIterationsSpec,
   }};
   return kSpecs;
@@ -382,6 +390,8 @@ SetPointEntry entry_of(const Parameters& p) {
   return entry;
 }
 
+bool holds_error_at_reference(const Parameters& p) { return p.word("at_reference") == "error"; }
+
 std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& belief) {
   if (p.word("form") == "exact") {
     return std::make_unique<ExactTable>(entry_of(p), sign, iterations_of(p),
@@ -431,7 +441,9 @@ std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& bel
 }  // namespace
 
 Entry table_entry() {
-  return {"table", "adds compensation tables to the set point inside the NC", specs(), make};
+  Entry entry = {"table", "adds compensation tables to the set point inside the NC", specs(), make};
+  entry.holds_error_at_reference = holds_error_at_reference;
+  return entry;
 }
 
 }  // namespace servomill::strategies

@@ -7,7 +7,10 @@ namespace servomill::plant {
 CvodeBank::CvodeBank(std::span<const FeedDriveParams> lanes, double base_period)
     : base_period_(base_period) {
   drives_.reserve(lanes.size());
-  for (const FeedDriveParams& params : lanes) drives_.emplace_back(params);
+  for (const FeedDriveParams& params : lanes) {
+    const double factor = params.solver_tolerance / kSolverTolerance;
+    drives_.emplace_back(params, CvodeTolerances{}.times(factor));
+  }
 }
 
 void CvodeBank::advance(DriveState& state, const DriveInput& input, Tick step) {

@@ -295,6 +295,11 @@ void CvodeDrive::Impl::distances(const double* at, double* g) const {
   }
 }
 
+CvodeTolerances CvodeTolerances::times(double factor) const {
+  return {factor * relative, factor * i, factor * w, factor * delta,
+          factor * v,        factor * x, factor * z};
+}
+
 CvodeDrive::CvodeDrive(const FeedDriveParams& params, const CvodeTolerances& tolerances)
     : impl_(std::make_unique<Impl>(params, tolerances)) {
   assert(implausible(params).empty());

@@ -17,6 +17,9 @@ struct CvodeTolerances {
   double v = 1e-16;      // m/s
   double x = 1e-18;      // m, of the way within one call of advance()
   double z = 1e-19;      // m
+
+  /// All of them, `factor` times.
+  CvodeTolerances times(double factor) const;
 };
 
 /// Integrates the equations of feed_drive.h and friction.h as they stand, in pieces within which

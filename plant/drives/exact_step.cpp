@@ -109,7 +109,8 @@ ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick lon
   if (f.kind == FrictionKind::lugre) {
     bend = std::min(bend, std::min(f.Fc_positive, f.Fc_negative) / (f.sigma0 * longest));
   }
-  const double speed_error = kNewtonShare * std::min(resolution.tolerance, 2e-12) / kMemory;
+  const double speed_error =
+      kNewtonShare * std::min(resolution.tolerance, kSolverTolerance) / kMemory;
   speed_tolerance_ = std::sqrt(bend * speed_error);
   has_kink_ = f.kind == FrictionKind::lugre ||
               (f.kind == FrictionKind::regularised &&

@@ -17,7 +17,7 @@ namespace servomill::plant {
 /// How finely the force against a slide is resolved.
 struct Resolution {
   /// m: what one sub-step may add to the error of the position. Infinite: no error control.
-  double tolerance = 2e-12;
+  double tolerance = kSolverTolerance;
   /// s: no sub-step is longer
   double longest = std::numeric_limits<double>::infinity();
 };

@@ -26,6 +26,9 @@ struct Cogging {
   bool operator==(const Cogging&) const = default;
 };
 
+/// m, rad; of the reference problem to 0.0004 nm after 10 s.
+inline constexpr double kSolverTolerance = 2e-12;
+
 /// Constant description of one feed drive. For a rotary axis read rad for m, N m for N, kg m^2 for
 /// kg; a direct drive has r = 1.
 ///
@@ -54,6 +57,8 @@ struct FeedDriveParams {
                          // counterbalance
   FrictionParams friction;
   Cogging cogging;  // of a direct drive
+  // m: what a sub-step of a drive that is not linear may add to the error of the position
+  double solver_tolerance = kSolverTolerance;
 
   bool operator==(const FeedDriveParams&) const = default;
   bool has_winding() const { return L > 0.0; }

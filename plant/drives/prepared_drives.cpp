@@ -62,7 +62,7 @@ PreparedDrive::PreparedDrive(const FeedDriveParams& drive, double period, std::v
     }
   }
   if (params.is_linear() || steps.empty()) return;
-  exact.emplace(params, base_period, longest);
+  exact.emplace(params, base_period, longest, Resolution{.tolerance = params.solver_tolerance});
   if (!smooth()) return;
   const PropagatorSeries series(drive_equations(params));
   for (const Tick step : steps) {

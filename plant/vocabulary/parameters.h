@@ -2,12 +2,26 @@
 /// and the help text.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace servomill {
+
+/// The shortcoming of a strategy that a parameter sets. Error budgets take one away, studies of
+/// convergence refine one, without knowing the strategy or the parameter.
+enum class Shortcoming : std::uint8_t {
+  none,
+  points,           // of tables, and what lies between them
+  delay,            // response, dead time, update
+  saturation,       // limits of what it displaces
+  one_step,         // errors evaluated where displacing changes them
+  identification,   // knows less than the case has
+  chord_tolerance,  // of rewritten programs: the square of the length of blocks
+  block_length,     // of rewritten programs
+};
 
 /// One parameter of a strategy. Numbers are in the unit that the name's suffix tells (as the user
 /// writes them); the reader converts to SI.
@@ -19,6 +33,9 @@ struct ParameterSpec {
   double min = -1e300, max = 1e300;    // inclusive, in `unit`
   bool is_number = true;               // false: only words are allowed
   std::span<const std::string_view> words = {};  // words allowed (beside the number)
+  Shortcoming shortcoming = Shortcoming::none;   // that it sets
+  std::string_view ideal = {};  // number or word without it, as the user would write it; "": it can
+                                // be refined, not taken away
 };
 
 /// Values read for such a table: numbers in SI, or one of the words.
