@@ -11,6 +11,7 @@
 
 #include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/units.h"
+#include "sim/build_identity.h"
 #include "sim/hdf5/series_writer.h"
 #include "sim/output_name.h"
 #include "sim/store_probes.h"
@@ -196,9 +197,20 @@ std::vector<std::string> split_lines(const std::string& text) {
   return lines;
 }
 
+void write_build(Hdf5Group& root) {
+  root.attribute("servomill_version", kVersion);
+  root.attribute("servomill_build", build_identity());
+}
+
+std::string build_of(const InputFile& file) {
+  const char* name =
+      file.has_attribute("/", "servomill_build") ? "servomill_build" : "servomill_version";
+  return file.text("/", name);
+}
+
 void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view kind) {
   root.attribute("Conventions", "CF-1.8");
-  root.attribute("servomill_version", kVersion);
+  write_build(root);
   root.attribute("schema_version", kSchemaVersion);
   root.attribute("kind", kind);
   root.attribute("simd_level", name_of(simd_level()));

@@ -14,7 +14,12 @@ namespace servomill::sim {
 /// Version of the layout of result files; a file of another one is refused.
 inline constexpr int kSchemaVersion = 1;
 
-/// What every result file begins with: version, kind, the instructions that compute
+/// Says which program writes a file: version and build (sim/build_identity.h).
+void write_build(Hdf5Group& root);
+/// The build that wrote it; only its version if it is older than that.
+std::string build_of(const InputFile& file);
+
+/// What every result file begins with: build, kind, the instructions that compute
 /// (plant/vocabulary/simd.h), and the scenario with all that it read.
 void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view kind);
 

@@ -9,7 +9,6 @@
 #include "plant/vocabulary/units.h"
 #include "sim/compensate/walk.h"
 #include "sim/store.h"
-#include "sim/version.h"
 
 namespace servomill::sim {
 namespace {
@@ -54,7 +53,7 @@ void PathRecord::write(const std::string& path, bool force, const std::string& t
   Hdf5Group root = file.root();
   root.attribute("Conventions", "CF-1.8");
   root.attribute("title", title);
-  root.attribute("servomill_version", kVersion);
+  write_build(root);
   root.attribute("schema_version", std::int64_t{kSchemaVersion});
   root.attribute("kind", "compensate");
   root.attribute("machine", machine);

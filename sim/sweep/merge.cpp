@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "sim/build_identity.h"
 #include "sim/store.h"
-#include "sim/version.h"
 
 namespace servomill::sim {
 namespace {
@@ -15,7 +15,7 @@ constexpr std::size_t kMostNamed = 20;  // shards or ranges in one message
 
 // What a merge keeps of a file; files are open one at a time, there may be thousands.
 struct Shard {
-  std::string path, version, resolved, swept_files;
+  std::string path, build, resolved, swept_files;
   Selection selection;
   std::uint64_t not_run = 0;  // of its points
 };
@@ -25,7 +25,7 @@ Shard read_shard(const std::string& path) {
   const SweepHeader header = read_sweep_header(file);
   const auto statuses = file.values("/sweep/status", 0, header.selection.size());
   return {path,
-          file.text("/", "servomill_version"),
+          build_of(file),
           header.base.resolved,
           header.base.swept_files,
           header.selection,
@@ -37,10 +37,16 @@ void refuse_other(const Shard& one, const Shard& first) {
   const auto refuse = [&](const std::string& why) {
     throw InputError({one.path}, fmt::format("{} {}", why, first.path));
   };
-  if (one.version != kVersion) {
+  if (one.build != first.build) {
+    throw InputError({one.path},
+                     fmt::format("was written by servomill {}, {} by {}: points of two builds may "
+                                 "differ; run these shards again by one build",
+                                 one.build, first.path, first.build));
+  }
+  if (one.build != build_identity()) {
     throw InputError({one.path}, fmt::format("was written by servomill {}; this is {}, which would "
-                                             "say that it wrote all of it",
-                                             one.version, kVersion));
+                                             "say that it wrote all of it: merge with that build",
+                                             one.build, build_identity()));
   }
   if (one.resolved != first.resolved) refuse("holds a sweep of another scenario than");
   if (const auto file = changed_file(first.swept_files, one.swept_files); !file.empty()) {

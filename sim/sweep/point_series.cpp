@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <system_error>
 
+#include "sim/build_identity.h"
 #include "sim/hdf5/system_error.h"
 #include "sim/store.h"
-#include "sim/version.h"
 
 namespace servomill::sim {
 
@@ -29,7 +29,7 @@ bool has_point_series(const std::string& folder, const Sweep& sweep, std::uint64
   if (!std::filesystem::exists(path, ignored)) return false;
   try {
     const InputFile file(path);
-    return file.text("/", "servomill_version") == kVersion &&
+    return build_of(file) == build_identity() &&
            file.text("/inputs", "resolved") == sweep.at(point).resolved;
   } catch (const InputError&) {
     return false;  // something else

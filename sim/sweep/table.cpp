@@ -16,9 +16,9 @@
 #include <set>
 
 #include "plant/vocabulary/user_file.h"
+#include "sim/build_identity.h"
 #include "sim/output_name.h"
 #include "sim/store.h"
-#include "sim/version.h"
 
 namespace servomill::sim {
 namespace {
@@ -117,11 +117,7 @@ void add_level(std::set<SimdLevel>& levels, double number) {
 }
 
 // Why a file is not the table of this sweep; empty: it is.
-std::string why_other(const SweepHeader& header, const std::string& version, const Scenario& base,
-                      const Selection& selection) {
-  if (version != kVersion) {
-    return fmt::format("was written by servomill {}, this is {}", version, kVersion);
-  }
+std::string why_other(const SweepHeader& header, const Scenario& base, const Selection& selection) {
   if (header.base.resolved != base.resolved) {
     return header.base.name == base.name
                ? "holds a sweep of this scenario as it was before it changed"
@@ -323,7 +319,14 @@ void SweepTable::take_over(const std::string& name, const Scenario& base) {
     throw;
   }
   const InputFile file(name);
-  const std::string why = why_other(*header, file.text("/", "servomill_version"), base, selection_);
+  if (const std::string build = build_of(file); build != build_identity()) {
+    throw InputError(
+        {name}, fmt::format("was written by servomill {}, this is {}: points of two builds may "
+                            "differ; go on with that build, name another --output or use --force "
+                            "to run all of it again",
+                            build, build_identity()));
+  }
+  const std::string why = why_other(*header, base, selection_);
   if (!why.empty()) throw InputError({name}, why + "; use --force to overwrite");
   take_statuses(file);
 }

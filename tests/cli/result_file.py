@@ -45,7 +45,7 @@ class ResultFile(unittest.TestCase):
             self.assertEqual(nameless, [])
             self.assertGreater(len(datasets), 40)
             self.assertEqual(list(file["cases"]), ["nominal", "table"])
-            for key in ("Conventions", "servomill_version", "schema_version", "kind", "simd_level", "scenario", "title"):
+            for key in ("Conventions", "servomill_version", "servomill_build", "schema_version", "kind", "simd_level", "scenario", "title"):
                 self.assertIn(key, file.attrs)
 
     def test_inputs_are_kept_as_they_were_read(self):

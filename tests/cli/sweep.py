@@ -33,6 +33,9 @@ def servomill(*arguments, status=0, **more):
     return done
 
 
+BUILD = servomill("--version").stdout.split()[-1]
+
+
 def columns(path):
     """All columns of a table: {name: bytes}."""
     with h5py.File(path) as file:
@@ -222,7 +225,9 @@ class Resume(Sweeps):
     def test_refuses_what_another_version_wrote(self):
         self.sweep("out.h5")
         for name, value, message in (
-                ("servomill_version", "0.0.1", "was written by servomill 0.0.1, this is "),
+                ("servomill_build", "0.1.0+0123456789ab",
+                 f"was written by servomill 0.1.0+0123456789ab, this is {BUILD}: points of two builds may differ; go on "
+                 "with that build, name another --output or use --force to run all of it again\n"),
                 ("schema_version", 1, "exists; use --force to overwrite")):
             with h5py.File(self.path("out.h5"), "r+") as file:
                 file.attrs[name] = value
@@ -365,10 +370,14 @@ class Merge(Sweeps):
                      "merge", *three, *out)
         with h5py.File(three[1], "r+") as file:
             file.attrs["schema_version"] = 3
-            file.attrs["servomill_version"] = "0.0.1"
-        self.assertRegex(servomill("merge", *three, *out, status=2).stderr,
-                         r"out.2-of-3.h5: error: was written by servomill 0.0.1; this is \S+, "
-                         r"which would say that it wrote all of it\n")
+            file.attrs["servomill_build"] = "0.1.0+0123456789ab"
+        self.refused(f"out.2-of-3.h5: error: was written by servomill 0.1.0+0123456789ab, out.1-of-3.h5 by {BUILD}: "
+                     "points of two builds may differ; run these shards again by one build", "merge", *three, *out)
+        for shard in three:
+            with h5py.File(shard, "r+") as file:
+                file.attrs["servomill_build"] = "0.1.0+0123456789ab"
+        self.refused(f"out.1-of-3.h5: error: was written by servomill 0.1.0+0123456789ab; this is {BUILD}, "
+                     "which would say that it wrote all of it: merge with that build", "merge", *three, *out)
 
     def test_takes_shards_that_did_not_end(self):
         shards = self.shards(2)

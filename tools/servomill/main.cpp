@@ -14,6 +14,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/user_file.h"
+#include "sim/build_identity.h"
 #include "sim/hdf5/system_error.h"
 #include "sim/version.h"
 #include "tools/servomill/command.h"
@@ -72,7 +73,7 @@ int dispatch(const Arguments& arguments) {
     return kDone;
   }
   if (name == "--version") {
-    fmt::print("servomill {}\n", sim::kVersion);
+    fmt::print("servomill {}\n", sim::build_identity());
     return kDone;
   }
   const auto command = std::find_if(kCommands.begin(), kCommands.end(),
