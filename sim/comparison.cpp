@@ -18,6 +18,7 @@
 #include "sim/circular_quantities.h"
 #include "sim/probe_quantities.h"
 #include "sim/scenario.h"
+#include "sim/text_table.h"
 
 namespace servomill::sim {
 namespace {
@@ -463,39 +464,17 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
 }
 
 std::string format_table(std::span<const ComparisonRow> rows) {
-  using Line = std::array<std::string, 9>;
   const bool has_notes =
       std::any_of(rows.begin(), rows.end(), [](const auto& row) { return !row.note.empty(); });
-  std::vector<Line> lines = {{"quantity", "axis", "statistic", "section", "case", "value", "paper",
-                              "kind", has_notes ? "note" : ""}};
+  std::vector<std::vector<std::string>> lines = {{"quantity", "axis", "statistic", "section",
+                                                  "case", "value", "paper", "kind",
+                                                  has_notes ? "note" : ""}};
   for (const ComparisonRow& row : rows) {
     lines.push_back({row.quantity, row.axis, row.statistic, row.sections, row.case_name,
                      number(row.value) + " " + (row.unit == "1" ? "" : row.unit), row.reference,
                      row.kind, row.note});
   }
-  std::array<std::size_t, 9> width{};
-  for (const Line& line : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i) width[i] = std::max(width[i], line[i].size());
-  }
-  std::string out;
-  std::string last_group;
-  for (std::size_t n = 0; n < lines.size(); ++n) {
-    Line& line = lines[n];
-    const std::string group = line[0] + line[1] + line[2] + line[3];
-    if (group == last_group) {
-      for (std::size_t i = 0; i < 4; ++i) line[i].clear();  // said once a group
-    }
-    last_group = group;
-    std::string text;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      text += i == 5 ? fmt::format("{:>{}}  ", line[i], width[i])
-                     : fmt::format("{:<{}}  ", line[i], width[i]);
-    }
-    text.erase(text.find_last_not_of(' ') + 1);
-    out += text + '\n';
-    if (n == 0) out += std::string(text.size(), '-') + '\n';
-  }
-  return out;
+  return text_table(std::move(lines), 4, {5});
 }
 
 std::string json_escaped(std::string_view text) {

@@ -22,7 +22,7 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 14> kCommands = {{
+constexpr std::array<Command, 15> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
@@ -31,6 +31,8 @@ constexpr std::array<Command, 14> kCommands = {{
     {"merge", "SHARD.h5... -o OUT.h5 [--partial]", "joins the shards of a sweep", merge_command},
     {"budget", "SCENARIO.toml [--case NAME]... [-o OUT.h5]",
      "splits residuals into what each cause has of them", budget_command},
+    {"converge", "SCENARIO.toml [--halve STEP]...",
+     "halves periods, blocks and tolerances: digits that stay", converge_command},
     {"bode", "SCENARIO.toml --axis Y [--loop LOOP] [-o OUT.h5]",
      "frequency responses of an axis, exact and measured", bode_command},
     {"step", "SCENARIO.toml --axis Y [-o OUT.h5]", "step responses of an axis", step_command},

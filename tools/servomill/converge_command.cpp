@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/converge.h"
+#include "tools/servomill/command.h"
+#include "tools/servomill/interrupt.h"
+
+namespace servomill::tools {
+namespace {
+
+namespace po = boost::program_options;
+
+std::string summary() {
+  std::string out =
+      "Runs a scenario as it stands and once with each of these steps halved, and prints how\n"
+      "each line of its comparison changes:\n";
+  for (std::size_t n = 0; n < sim::kRefinements; ++n) {
+    const sim::RefinementInfo& info = sim::info_of(static_cast<sim::Refinement>(n));
+    out += fmt::format("  {:<11}{}\n", info.name, info.help);
+  }
+  out +=
+      "The last columns say how many significant digits an error of twice the sum of all changes\n"
+      "(as large as one of first order is) leaves alone, and the value with these. Where no drive\n"
+      "is to be solved for, or no strategy writes blocks, nothing changes.";
+  return out;
+}
+
+std::set<sim::Refinement> chosen(const Options& options) {
+  std::array<std::string_view, sim::kRefinements> names;
+  std::set<sim::Refinement> all, out;
+  for (std::size_t n = 0; n < sim::kRefinements; ++n) {
+    names[n] = sim::info_of(static_cast<sim::Refinement>(n)).name;
+    all.insert(static_cast<sim::Refinement>(n));
+  }
+  for (const std::string& name : options.list("halve")) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+      const std::string near = did_you_mean(name, names);
+      throw InputError({"--halve"}, fmt::format("no step '{}'{}", name,
+                                                near.empty() ? fmt::format("; there are: {}",
+                                                                           fmt::join(names, ", "))
+                                                             : near));
+    }
+    out.insert(static_cast<sim::Refinement>(found - names.begin()));
+  }
+  return out.empty() ? all : out;
+}
+
+}  // namespace
+
+int converge_command(const Arguments& arguments) {
+  const std::string text = summary();
+  Options options("converge", "SCENARIO.toml [--halve STEP]... [--set KEY=VALUE]...", text,
+                  "SCENARIO.toml");
+  options.add()("halve", po::value<std::vector<std::string>>()->value_name("STEP"),
+                "only this step (default: each of them)");
+  options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
+                "changes a key of the scenario, as in run");
+  options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
+                "threads (default: one a core); results do not depend on it");
+  options.add()("json", "prints one JSON object a line of the comparison");
+  options.add()("quiet,q", "no progress bar");
+  if (!options.parse(arguments)) return kDone;
+
+  const std::set<sim::Refinement> refinements = chosen(options);
+  const sim::ScenarioSource source(options.word(), options.list("set"));
+  const bool json = options.has("json");
+  const auto& stop = stop_on_interrupt();
+  ProgressBar bar(options.has("quiet") || json);
+  sim::ConvergeControl control;
+  control.threads = thread_count(options);
+  control.stop = &stop;
+  control.progress = [&](double share) { bar.show(share); };
+  const auto found = sim::find_convergence(source, refinements, control);
+  bar.clear();
+  if (!found) {
+    fmt::print(stderr, "interrupted\n");
+    return kInterrupted;
+  }
+  for (const std::string& stopped : found->stopped) fmt::print(stderr, "stopped: {}\n", stopped);
+  if (json) {
+    for (const sim::ConvergedRow& row : found->rows) fmt::print("{}\n", sim::to_json(row));
+  } else {
+    fmt::print("{}", sim::format_table(*found));
+  }
+  return found->stopped.empty() ? kDone : kMachineStopped;
+}
+
+}  // namespace servomill::tools
