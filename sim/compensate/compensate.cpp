@@ -77,9 +77,6 @@ std::vector<std::string> assumptions(const CompensateRequest& request, const Wor
                                : fmt::format("tool {}: length {:g} mm", number, length / mm));
   }
   if (!request.start.empty()) out.push_back(fmt::format("the machine starts at {}", request.start));
-  if (summary.takes_blocks_with_slash) {
-    out.emplace_back("lines with '/' are taken: what moves or changes modes lost its slash");
-  }
   return out;
 }
 

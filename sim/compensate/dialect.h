@@ -43,6 +43,7 @@ struct DialectArc {
   bool is_counter_clockwise = false;
   double x = 0.0, y = 0.0;    // centre, as positions
   double dx = 0.0, dy = 0.0;  // centre from the begin
+  double sweep = 0.0;         // rad, counter-clockwise positive
   double share = 1.0;         // of the length of the path: the arc without Z
 };
 
@@ -89,6 +90,8 @@ class DialectPrinter {
   virtual void motion(const DialectMotion& motion) = 0;
   /// Whether the arc can be written as one. False for a block that changes the tool length, too.
   virtual bool takes_arc(const DialectMotion& motion, bool is_helix) const = 0;
+  /// Where the arc of `motion` ends, if the control computes that from an angle.
+  virtual void turn_by_angle(const DialectMotion&, const AxisWords&, AxisWords&) const {}
   /// Z to settings.retract_Z, without tool length.
   virtual void retract() = 0;
   /// G28 of Z alone. @return false if Z is at settings.retract_Z, true if at the control's

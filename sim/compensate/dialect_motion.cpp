@@ -38,7 +38,7 @@ void DialectWriter::write_reference(const Move& move, const Block& block, bool i
     throw Unsayable{"goes home by way of an increment; name Z0 under G91"};
   }
   if (!is_last) {
-    if (!block.state->is_incremental) write_step(block, walk_.next(move, block));
+    if (!block.state->is_incremental) write_step(block, walk_.next(move, block, false));
     return;
   }
   restate_spindle_and_coolant();
@@ -68,7 +68,7 @@ DialectMotion DialectWriter::motion_of(const Block& block, const Step& step) con
   const Move& move = *step.move;
   DialectMotion motion;
   motion.is_rapid = move.kind == MoveKind::rapid;
-  motion.is_place = is_place_of_machine(block);
+  motion.is_place = step.is_place;
   motion.work_system = move.work_offset;
   motion.length = move.tool_offset;
   motion.tool = tool_;
@@ -179,6 +179,7 @@ std::optional<DialectArc> DialectWriter::arc_of(const Step& step, const FittedBl
   arc.dy = d.y();
   arc.x = begin.x() / unit + d.x();
   arc.y = begin.y() / unit + d.y();
+  arc.sweep = sign * sweep;
   const double round = a.norm() * sweep, rise = to[2] - from[2];
   arc.share = rise == 0.0 ? 1.0 : round / std::hypot(round, rise);
   return arc;
@@ -248,11 +249,13 @@ void DialectWriter::write_step(const Block& block, const Step& given) {
     } else {
       printer_->motion(motion);
     }
+    const AxisWords begin = at;
     for (const auto& [axis, value] : motion.words) {
       at[index_of(axis)] = target[index_of(axis)];
       out_known_[static_cast<std::size_t>(index_of(axis))] = true;
       if (axis == Axis::Z) height_ = target[index_of(Axis::Z)] + origin[index_of(Axis::Z)];
     }
+    if (motion.arc) printer_->turn_by_angle(motion, begin, at);
   }
   walk_.arrive(step, at + origin);
 }

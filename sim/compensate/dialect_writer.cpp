@@ -10,6 +10,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/compensate/line_pieces.h"
+#include "sim/compensate/woven_line.h"
 
 namespace servomill::sim {
 namespace {
@@ -95,9 +96,7 @@ void DialectWriter::refuse_slash(const Block& block) const {
   if (block.request == nullptr) return;
   for (const LinePiece& piece : line_pieces(block)) {
     if (piece.kind != PieceKind::block_delete) continue;
-    throw InputError({file_, block.line, static_cast<int>(piece.begin) + 1},
-                     "the operator decides about blocks with '/', and what follows depends on "
-                     "them; take the slash away, or leave them out by --block-delete");
+    throw InputError({file_, block.line, static_cast<int>(piece.begin) + 1}, std::string(kSlash));
   }
 }
 

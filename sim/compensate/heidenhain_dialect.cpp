@@ -1,6 +1,10 @@
 // Heidenhain conversational: user's manuals TNC 426/430 and iTNC 530.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <string>
+
 #include "controllers/gcode/number_text.h"
 #include "sim/compensate/dialect.h"
 #include "sim/compensate/iso_dialect.h"
@@ -39,14 +43,22 @@ class Heidenhain final : public DialectPrinter {
   }
   void put_comment(std::string_view text) override { put("; " + plain(text, false)); }
 
-  // CC and C lie in the plane of the tool axis; a helix would need polar coordinates
-  bool takes_arc(const DialectMotion&, bool is_helix) const override { return !is_helix; }
+  bool takes_arc(const DialectMotion&, bool) const override { return true; }
+
+  // A helix turns by an angle about CC (TNC 430 p. 153).
+  void turn_by_angle(const DialectMotion& motion, const AxisWords& begin,
+                     AxisWords& end) const override {
+    if (!motion.names(Axis::Z)) return;
+    const Eigen::Vector2d centre(motion.arc->x * mm, motion.arc->y * mm);
+    const double angle = std::stod(angle_text(*motion.arc)) * deg;
+    end.head<2>() = centre + Eigen::Rotation2Dd(angle) * (begin.head<2>() - centre);
+  }
 
   void motion(const DialectMotion& motion) override {
     check_positions(motion, kMostPosition);
     if (!motion.is_place) check_frame(motion);
     if (motion.arc) put("CC" + words({{Axis::X, motion.arc->x}, {Axis::Y, motion.arc->y}}));
-    std::string text = (motion.arc ? "C" : "L") + words(motion.words);
+    std::string text = motion.arc ? arc_text(motion) : "L" + words(motion.words);
     if (motion.arc) add_word(text, motion.arc->is_counter_clockwise ? "DR+" : "DR-");
     if (!has_R0_) add_word(text, "R0");
     has_R0_ = true;
@@ -138,6 +150,19 @@ class Heidenhain final : public DialectPrinter {
       out += fmt::format(" {}{}", letter(axis), signed_number(value, decimals(axis)));
     }
     return out;
+  }
+
+  static std::string angle_text(const DialectArc& arc) {
+    constexpr int kAngleDecimals = 4;  // TNC 430 p. 468
+    return fixed_text(arc.sweep / deg, kAngleDecimals);
+  }
+  std::string arc_text(const DialectMotion& motion) const {
+    if (!motion.names(Axis::Z)) return "C" + words(motion.words);
+    const auto Z = std::find_if(motion.words.begin(), motion.words.end(),
+                                [](const auto& word) { return word.first == Axis::Z; });
+    const bool is_positive = motion.arc->sweep > 0.0;
+    return fmt::format("CP IPA{}{}{}", is_positive ? "+" : "", angle_text(*motion.arc),
+                       words({*Z}));
   }
 
   void check_frame(const DialectMotion& motion) {

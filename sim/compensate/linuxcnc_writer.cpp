@@ -147,7 +147,7 @@ void LinuxCncWriter::write(const Block& given) {
   } else if (block.block != nullptr && block.block->deleted) {
     return put(fmt::format("; {}", block.text));
   }
-  drop_slash(line, summary_);
+  refuse_slash(line);
   if (block.request != nullptr) {
     refuse_what_changes_its_meaning(block);
     const int cutter = block.request->code(Group::g_cutter_compensation);

@@ -20,7 +20,7 @@ struct WovenLine;
 /// - Expressions become numbers, lines with O-words go, canned cycles and cutter compensation
 ///   become their moves.
 /// - G92 and G10 L10, L11, L20 say where the machine is: they are told where it now stands.
-/// - A line that starts with '/' and moves or changes modes loses it: what follows relies on it.
+/// - A line that starts with '/' and moves or changes modes is refused: what follows relies on it.
 ///   One that the interpreter leaves out becomes a comment.
 /// - Rotary axes alone keep their time where X, Y and Z now move by micrometres (G93 for
 ///   the block).

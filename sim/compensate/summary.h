@@ -32,7 +32,6 @@ struct Summary {
   bool unrolled = false;         // loops, subroutines
   bool has_expressions = false;  // became numbers
   bool has_cycles = false, has_cutter_compensation = false;
-  bool takes_blocks_with_slash = false;
   std::map<int, double> tools;       // m, length of each tool that worked
   std::vector<std::string> assumed;  // one sentence each
 

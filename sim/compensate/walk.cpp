@@ -165,6 +165,10 @@ void Walk::choose_tool(const controllers::ModalState& state) {
 }
 
 Step Walk::next(const Move& move, const ExecutedBlock& block) {
+  return next(move, block, is_place_of_machine(block));
+}
+
+Step Walk::next(const Move& move, const ExecutedBlock& block, bool is_place) {
   Step step;
   step.move = &move;
   step.was_known = known_;
@@ -182,7 +186,8 @@ Step Walk::next(const Move& move, const ExecutedBlock& block) {
                                    move.arc.centre, move.arc.normal_axis, move.arc.turns);
   }
   step.begin = frame.work(out_);
-  step.is_corrected = !is_place_of_machine(block) && knows_all();
+  step.is_place = is_place;
+  step.is_corrected = !is_place && knows_all();
   if (!step.is_corrected) {
     AxisWords end = out_;
     for (int i = 0; i < kAxisWords; ++i) {

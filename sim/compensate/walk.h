@@ -19,6 +19,7 @@ using AxisFlags = std::array<bool, kAxisWords>;
 /// A move of the program and what became of it.
 struct Step {
   const Move* move = nullptr;
+  bool is_place = false;      // of the machine
   bool is_corrected = false;  // otherwise it goes where it went
   AxisFlags is_commanded{};   // the move names these axes, or changes their machine coordinates
   AxisFlags was_known{};      // positions that were known before it
@@ -53,6 +54,8 @@ class Walk {
   /// Corrects the next motion. The writer then tells where its text leaves the machine.
   /// @throws InputError for a move that cannot be corrected
   Step next(const Move& move, const controllers::ExecutedBlock& block);
+  /// @param is_place  of the machine, not to be corrected
+  Step next(const Move& move, const controllers::ExecutedBlock& block, bool is_place);
   /// The same step in straight blocks.
   Step without_arcs(Step step) const;
   /// @param machine  (6; m, rad), as printed

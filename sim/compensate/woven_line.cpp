@@ -147,12 +147,11 @@ WovenLine line_of(const ExecutedBlock& block, Summary& summary) {
   return line;
 }
 
-void drop_slash(WovenLine& line, Summary& summary) {
+void refuse_slash(const WovenLine& line) {
   for (std::size_t i = 0; i < line.pieces.size(); ++i) {
-    if (line.pieces[i].kind != PieceKind::block_delete) continue;
-    if (!changes_what_follows(line)) continue;
-    summary.takes_blocks_with_slash = true;
-    drop(line, i);
+    if (line.pieces[i].kind != PieceKind::block_delete || !changes_what_follows(line)) continue;
+    throw InputError({line.file, line.number, static_cast<int>(line.pieces[i].begin) + 1},
+                     std::string(kSlash));
   }
 }
 

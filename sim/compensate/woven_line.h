@@ -64,8 +64,12 @@ std::string motion_letters(const controllers::ExecutedBlock& block);
 
 /// Takes piece i out, with the blank before it.
 void drop(WovenLine& line, std::size_t i);
-/// The '/' of a line that changes what follows.
-void drop_slash(WovenLine& line, Summary& summary);
+/// The operator's switch must not decide about a line that changes what follows.
+/// @throws InputError
+void refuse_slash(const WovenLine& line);
+inline constexpr std::string_view kSlash =
+    "the operator decides about blocks with '/', and what follows depends on them; take the slash "
+    "away, or leave them out by --block-delete";
 /// Everything but comments that no one hears.
 void drop_o_words(WovenLine& line);
 void drop_motion(WovenLine& line);

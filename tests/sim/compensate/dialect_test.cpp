@@ -1,5 +1,5 @@
 // Programs for other controls than LinuxCNC: what they say, and what they refuse to say.
-#include "tests/sim/compensate/trial.h"
+#include "tests/sim/compensate/dialect_trial.h"
 
 namespace servomill::sim {
 namespace {
@@ -21,39 +21,6 @@ const std::string kProgram =
     "G0 Z5\n"
     "M9\n"
     "M30\n";
-
-// Without errors and header, so that a test shows the dialect alone.
-std::string said(Dialect dialect, const std::string& program) {
-  Trial trial(program, "plate.ngc");
-  trial.request.error_file = written("none.toml", "[errors.none]\nEXX = { constant_um = 0.0 }\n");
-  trial.request.dialect = dialect;
-  trial.request.program_name = "PLATE";
-  trial.request.program_number = 1234;
-  trial.request.retract_Z = -2 * mm;
-  const std::string text = trial.run().program;
-  std::string out;
-  for (std::size_t from = 0; from < text.size();) {
-    const std::size_t end = std::min(text.find('\n', from), text.size());
-    const std::string line = text.substr(from, end - from);
-    from = end + 1;
-    const auto has = [&](const char* word) { return line.find(word) != std::string::npos; };
-    if (!has("POSITIONS ROUNDED") && !has("servomill") && !has("SERVOMILL") && !has("assumed") &&
-        !has("ASSUMED") && !has("path within") && !has("PATH WITHIN")) {
-      out += line + "\n";
-    }
-  }
-  return out;
-}
-
-std::string refusal(Dialect dialect, const std::string& program) {
-  try {
-    said(dialect, program);
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    return what.substr(what.find("plate.ngc"));
-  }
-  return "taken";
-}
 
 TEST(Dialect, HeidenhainConversational) {
   EXPECT_EQ(said(Dialect::heidenhain, kProgram),

@@ -1,0 +1,292 @@
+// What programs for other controls may never do, whatever the control has in force: one test for
+// each way in which a written program once did what the original does not.
+#include "tests/sim/compensate/dialect_trial.h"
+
+namespace servomill::sim {
+namespace {
+
+const std::string kStart = "G21 G90 G17 G54\nT1 M6\nG43 H1\nS1000 M3\n";
+
+// G43 H1 comes in a block of its own: no height of the tip before the length is in force.
+TEST(DialectRules, HeightsOfTheTipWaitForTheToolLength) {
+  Trial trial = dialect_trial(Dialect::fanuc,
+                              "G21 G90 G17 G54\nG53 G0 Z-5\nT1 M6\nG43 H1\nS1000 M3\n"
+                              "G0 X10 Y10\nG0 Z5\nG1 Z-1 F200\nG1 X50\nM30\n");
+  trial.request.error_file.clear();  // those of the router
+  trial.request.inputs.parameter_file.clear();
+  trial.request.inputs.tool_table = written("long.tbl", "T1 P1 Z+50 D6\n");
+  trial.request.work_offsets = {"X=200,Y=250,Z=-100"};
+  EXPECT_EQ(body(trial),
+            "G90 G49 G53 G0 Z-5.\n"
+            "T1 M6\n"
+            "G90 G54 G17 G94 G40 G80\n"
+            "S1000 M3\n"
+            "G0 X10. Y10.\n"
+            "G43 H1 Z4.962\n"
+            "G1 X10.007 Y9.953 F200.\n"
+            "Y9.954 Z-1.038\n"
+            "X49.999 Y9.949 Z-1.04\n");
+  trial.request.dialect = Dialect::siemens;
+  const std::string siemens = body(trial);
+  EXPECT_NE(siemens.find("G0 X10 Y10\nD1 Z4.96239\n"), std::string::npos) << siemens;
+}
+
+// A position that nothing has named is unknown, not 0.
+TEST(DialectRules, MovesToWhereAMachineMightBeAreWritten) {
+  const std::string home = "G21 G90 G54\nG53 G0 Z0\nT1 M6\nG43 H1\nG0 X0 Y0\nZ5\nM2\n";
+  EXPECT_EQ(body(Dialect::fanuc, home),
+            "G90 G49 G53 G0 Z0.\n"
+            "T1 M6\n"
+            "G90 G54 G17 G94 G40 G80\n"
+            "G0 X0. Y0.\n"
+            "G43 H1 Z5.\n");
+  EXPECT_EQ(body(Dialect::siemens, home),
+            "SUPA G0 Z0 D0\n"
+            "T1\n"
+            "M6\n"
+            "G17 G40 G90 G94 G54\n"
+            "G0 X0 Y0\n"
+            "D1 Z5\n");
+  EXPECT_EQ(body(Dialect::heidenhain, home),
+            "L Z+0 FMAX M91\n"
+            "TOOL CALL 1 Z\n"
+            "L X+0 Y+0 R0 FMAX\n"
+            "L Z+5 FMAX\n");
+}
+
+TEST(DialectRules, SpindlesStopBeforeTheToolChangeThatStopsThem) {
+  EXPECT_EQ(body(Dialect::fanuc, kStart + "G0 X1 Y1 Z5\nG53 G0 Z0\nM5\nT2 M6\nM2\n"),
+            "T1 M6\n"
+            "G90 G54 G17 G94 G40 G80\n"
+            "S1000 M3\n"
+            "G0 X1. Y1.\n"
+            "G43 H1 Z5.\n"
+            "G90 G49 G53 G0 Z0.\n"
+            "M5\n"
+            "T2 M6\n"
+            "G90 G54 G17 G94 G40 G80\n");
+}
+
+// #5161 is a place of LinuxCNC's machine: up is all that it can mean on another one.
+TEST(DialectRules, ReturnsToTheReferenceBecomeTheControlsOwnOrTheRetractedHeight) {
+  const std::string home = kStart + "G0 X1 Y1 Z5\nG28 G91 Z0\nG90 G0 X2\nZ5\nM2\n";
+  EXPECT_EQ(body(Dialect::fanuc, home),
+            "T1 M6\n"
+            "G90 G54 G17 G94 G40 G80\n"
+            "S1000 M3\n"
+            "G0 X1. Y1.\n"
+            "G43 H1 Z5.\n"
+            "G91 G28 Z0.\n"
+            "G90\n"
+            "X2.\n"
+            "G43 H1 Z5.\n");
+  EXPECT_EQ(body(Dialect::siemens, home),
+            "T1\n"
+            "M6\n"
+            "G17 G40 G90 G94 G54\n"
+            "S1000 M3\n"
+            "G0 X1 Y1\n"
+            "D1 Z5\n"
+            "SUPA G0 Z-2 D0\n"
+            "X2\n"
+            "D1 Z5\n");
+  EXPECT_EQ(refusal(Dialect::fanuc, kStart + "G28\nM2\n"),
+            "plate.ngc:5: error: G28 of other axes than Z goes to places that LinuxCNC has stored; "
+            "that cannot be expressed for fanuc");
+}
+
+TEST(DialectRules, PolarMovesAreWrittenWhileZIsUnknown) {
+  EXPECT_EQ(body(Dialect::fanuc, "G21 G90\nG0 X1 Y1\nG91 @1\nM2\n"),
+            "G54\n"
+            "G0 X1. Y1.\n"
+            "X1.707 Y1.707\n");
+}
+
+// Macros of builders move axes and leave modes behind.
+TEST(DialectRules, NothingSurvivesAToolChange) {
+  EXPECT_EQ(
+      body(Dialect::fanuc, kStart + "G0 X10 Y20 Z5\nM8\nG1 Z-1 F100\nX20\nG0 Z50\nT2 M6\nG43 H2\n"
+                                    "S1000 M3\nG0 X20 Y20 Z5\nM8\nG1 Z-1\nM30\n"),
+      "T1 M6\n"
+      "G90 G54 G17 G94 G40 G80\n"
+      "S1000 M3\n"
+      "G0 X10. Y20.\n"
+      "G43 H1 Z5.\n"
+      "M8\n"
+      "G1 Z-1. F100.\n"
+      "X20.\n"
+      "G0 Z50.\n"
+      "M5\n"
+      "T2 M6\n"
+      "G90 G54 G17 G94 G40 G80\n"
+      "S1000 M3\n"
+      "M8\n"
+      "G0 X20. Y20.\n"
+      "G43 H2 Z5.\n"
+      "M8\n"
+      "G1 Z-1. F100.\n"
+      "M9\n");
+}
+
+// Axes may run at their own rates: up before across, across before down.
+TEST(DialectRules, RapidsInZAndOtherAxesAreTwo) {
+  EXPECT_EQ(body(Dialect::siemens, kStart + "G0 X1 Y1 Z5\nX20 Z10\nX30 Z2\nX40 Z2\nM2\n"),
+            "T1\n"
+            "M6\n"
+            "G17 G40 G90 G94 G54\n"
+            "S1000 M3\n"
+            "G0 X1 Y1\n"
+            "D1 Z5\n"
+            "Z10\n"
+            "X20\n"
+            "X30\n"
+            "Z2\n"
+            "X40\n");
+}
+
+// G49 alone moves Z on some machines.
+TEST(DialectRules, FanucCancelsTheLengthWithG53Only) {
+  const std::string text = said(Dialect::fanuc, "G21 G90 G54\nT1 M6\nG0 X1 Y1\nZ60\nM2\n");
+  for (const std::string& line : lines_of(text)) {
+    if (line.find("G49") == std::string::npos) continue;
+    EXPECT_NE(line.find("G90 G49 G53 G0 Z-2."), std::string::npos) << line;
+  }
+  EXPECT_NE(text.find("G0 X1. Y1.\nN11 G90 G49 G53 G0 Z-2.\nN12 Z60.\n"), std::string::npos)
+      << text;
+  EXPECT_EQ(
+      refusal(Dialect::fanuc, kStart + "G0 X1 Y1 Z5\nG1 Z-1 F100\nG49\nG1 X2 Z-2\nM2\n"),
+      "plate.ngc:8: error: cancels the tool length (G49) on the way; let Z retract first; that "
+      "cannot be expressed for fanuc");
+}
+
+// G20 and G21 change origin offsets: the unit of the program stays.
+TEST(DialectRules, FanucProgramsInInchesStayInInches) {
+  const Trial trial = dialect_trial(
+      Dialect::fanuc, "G20 G90 G54\nT1 M6\nG43 H1\nS1000 M3\nG0 X1 Y.5\nZ.2\nG1 Z-.1 F4\nM2\n");
+  EXPECT_NE(trial.run().program.find("\nN1 G20\n"), std::string::npos);
+  EXPECT_EQ(body(trial),
+            "T1 M6\n"
+            "G90 G54 G17 G94 G40 G80\n"
+            "S1000 M3\n"
+            "G0 X1. Y0.5\n"
+            "G43 H1 Z0.2\n"
+            "G1 Z-0.1 F4.\n");
+}
+
+TEST(DialectRules, SpeedsOfFanucAreWhole) {
+  const std::string text = body(Dialect::fanuc, "G21 G90\nS4774.648 M3\nM2\n");
+  EXPECT_EQ(text, "S4775 M3\n");
+}
+
+TEST(DialectRules, FeedsPerRevolutionStay) {
+  const std::string program = kStart + "G0 X1 Y1 Z5\nG95 G1 X2 F0.05\nG94 X3 F100\nM2\n";
+  const auto has = [&](Dialect dialect, const std::string& text) {
+    return body(dialect, program).find(text) != std::string::npos;
+  };
+  EXPECT_TRUE(has(Dialect::fanuc, "G95 G1 X2. F0.05\nG94 X3. F100.\n"));
+  EXPECT_TRUE(has(Dialect::siemens, "G95 G1 X2 F0.05\nG94 X3 F100\n"));
+  EXPECT_TRUE(has(Dialect::heidenhain, "L X+2 FU0.05\nL X+3 F100\n"));
+}
+
+TEST(DialectRules, ToleranceOfG64IsLeftOutForFanucWithOneWarning) {
+  const Trial trial = dialect_trial(
+      Dialect::fanuc, kStart + "G0 X1 Y1 Z5\nG64 P0.01\nG1 X2 F100\nG64 P0.02\nX3\nM2\n");
+  EXPECT_NE(body(trial).find("G64\nG1 X2. F100.\nG64\nX3.\n"), std::string::npos) << body(trial);
+  std::size_t warned = 0;
+  for (const Fault& fault : trial.run().warnings) {
+    warned += fault.message.starts_with("G64 P: the tolerance is left out") ? 1 : 0;
+  }
+  EXPECT_EQ(warned, 1U);
+}
+
+TEST(DialectRules, ArcsStayArcs) {
+  const std::string program = kStart +
+                              "G0 X10 Y0 Z5\nG1 Z0 F100\nG2 X0 Y-10 I-10 J0\nG3 X0 Y-10 I0 J10\n"
+                              "G3 X10 Y0 Z-1 I0 J10\nG18 G2 X0 Z-11 I-10 K0\nM2\n";
+  const auto from = [&](Dialect dialect, const std::string& first) {
+    const std::string text = body(dialect, program);
+    const std::size_t begin = text.find(first);
+    return begin == std::string::npos ? text : text.substr(begin, 100);
+  };
+  EXPECT_TRUE(from(Dialect::fanuc, "G2 ")
+                  .starts_with("G2 X0. Y-10. I-10. J0.\n"
+                               "G3 X0. Y-10. I0. J10.\n"
+                               "X10. Y0. Z-1. I0. J10. F99.798\n"
+                               "G1 X"));
+  EXPECT_TRUE(from(Dialect::siemens, "G2 ")
+                  .starts_with("G2 X0 Y-10 I-10 J0\n"
+                               "G3 X0 Y-10 I0 J10\n"
+                               "X10 Y0 Z-1 I0 J10\n"
+                               "G1 X"));
+  EXPECT_TRUE(from(Dialect::heidenhain, "CC ")
+                  .starts_with("CC X+0 Y+0\n"
+                               "C X+0 Y-10 DR-\n"
+                               "CC X+0 Y+0\n"
+                               "C X+0 Y-10 DR+\n"
+                               "CC X+0 Y+0\n"
+                               "CP IPA+90 Z-1 DR+\n"
+                               "L X"));
+}
+
+// Its digits would make a full circle of it, or nothing.
+TEST(DialectRules, ArcsShorterThanTheDigitsAreLines) {
+  const std::string text =
+      body(Dialect::fanuc,
+           kStart + "G0 X10 Y0 Z5\nG1 Z0 F100\nG3 X10 Y0.0004 I-10 J0.0002\nG1 X0 Y5\nM2\n");
+  EXPECT_EQ(text.find("G3 "), std::string::npos) << text;
+}
+
+TEST(DialectRules, NumbersStayWithinTheFormatsOfTheControl) {
+  EXPECT_EQ(refusal(Dialect::heidenhain, kStart + "G4 P4000\nM2\n"),
+            "plate.ngc:5: error: dwells for 4000 s, more than 3600 s; that cannot be expressed for "
+            "heidenhain");
+  EXPECT_EQ(refusal(Dialect::heidenhain, kStart + "G0 X200000 Y0\nM2\n"),
+            "plate.ngc:5: error: goes to X200000; at most 99999.9999 is allowed; that cannot be "
+            "expressed for heidenhain");
+  EXPECT_EQ(refusal(Dialect::fanuc, "G21 G90\nG53 G0 Z-1.0005\nM2\n"),
+            "plate.ngc:2: error: goes to Z-1.0005 of the machine, which has more digits than the "
+            "resolution of 1 um (--resolution); that cannot be expressed for fanuc");
+}
+
+TEST(DialectRules, LongProgramsNumberEveryThousandthBlock) {
+  std::string program = kStart + "G0 X0 Y0 Z5\nG1 Z0 F100\n";
+  for (int i = 1; i <= 10000; ++i) program += "X" + std::to_string(i % 2) + "\n";
+  const std::string text = said(Dialect::fanuc, program + "M2\n");
+  EXPECT_NE(text.find("\nN11 "), std::string::npos);
+  EXPECT_EQ(text.find("\nN12 "), std::string::npos);
+}
+
+TEST(DialectRules, WhatTheOperatorHasToMakeSureOfIsWrittenAndWarnedOf) {
+  const Trial trial = dialect_trial(Dialect::fanuc, kStart + "G53 G0 Z0\nG0 X1 Y1\nZ5\nM2\n");
+  const Compensated done = trial.run();
+  const auto warned = [&](const std::string& message) {
+    return std::any_of(done.warnings.begin(), done.warnings.end(),
+                       [&](const Fault& fault) { return fault.message == message; });
+  };
+  EXPECT_TRUE(warned("assumes that T and M6 in one block change the tool, T first"));
+  EXPECT_TRUE(warned("assumes that H1 holds the length of tool 1"));
+  EXPECT_TRUE(
+      warned("assumes that machine coordinates count from the same zero as in the original"));
+  EXPECT_NE(done.program.find("(ASSUMED: H1 HOLDS THE LENGTH OF TOOL 1)\n"), std::string::npos);
+  Trial heidenhain = dialect_trial(Dialect::heidenhain, kStart + "G0 X1 Y1\nM2\n");
+  EXPECT_NE(heidenhain.run().program.find("; assumed: the active preset is G54\n"),
+            std::string::npos);
+  heidenhain.request.preset = 3;
+  const std::string text = heidenhain.run().program;
+  EXPECT_EQ(text.find("active preset"), std::string::npos);
+  EXPECT_NE(text.find("CYCL DEF 247 DATUM SETTING ~\n    Q339=+3 ; DATUM NUMBER\n"),
+            std::string::npos)
+      << text;
+}
+
+TEST(DialectRules, RotaryAxesBesideLinearOnesFeedByTime) {
+  Trial trial =
+      dialect_trial(Dialect::heidenhain, kStart + "G0 X0 Y0 B0 C0\nZ5\nG1 X10 C90 F600\nM2\n");
+  trial.request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml";
+  const std::string text = body(trial);
+  EXPECT_NE(text.find("L X+10 C+90 FT1\n"), std::string::npos) << text;
+  EXPECT_NE(trial.run().program.find("PLANE RESET STAY"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace servomill::sim
