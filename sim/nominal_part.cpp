@@ -13,12 +13,6 @@
 namespace servomill::sim {
 namespace {
 
-// The bytes beside the name. --set stl=FILE means another file than theirs.
-bool are_outdated(Reader& part) {
-  return part.place("stl").file.starts_with("--set") &&
-         !part.place("stl_base64").file.starts_with("--set");
-}
-
 std::optional<std::string> bytes_of_text(Reader& part) {
   auto bytes = from_base64(part.text("stl_base64"));
   if (!bytes) part.fault("stl_base64 is not base64");
@@ -56,7 +50,7 @@ std::shared_ptr<const NominalPart> read_nominal_part(Reader& part, InputFiles& f
   const std::string name = part.text("stl");
   if (part.faults() == before && name.empty()) part.fault("stl", "must name an STL file");
   if (part.faults() > before) return nullptr;
-  const bool is_here = part.has("stl_base64") && !are_outdated(part);
+  const bool is_here = part.has("stl_base64") && !is_outdated_copy(part, "stl", "stl_base64");
   if (!is_here) part.raw("stl_base64");
   const std::string file = is_here ? name : beside(part.place("stl"), name);
   auto bytes = is_here ? bytes_of_text(part) : *files.text(file, part.place("stl"), "part");

@@ -200,8 +200,8 @@ void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machi
   refuse_unbearable_load(axis, machine.drives[lane], machine.nc.cascade[lane], linear);
   read_dynamic_limits(axis, linear, j, machine.nc);
   read_travel(axis, linear, j, machine.nc);
-  read_encoders(axis, j, common.noise_seed, machine);
   read_axis_geometry(axis, j, machine);
+  read_encoders(axis, j, common.noise_seed, machine);  // marks lie within the travel
 }
 
 plant::MachineChain read_chain(Reader& machine) {

@@ -67,7 +67,10 @@ class ScenarioReader {
 
   void read() {
     Reader root(document_);
-    root.raw("based_on");          // still there in result files of earlier versions
+    root.raw("based_on");  // still there in result files of earlier versions
+    if (root.place("based_on").file.starts_with("--set")) {
+      root.fault("based_on", "is none of the keys that --set changes: name the other scenario");
+    }
     root.raw("machine_override");  // is in the machine by now
     out_.title = root.text_or("title", out_.name);
     out_.source = root.text_or("source", "");
@@ -137,13 +140,14 @@ class ScenarioReader {
   void read_program(Reader& table) {
     ProgramSpec& program = out_.program;
     program.file = table.text("file");
-    if (table.has("text")) {
+    if (table.has("text") && !is_outdated_copy(table, "file", "text")) {
       program.text = table.text("text");
       if (table.has("subroutines")) {
         Reader texts = table.table("subroutines");
         for (const std::string& name : texts.keys()) program.subroutines[name] = texts.text(name);
       }
     } else if (!program.file.empty()) {
+      for (const char* stored : {"text", "subroutines"}) table.raw(stored);
       const Place at = table.place("file");
       program.file = beside(at, program.file);
       program.text = *files_.text(program.file, at, "program");
@@ -327,6 +331,9 @@ class ScenarioReader {
     if (root.has("part")) {
       Reader part = root.table("part");
       out_.part = read_nominal_part(part, files_);
+      if (out_.part && !root.has("probe")) {
+        part.fault("stl", "is what probed points are laid on: it needs a [[probe]]");
+      }
       out_.stock = read_stock(part);
     }
     if (!root.has("cutting")) return;

@@ -94,6 +94,11 @@ std::string beside(const Place& place, const std::string& path) {
   return file;
 }
 
+bool is_outdated_copy(Reader& table, std::string_view name, std::string_view contents) {
+  return table.place(name).file.starts_with("--set") &&
+         !table.place(contents).file.starts_with("--set");
+}
+
 Value as_machine(Value table) {
   table.key = "machine";
   Value root;

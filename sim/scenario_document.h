@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "sim/config/document.h"
+#include "sim/config/reader.h"
 #include "sim/input_files.h"
 
 namespace servomill::sim {
@@ -33,6 +34,10 @@ bool comes_before_machine(std::string_view change);
 /// A path as it stands in a document: relative to that document, or, when it comes from --set, to
 /// the folder in which the user is.
 std::string beside(const Place& place, const std::string& path);
+
+/// Whether a table holds the contents of another file than the one it names: --set has changed the
+/// name in a document that is complete by itself.
+bool is_outdated_copy(Reader& table, std::string_view name, std::string_view contents);
 
 /// { machine = table }, to be laid over a document.
 Value as_machine(Value table);

@@ -10,10 +10,10 @@
 #include <optional>
 
 #include "plant/vocabulary/simd.h"
-#include "plant/vocabulary/units.h"
 #include "sim/build_identity.h"
 #include "sim/hdf5/series_writer.h"
 #include "sim/output_name.h"
+#include "sim/store_errors.h"
 #include "sim/store_probes.h"
 #include "sim/version.h"
 
@@ -21,51 +21,6 @@ namespace servomill::sim {
 namespace {
 
 constexpr const char* kUnfinished = "unfinished";  // group of a case until it is complete
-constexpr std::size_t kErrorSamples = 401;  // points at which error functions are written down
-constexpr double kEndlessRotary = 180 * deg;
-constexpr double kEndlessLinear = 500 * mm;
-
-// Error functions of a model over the travel of their axes, for figures.
-void write_errors(Hdf5Group& root, const Scenario& scenario) {
-  const JointLayout& layout = scenario.machine.chain.layout;
-  for (const auto& [name, model] : scenario.errors) {
-    for (const Axis axis : kAllAxes) {
-      const auto joint = layout.joint_of(axis);
-      if (!joint) continue;
-      const auto& components = model.components[static_cast<std::size_t>(index_of(axis))];
-      if (std::all_of(components.begin(), components.end(),
-                      [](const auto& f) { return f.is_zero(); })) {
-        continue;
-      }
-      Hdf5Group group = root.group(fmt::format("errors/{}/{}", name, letter(axis)));
-      const double endless = is_linear(axis) ? kEndlessLinear : kEndlessRotary;
-      const double lower = std::max(scenario.machine.nc.lower[*joint], -endless);
-      const double upper = std::min(scenario.machine.nc.upper[*joint], endless);
-      std::vector<double> q(kErrorSamples), shown(kErrorSamples);
-      for (std::size_t i = 0; i < kErrorSamples; ++i) {
-        q[i] = lower + (upper - lower) * static_cast<double>(i) / (kErrorSamples - 1);
-        shown[i] = q[i] / (is_linear(axis) ? mm : deg);
-      }
-      group.list("position", shown,
-                 {is_linear(axis) ? "mm" : "deg", fmt::format("position of {}", letter(axis))});
-      for (const Axis direction : kAllAxes) {
-        const auto& f = components[static_cast<std::size_t>(index_of(direction))];
-        if (f.is_zero()) continue;
-        const auto write = [&](const std::string& dataset, const std::string& what, auto value_at) {
-          std::vector<double> values(kErrorSamples);
-          std::transform(q.begin(), q.end(), values.begin(),
-                         [&](double at) { return value_at(at) / um; });  // um is urad
-          group.list(dataset, values, {is_linear(direction) ? "um" : "urad", what}, "position");
-        };
-        const std::string error = fmt::format("E{}{}", letter(direction), letter(axis));
-        write(error, "error " + error, [&](double at) { return f.value(at); });
-        if (f.reversals.empty()) continue;
-        write(error + "_width", error + " travelling up minus travelling down",
-              [&](double at) { return f.width(at); });
-      }
-    }
-  }
-}
 
 // Chunks of equal length, so that the last one holds little that is nothing.
 std::size_t chunk_rows(std::size_t rows) {

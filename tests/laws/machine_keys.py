@@ -14,7 +14,7 @@ NAMED = re.compile(r'^  const std::string_view key = linear \? "(\w+)" : "(\w+)"
 PERIOD = re.compile(r'period\(nc, "(\w+)"')
 STEPS = re.compile(r'read_either\(axis, "(\w+)", "(\w+)"')
 STRUCTURE = {"nc", "axis", "marks", "scale", "motor", "screw", "friction", "winding", "cogging", "filter",
-             "friction_compensation", "backlash_compensation", "errors"}  # tables: they are headings
+             "friction_compensation", "backlash_compensation", "errors", "Z"}  # tables: they are headings
 
 
 def known_keys(folder):

@@ -166,6 +166,18 @@ TEST(NominalPart, MustFaceAsTheProbesDo) {
 }
 
 // Chords in place of arcs are as good as their distance.
+TEST(NominalPart, NeedsAProbeToBeOfAnyUse) {
+  try {
+    small_scenario(kProgram, kTool + part(the_block()) + "[[case]]\nname = \"one\"\n");
+    ADD_FAILURE() << "was ignored";
+  } catch (const InputError& error) {
+    const std::string all = error.what();
+    EXPECT_EQ(all.substr(all.find(": error: ")),
+              ": error: part.stl = \"block.stl\"; is what probed points are laid on: it needs a "
+              "[[probe]]");
+  }
+}
+
 TEST(NominalPart, SaysHowFarItsFacetsAreOff) {
   const Triangles low = block(Vector3d(-20.0, 0.0, -10.0) * mm, Vector3d(100.0, 70.0, -0.005) * mm);
   const RunOutput output = run(milled("", part(low)));

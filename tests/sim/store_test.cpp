@@ -113,5 +113,36 @@ TEST_F(RunFile, SpeaksNotOfUnfinishedCasesWhenItIsComplete) {
   EXPECT_FALSE(InputFile(path("out.h5")).has("/unfinished"));
 }
 
+// Errors of a machine whose X lies far from its zero, and whose Y has no travel.
+TEST_F(RunFile, HasErrorsOverAllOfTheTravelAndLocationErrors) {
+  const Scenario far =
+      small_scenario("G1 Z1 F1000\nM2\n",
+                     "truth = \"true\"\n"
+                     "[machine_override.axis.X]\ntravel_mm = [600.0, 3400.0]\n"
+                     "[machine_override.axis.C]\ntravel_deg = [-3600.0, 3600.0]\n"
+                     "[errors.true]\nEXX = { um_per_m = 10.0 }\nECC = { constant_urad = 5.0 }\n"
+                     "EC0Y = { um_per_m = 50.0 }\nEX0C = \"-3 um\"\n"
+                     "[errors.square]\nEB0Z = { um_per_m = 20.0 }\n"
+                     "[program.start]\nX_mm = 700.0\n[[case]]\nname = \"one\"\n");
+  RunStore store(path("out.h5"), false, far);
+  store.commit({});
+  const InputFile file(path("out.h5"));
+  const auto x = file.values("/errors/true/X/position"), exx = file.values("/errors/true/X/EXX");
+  ASSERT_EQ(x.size(), exx.size());
+  EXPECT_EQ(x.size(), 1121U) << "a place each 2.5 mm";
+  EXPECT_DOUBLE_EQ(x.front(), 600.0);
+  EXPECT_DOUBLE_EQ(x.back(), 3400.0);
+  EXPECT_NEAR(exx.front(), 6.0, 1e-9);
+  EXPECT_NEAR(exx.back(), 34.0, 1e-9);
+  const auto c = file.values("/errors/true/C/position");
+  EXPECT_NEAR(c.front(), -180.0, 1e-9);
+  EXPECT_NEAR(c.back(), 180.0, 1e-9);
+  EXPECT_NEAR(file.values("/errors/true/locations/EC0Y").at(0), 50.0, 1e-9);
+  EXPECT_EQ(file.text("/errors/true/locations/EC0Y", "units"), "urad");
+  EXPECT_NEAR(file.values("/errors/true/locations/EX0C").at(0), -3.0, 1e-9);
+  EXPECT_EQ(file.text("/errors/true/locations/EX0C", "units"), "um");
+  EXPECT_NEAR(file.values("/errors/square/locations/EB0Z").at(0), 20.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace servomill::sim

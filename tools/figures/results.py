@@ -149,7 +149,7 @@ class Run(ResultFile):
 
     def need_errors_of_only(self, axis):
         """Throws NotInFile unless the imposed errors depend on this axis and on no other."""
-        axes = list(self.h5[f"errors/{self.imposed_name()}"])
+        axes = [name for name in self.h5[f"errors/{self.imposed_name()}"] if name != "locations"]
         if axes != [axis]:
             raise NotInFile(f"the imposed errors are functions of {', '.join(axes)}, not of "
                             f"{axis} alone")

@@ -37,7 +37,8 @@ std::vector<std::string> files(bool machines) {
 }
 
 std::string test_name(const testing::TestParamInfo<std::string>& file) {
-  std::string name = fs::path(file.param).stem().string();
+  const fs::path path(file.param);  // two folders may have a file of one name
+  std::string name = path.parent_path().filename().string() + "_" + path.stem().string();
   std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return name;
@@ -82,6 +83,39 @@ TEST(Changes, OfAFileNameAreReadFromWhereTheUserIs) {
   const std::string here = fs::relative(machine).string();
   const Scenario scenario = read_scenario(kSmall, {"machine=" + here});
   EXPECT_EQ(scenario.resolved, read_scenario(kSmall).resolved);
+}
+
+TEST(Changes, OfAProgramReplaceTheOneThatAResolvedScenarioHolds) {
+  const fs::path folder = fs::path(testing::TempDir()) / "changed_program";
+  fs::create_directories(folder);
+  const std::string resolved = folder / "resolved.toml", other = folder / "other.ngc";
+  std::ofstream(resolved) << read_scenario(kSmall).resolved;
+  std::ofstream(other) << "G1 X7 F1000\nM2\n";
+  const Scenario changed = read_scenario(resolved, {"program.file=\"" + other + "\""});
+  EXPECT_EQ(changed.program.text, "G1 X7 F1000\nM2\n");
+  EXPECT_EQ(read_resolved_scenario(changed.resolved, "again").program.text, "G1 X7 F1000\nM2\n");
+  const Scenario both =
+      read_scenario(resolved, {"program.file=\"" + other + "\"", "program.text=\"M2\\n\""});
+  EXPECT_EQ(both.program.text, "M2\n") << "as --set says";
+  EXPECT_EQ(read_scenario(resolved).program.text, read_scenario(kSmall).program.text);
+  try {
+    read_scenario(resolved, {"program.file=\"nowhere.ngc\""});
+    ADD_FAILURE() << "ran the stored program";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("nowhere.ngc"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Changes, OfTheScenarioBelowAreRefused) {
+  try {
+    read_scenario(kSmall, {"based_on=\"other.toml\""});
+    ADD_FAILURE() << "ignored";
+  } catch (const InputError& error) {
+    EXPECT_EQ(
+        std::string(error.what()),
+        "--set based_on=\"other.toml\": error: based_on = \"other.toml\"; is none of the keys "
+        "that --set changes: name the other scenario");
+  }
 }
 
 TEST(Faults, StandInTheFileThatSaysThem) {
