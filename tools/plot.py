@@ -16,11 +16,13 @@ import numpy as np
 from PIL import Image
 
 from command_line import InputError, run
+from figures import names as naming
 from figures import style
 from figures.catalogue import FIGURES
 from figures.results import NotInFile, open_result
 
 FORMATS = ("png", "svg", "pdf")
+PICTURES = ("jpg", "jpeg", "gif", "tif", "tiff", "bmp", "webp", "eps", "ps")   # endings of pictures that are not drawn
 # no dates: the same results give the same bytes
 METADATA = {"svg": {"Date": None}, "pdf": {"CreationDate": None, "ModDate": None}}
 PALETTE = 256  # colours of a PNG
@@ -84,13 +86,14 @@ def failure(fault):
     return f"drawing it failed ({type(fault).__name__}: {' '.join(str(fault).split())})"
 
 
-def pages_of(files, named, why):
+def pages_of(files, named, why, names):
     """All figures of all files as (stem of the file name, figure), and whether a file could not be read. What is not
     drawn is told, unless another kind of file was meant. InputError: nothing can be drawn."""
     pages, found, missing, unread = [], set(), [], []
     for file in files:
         try:
             with open_result(file) as result:
+                result.names = names
                 drawn, lost = draw_all(result, named)
                 missing.append((file, result.kind, lost))
         except InputError as fault:
@@ -124,13 +127,57 @@ def tell_not_drawn(where, lost, why):
               file=sys.stderr)
 
 
+def ending_of(path):
+    """"png" of "a/b.PNG"; "" of a folder."""
+    return "" if path.is_dir() else path.suffix.lower().removeprefix(".")
+
+
+def formats_of(text, target):
+    """Formats to write, from --format and what -o ends in. InputError: they differ, or -o is no place for figures."""
+    ending = ending_of(target)
+    formats = chosen(text, FORMATS, "format") if text else [ending if ending in FORMATS else "png"]
+    if ending in FORMATS and formats != [ending]:
+        raise InputError(f"{target}: error: ends in .{ending}, but --format is {','.join(formats)}")
+    if ending in PICTURES:
+        raise InputError(f"{target}: error: figures are written as " + ", ".join(FORMATS))
+    if ending not in FORMATS and target.exists() and not target.is_dir():
+        raise InputError(f"{target}: error: is a file; figures go into a folder, or into a file that ends in ." +
+                         ", .".join(FORMATS))
+    return formats
+
+
+def paths_of(drawn, target, formats):
+    """[(path, figure, format)]: files of a folder, or the one that -o names. InputError: that is to hold several."""
+    if ending_of(target) not in FORMATS:
+        return [(target / f"{name}.{ending}", figure, ending) for name, figure in drawn for ending in formats]
+    if len(drawn) > 1:
+        raise InputError(f"{target}: error: holds one figure, not {len(drawn)} ({', '.join(name for name, _ in drawn)}); "
+                         "name one with --figures, or a folder with -o")
+    return [(target, figure, formats[0]) for _, figure in drawn]
+
+
+def refuse_unwritable(path, inputs, force):
+    """InputError: a folder, a file that is read, or one that exists without --force."""
+    if path.is_dir():
+        raise InputError(f"{path}: error: is a folder")
+    if path.exists() and any(pathlib.Path(file).exists() and path.samefile(file) for file in inputs):
+        raise InputError(f"{path}: error: is one of the files that are read")
+    if path.exists() and not force:
+        raise InputError(f"{path}: error: exists; use --force to overwrite")
+
+
 def main(arguments):
     reader = argparse.ArgumentParser(
         prog="plot.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     reader.add_argument("files", metavar="OUT.h5", nargs="*", help="result files")
-    reader.add_argument("-o", metavar="DIR", default=".", help="folder to write to (default: here)")
-    reader.add_argument("--format", metavar="png,svg,pdf", default="png", help="default: png")
+    reader.add_argument("-o", metavar="OUT", default=".",
+                        help="folder to write to (default: here), or for one figure a file .png, .svg or .pdf")
+    reader.add_argument("--format", metavar="png,svg,pdf", help="default: png, or as the file of -o ends")
     reader.add_argument("--figures", metavar="NAME,...", help="default: all that the files hold")
+    reader.add_argument("--section", metavar="NAME=YOURS", action="append",
+                        help="section or probed feature to draw for that of the paper's figures: " + ", ".join(naming.SECTIONS))
+    reader.add_argument("--case", metavar="NAME=YOURS", action="append",
+                        help="case to draw for that of the paper's figures: " + ", ".join(naming.CASES))
     reader.add_argument("--why", action="store_true", help="say of every figure that is not drawn why")
     reader.add_argument("--list", action="store_true", help="print the names of all figures")
     reader.add_argument("--force", action="store_true", help="overwrite existing figures")
@@ -146,18 +193,20 @@ def main(arguments):
     for stem in stems:
         if stems.count(stem) > 1:
             raise InputError(f"plot.py: error: two files are named {stem}; draw them apart")
-    formats = chosen(options.format, FORMATS, "format")
+    target = pathlib.Path(options.o)
+    formats = formats_of(options.format, target)
+    names = naming.Names(naming.parse(options.case, naming.CASES, "case"),
+                         naming.parse(options.section, naming.SECTIONS, "section"))
     named = options.figures and chosen(options.figures, [f.name for f in FIGURES], "figure")
 
     # everything is drawn before anything is written
     style.set_up()
-    folder = pathlib.Path(options.o)
-    drawn, unread = pages_of(options.files, named, options.why)
-    pages = [(folder / f"{name}.{ending}", figure, ending) for name, figure in drawn for ending in formats]
+    drawn, unread = pages_of(options.files, named, options.why, names)
+    pages = paths_of(drawn, target, formats)
     for path, _, _ in pages:
-        if path.exists() and not options.force:
-            raise InputError(f"{path}: error: exists; use --force to overwrite")
-    folder.mkdir(parents=True, exist_ok=True)
+        refuse_unwritable(path, options.files, options.force)
+    for path, _, _ in pages:
+        path.parent.mkdir(parents=True, exist_ok=True)
     for path, figure, ending in pages:
         try:
             save(figure, path, ending)

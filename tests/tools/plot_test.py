@@ -23,7 +23,7 @@ import numpy as np
 from PIL import Image
 
 import plot as program
-from figures import balls, circular, five_axis, lag, nonlinear, notches, parts, probed_points, results, straightness, style, sweeps, volumetric
+from figures import balls, circular, five_axis, lag, names, nonlinear, notches, parts, probed_points, results, straightness, style, sweeps, volumetric
 
 SERVOMILL = ""
 AGREE = 1e-7        # um; `compare` prints nine digits of up to 100 um
@@ -353,9 +353,10 @@ class Drawing(WithFiles):
         self.assertEqual(self.drawn(), [f"side-{name}.png" for name in names])
         self.assertEqual(done.stderr.splitlines(), [
             "figure12: not drawn, no error functions of Z",
-            "figure14: not drawn, no case named generated",
-            "figure15: not drawn, no case named generated",
-            *(f"figure{n}: not drawn, no finished case named generated, compensated" for n in (16, 17, 18, 19)),
+            "figure14: not drawn, no case named generated; --case generated=NAME draws another",
+            "figure15: not drawn, no case named generated; --case generated=NAME draws another",
+            *(f"figure{n}: not drawn, no finished case named generated, compensated; --case generated=NAME draws another"
+              for n in (16, 17, 18, 19)),
             *(f"{name}: not drawn, no part was probed ([[probe]] of the scenario)"
               for name in ("probed", "part", "planes")),
             "nest: not drawn, the scenario asks for no radial_ball_deviation",
@@ -646,6 +647,123 @@ class Balls(WithFiles):
             np.testing.assert_allclose(angle, turn, atol=0.01)   # the mean of 361 points is off by one in 361
 
 
+class OwnNames(WithFiles):
+    """Figures of the paper, of scenarios with other names."""
+
+    def texts(self, path, draw, cases=(), sections=()):
+        """Headline and titles."""
+        style.set_up()
+        with results.open_result(path) as run:
+            run.names = names.Names(names.parse(cases, names.CASES, "case"), names.parse(sections, names.SECTIONS, "section"))
+            figure = draw(run)
+        self.addCleanup(style.plt.close, figure)
+        return figure.texts[0].get_text(), [text.get_text() for text in figure.axes[0].get_legend().texts]
+
+    def test_a_renamed_run_gives_the_same_figures(self):
+        renamed = self.out / "renamed.h5"
+        shutil.copy(self.contour, renamed)
+        with h5py.File(renamed, "a") as file:
+            file.move("cases/generated", "cases/as_built")
+            file.move("cases/compensated", "cases/corrected")
+            file.move("cases/nominal", "cases/ideal")
+            scenario = str(file["inputs"].attrs["resolved"])
+            for name, own in (("generated", "as_built"), ("compensated", "corrected"), ("nominal", "ideal")):
+                scenario = scenario.replace(f'"{name}"', f'"{own}"')
+            file["inputs"].attrs["resolved"] = scenario
+            for case in file["cases"].values():
+                case.attrs["sections"] = str(case.attrs["sections"]).replace("plane", "deck").replace("circle", "hole")
+        mine = ["--case", "nominal=ideal", "--case", "generated=as_built", "--case", "compensated=corrected",
+                "--section", "plane=deck", "--section", "circle=hole"]
+        done = plot(renamed, "-o", self.out / "mine", "--figures", "figure14,figure15", *mine)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        with results.open_result(self.contour) as paper, results.open_result(renamed) as own:
+            own.names = names.Names(dict(one.split("=") for one in mine[1:6:2]), dict(one.split("=") for one in mine[7::2]))
+            for sections in (volumetric.CONTOURS, volumetric.PLANE):
+                _, expected = volumetric.differences(paper, sections)
+                _, found = volumetric.differences(own, sections)
+                np.testing.assert_array_equal(found["as_built"][2], expected["generated"][2])
+
+    def test_another_section_along_x(self):
+        with results.open_result(self.side) as run:
+            run.names = names.Names(sections={"flank": "plane"})
+            found = {one.case.name: one.largest() for one in straightness.tracks(run, "Z", "flank")}
+            run.names = names.Names()
+            self.assertEqual(found, {one.case.name: one.largest() for one in straightness.tracks(run, "Z", "plane")})
+
+    def test_headlines_name_what_is_drawn(self):
+        headline, legend = self.texts(self.side, volumetric.draw_plane, ["generated=table", "compensated=gcode"], ["plane=flank"])
+        self.assertRegex(headline, r"^flank: up to [\d.]+ µm in an axis \(table\), [\d.]+ µm in an axis \(G-code\)$")
+        self.assertEqual(legend, ["nominal", "table", "G-code"])
+
+    def test_names_that_do_not_exist(self):
+        side = self.side
+        self.fails(f"{side}: error: figure9: no feed motion in a section named flnk; did you mean flank?",
+                   side, "--figures", "figure9", "--section", "flank=flnk")
+        self.fails(f"{side}: error: figure9: no feed motion in a section named wall; --section flank=NAME draws another",
+                   side, "--figures", "figure9", "--section", "flank=wall")
+        self.fails(f"{side}: error: figure14: no case named tabel; did you mean table?",
+                   side, "--figures", "figure14", "--case", "generated=tabel")
+        self.fails("plot.py: error: --section flnk=flank: no figure is about a section named flnk; did you mean flank?",
+                   side, "--section", "flnk=flank")
+        self.fails("plot.py: error: --case table: must be NAME=YOURS, NAME one of nominal, generated, compensated, "
+                   "compensated_lead, nominal_air, generated_air, compensated_air", side, "--case", "table")
+        self.fails("plot.py: error: --case names generated twice: table and gcode",
+                   side, "--case", "generated=table", "--case", "generated=gcode")
+
+
+class Headlines(unittest.TestCase):
+    def test_one_case_is_told_once(self):
+        looks = {name: style.Look(name, style.BLACK) for name in ("plain", "exact")}
+        self.assertEqual(five_axis.told_peaks({"plain": 2.5}, "plain", looks), "2.5 µm (plain)")
+        self.assertEqual(five_axis.told_peaks({"plain": 2.5, "exact": 0.125}, "plain", looks), "2.5 µm (plain), 0.12 µm (exact)")
+
+    def message(self, **delays):
+        class Sweep:
+            scenario = {"case": [{"name": name} for name in delays]}
+            strategies = results.ResultFile.strategies
+
+        return lag._message(Sweep(), {(name, "Y"): {"value": np.array(values)} for name, values in delays.items()})
+
+    def test_a_delay_that_varies_is_told_with_its_range(self):
+        self.assertEqual(self.message(table=[40.0, 40.2], gcode=[0.3, 0.2]),
+                         "The delay is the same at every feed within 1 %: table 40.1 ms")
+        self.assertEqual(self.message(table=[40.0, 40.2], gcode=[-0.4, 4.2]),
+                         "Delay the same at every feed within 1 %: table 40.1 ms; not of G-code −0.4 to 4.2 ms")
+        self.assertEqual(self.message(gcode=[-4.0, 4.0]), "Delay over the feed: G-code −4.0 to 4.0 ms")
+        self.assertEqual(self.message(gcode=[0.1, np.nan]), "Lag against feed")
+
+
+class OutputFiles(WithFiles):
+    """-o with the name of a file."""
+
+    def test_one_figure_into_a_file_of_that_name(self):
+        for name, start in (("a.png", b"\x89PNG"), ("b.svg", b"<?xml"), ("new/c.PDF", b"%PDF")):
+            path = self.out / name
+            done = plot(self.side, "--figures", "figure6", "-o", path)
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (0, f"{path}\n", ""))
+            self.assertTrue(path.read_bytes().startswith(start), name)
+        done = plot(self.side, "--figures", "figure6", "-o", self.out / "a.png")
+        self.assertEqual((done.returncode, done.stderr), (2, f"{self.out / 'a.png'}: error: exists; use --force to overwrite\n"))
+
+    def refuses(self, message, target, *arguments):
+        done = plot(*arguments, "-o", target)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (2, "", f"{target}: error: {message}\n"))
+
+    def test_what_cannot_be_one(self):
+        self.refuses("holds one figure, not 2 (side-figure6, side-figure9); name one with --figures, or a folder with -o",
+                     self.out / "a.png", self.side, "--figures", "figure6,figure9")
+        self.refuses("ends in .png, but --format is svg", self.out / "a.png", self.side, "--format", "svg")
+        self.refuses("figures are written as png, svg, pdf", self.out / "a.jpg", self.side)
+        self.refuses("is a file; figures go into a folder, or into a file that ends in .png, .svg, .pdf",
+                     self.side, self.side, "--force")
+        self.assertEqual(self.drawn(), [])
+        before = self.side.read_bytes()
+        alias = self.out / "alias.png"
+        alias.symlink_to(self.side)
+        self.refuses("is one of the files that are read", alias, self.side, "--figures", "figure6", "--force")
+        self.assertEqual(self.side.read_bytes(), before)
+
+
 class Mistakes(WithFiles):
     def test_a_figure_that_is_asked_for_and_not_held(self):
         self.fails(f"{self.side}: error: lag: the file holds a run, not a sweep", self.side, "--figures", "lag")
@@ -721,6 +839,30 @@ class Mistakes(WithFiles):
         with h5py.File(hollow, "a") as file:
             del file["cases/table/servo/s"]
         self.fails(f"{hollow}: error: figure9: case table holds no s", hollow, "--figures", "figure9")
+
+    def test_files_that_lack_what_every_one_holds(self):
+        def damaged(source, change):
+            path = self.root / "damaged.h5"
+            shutil.copy(source, path)
+            with h5py.File(path, "a") as file:
+                change(file)
+            done = plot(path, "-o", self.out)
+            self.assertEqual((done.returncode, done.stdout, self.drawn()), (2, "", []), done.stderr)
+            return done.stderr.replace(str(path), "FILE")
+
+        def set_version(file):
+            file.attrs["schema_version"] = "one"
+
+        def lose(name, attribute=None):
+            def change(file):
+                del (file[name].attrs if attribute else file)[attribute or name]
+            return change
+
+        self.assertRegex(damaged(self.side, set_version), r"^FILE: error: is damaged \(.*'one'.*\)\n$")
+        self.assertRegex(damaged(self.side, lose("cases/table", "finished")), r"^FILE: error: is damaged \(.*finished.*\)\n$")
+        self.assertRegex(damaged(self.side, lose("cases/table/servo")), r"^FILE: error: is damaged \(.*servo.*\)\n$")
+        self.assertRegex(damaged(self.sweep, lose("sweep/program_feed_override", "key")),
+                         r"^FILE: error: is damaged \(.*key.*\)\n$")
 
 
 if __name__ == "__main__":

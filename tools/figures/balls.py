@@ -99,6 +99,8 @@ def _before_and_after(run, cases):
     if len(largest) < 2 or not all(np.isfinite(value) for value in largest.values()):
         return ""
     before, best = cases[0].name, min(largest, key=largest.get)
+    if best == before:
+        return f"; radial {style.number(largest[before])} µm with {_look(run, before).label}, more with the others"
     return (f"; radial {style.number(largest[before])} µm before, {style.number(largest[best])} µm with "
             f"{_look(run, best).label}")
 

@@ -3,6 +3,7 @@ import dataclasses
 
 import numpy as np
 
+from figures import names as naming
 from figures import parts, results, style
 from figures.results import NotInFile, UM_PER_MM
 from figures.volumetric import magnification
@@ -15,10 +16,16 @@ AIR = "_air"
 
 
 def _cases(run, names):
-    missing = [name for name in names if name not in run.cases or not run.cases[name].finished]
+    """{the paper's name: case}"""
+    own = {name: run.names.case(name) for name in names}
+    missing = [name for name in names if own[name] not in run.cases or not run.cases[own[name]].finished]
     if missing:
-        raise NotInFile("no finished case named " + ", ".join(missing))
-    return {name: run.cases[name] for name in names}
+        raise NotInFile("no finished case named " + ", ".join(own[name] for name in missing) + run.case_hint(missing[0]))
+    return {name: run.cases[own[name]] for name in names}
+
+
+def _look(run, name):
+    return style.look_of(run, run.names.case(name))
 
 
 def _tool_z(case, rows):
@@ -31,27 +38,27 @@ def draw_air_and_cutting(run):
     air = _cases(run, [name + AIR for name in PARTS])
     base = cutting["nominal"]
     figure, strip, grid = style.panels([1.0, 0.8], (11.0, 7.2), columns=2, widths=[1.0, 1.0])
-    looks = {name: dataclasses.replace(style.look_of(run, name), line="-", width=3.0 if name == "nominal" else 1.7)
+    looks = {name: dataclasses.replace(_look(run, name), line="-", width=3.0 if name == "nominal" else 1.7)
              for name in PARTS}   # the nominal one lies under the others
     air_look = style.Look("in air", style.GREY, style.DASH, "", 1.2)
     style.legend(strip, [*looks.values(), air_look])
     (oblique, over), (scale, tool) = grid
-    told, size = {}, 0.0
+    told, size, circle = {}, 0.0, run.names.section(CIRCLE)
     for name in PARTS:
-        rows, rows_air = (one.samples([CIRCLE]) for one in (cutting[name], air[name + AIR]))
+        rows, rows_air = (one.samples([circle]) for one in (cutting[name], air[name + AIR]))
         if not len(rows) or not len(rows_air):
-            raise NotInFile(f"no feed motion in a section named {CIRCLE}")
+            raise run.no_motion([CIRCLE])
         size = max(size, np.abs(_height(base, cutting[name], rows)).max())
     factor = magnification(150.0, size, 0.25)
     for name in PARTS:
         for case, look in ((cutting[name], looks[name]),
                            (air[name + AIR], dataclasses.replace(looks[name], line=air_look.line, width=air_look.width))):
-            rows = case.samples([CIRCLE])
+            rows = case.samples([circle])
             angle, x, y = _around(base, case, rows)
             z = _height(base, case, rows)
             style.line(oblique, x + 0.35 * y, z * factor / UM_PER_MM + 0.5 * y, look)
             style.line(over, angle, z, look)
-        rows = cutting[name].samples([CIRCLE])
+        rows = cutting[name].samples([circle])
         angle, _, _ = _around(base, cutting[name], rows)
         added = results.trajectory_difference(cutting[name], air[name + AIR], "Z", rows)
         style.noisy_line(scale, angle, added, looks[name], buckets=120)
@@ -116,23 +123,26 @@ def draw_top_plane(run):
     """Figure 17: trajectory, probed points and least-squares plane of the top, seen along Y and along X."""
     cases = _cases(run, PARTS)
     features = parts.probed(run)
-    if TOP not in features:
-        raise NotInFile(f"no probed feature named {TOP}")
+    top = run.names.section(TOP)
+    if top not in features:
+        raise NotInFile(f"no probed feature named {top}" + naming.hint("section", TOP, top, list(features)))
     base = cases["nominal"]
     figure, strip, grid = style.panels([1.0, 1.0], (11.4, 7.4), columns=3, sharey=None)
-    looks = {name: style.look_of(run, name) for name in PARTS}
+    looks = {name: _look(run, name) for name in PARTS}
     style.legend(strip, [dataclasses.replace(looks[name], line="-", marker="") for name in PARTS] +
                  [style.Look("probed, ±σ", style.GREY, "", "x"), style.Look("least-squares plane", style.GREY, style.DASH, "")],
                  points=True)
     z_offset = run.scenario.get("program", {}).get("work_offset", {})
     told = {}
     for column, name in enumerate(PARTS):
-        one = features[TOP].get(name)
+        one = features[top].get(cases[name].name)
         if one is None:
-            raise NotInFile(f"case {name} was not probed")
+            raise NotInFile(f"case {cases[name].name} was not probed")
         plane = fitted_plane(one.nominal, one.mean)
         told[name] = plane.rotations()
-        rows = cases[name].samples([PLANE])
+        rows = cases[name].samples([run.names.section(PLANE)])
+        if not len(rows):
+            raise run.no_motion([PLANE])
         at = {axis: results.programmed(base, axis, cases[name].column("s")[rows]) - float(z_offset.get(f"{axis}_mm", 0.0))
               for axis in "XY"}
         height = _height(base, cases[name], rows)
@@ -210,13 +220,13 @@ def _key(fitted):
 
 def draw_quivers(run):
     """Figure 18: distances of the three parts to the nominal one in XY after best fit."""
-    fitted = {name: best_fit(run, name) for name in _cases(run, PARTS)}
+    fitted = {name: best_fit(run, case.name) for name, case in _cases(run, PARTS).items()}
     largest = max(one.largest() for one in fitted.values())
     figure, strip, grid = style.panels([1.0], (13.2, 5.7), columns=3)
     style.legend(strip, _key(fitted), lines=False, points=True)
     factor = magnification(np.ptp(fitted["nominal"].nominal, axis=0).max(), largest, 0.12)
     for ax, (name, one) in zip(grid[0], fitted.items()):
-        look = style.look_of(run, name)
+        look = _look(run, name)
         _draw_outline(ax, one)
         met = ~one.missed()
         ax.quiver(*one.place[met].T, *one.deviation[met].T * factor / UM_PER_MM, color=look.colour, angles="xy",
@@ -245,11 +255,11 @@ def _closed(points, nominal):
 
 def draw_superposed(run):
     """Figure 19: the three parts on each other, distances magnified."""
-    fitted = {name: best_fit(run, name) for name in _cases(run, PARTS)}
+    fitted = {name: best_fit(run, case.name) for name, case in _cases(run, PARTS).items()}
     figure, strip, grid = style.panels([1.0], (8.6, 8.8))
     ax = grid[0][0]
     _draw_outline(ax, fitted["nominal"])
-    looks = {name: dataclasses.replace(style.look_of(run, name), line=style.DASH if name == "compensated" else "-", marker="")
+    looks = {name: dataclasses.replace(_look(run, name), line=style.DASH if name == "compensated" else "-", marker="")
              for name in fitted}
     for name, one in fitted.items():
         shown = one.place + one.deviation * SUPERPOSED / UM_PER_MM

@@ -76,16 +76,27 @@ def _proportional(ax, feed, values):
         ax.plot([0.0, feed[end]], [0.0, values[end]], color="#9a9a9a", linewidth=1.1, zorder=2)
 
 
+LAGS = 1.0        # ms: delays that are never larger are not told of
+CONSTANT = 0.1    # of the mean: delays that vary by no more are one number
+
+
 def _message(sweep, delay):
-    parts, spread = [], 0.0
+    """Delays that are the same at every feed as one number each, the others with their range."""
+    constant, spread, varying = [], 0.0, []
     for (case, _), q in delay.items():
-        values = q["value"][np.isfinite(q["value"])]
-        if len(values) and values.mean() > 1.0:    # ms; the others do not lag
-            parts.append(f"{style.look_of(sweep, case).label} {values.mean():.1f} ms")
-            spread = max(spread, np.abs(values / values.mean() - 1.0).max())
-    if not parts:
-        return "Lag against feed"
-    if spread > 0.1:
-        return "Mean delay: " + ", ".join(parts) + f" (varies by {100 * spread:.0f} %)"
-    return (f"The delay is the same at every feed within {max(1.0, np.ceil(100 * spread)):.0f} %: "
-            + ", ".join(parts))
+        values, label = q["value"][np.isfinite(q["value"])], style.look_of(sweep, case).label
+        if not len(values) or np.abs(values).max() <= LAGS:
+            continue
+        off = np.abs(values - values.mean()).max() / max(abs(values.mean()), 1e-12)
+        if off <= CONSTANT:
+            constant.append(f"{label} {values.mean():.1f} ms")
+            spread = max(spread, off)
+        else:
+            low, high = (f"{value:.1f}".replace("-", "−") for value in (values.min(), values.max()))
+            varying.append(f"{label} {low} to {high} ms")
+    within = f"{max(1.0, np.ceil(100 * spread)):.0f} %: " + ", ".join(constant)
+    if not constant:
+        return "Delay over the feed: " + ", ".join(varying) if varying else "Lag against feed"
+    if varying:
+        return f"Delay the same at every feed within {within}; not of " + ", ".join(varying)
+    return "The delay is the same at every feed within " + within

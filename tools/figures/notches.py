@@ -31,9 +31,9 @@ def _summary(values):
 def notches(run, section="notch"):
     base, found = run.base(), []
     for case in run.others():
-        parts = results.passes(case.samples([section]))
+        parts = results.passes(case.samples([run.names.section(section)]))
         if not parts:
-            raise NotInFile(f"no feed motion in a section named {section}")
+            raise run.no_motion([section])
         if not case.has("imposed_linear"):
             raise NotInFile("no error model is imposed")
         found.append(Notches(
@@ -70,7 +70,7 @@ def draw(run):
         _points(axes[1], one.x + shift, one.residual, one.look)
         _points(axes[2], one.x + shift, one.residual * 1000.0, one.look)
 
-    probed = probed_points.notches(run)
+    probed = probed_points.notches(run, run.names.section("notch"))
     for number, one in enumerate(found):
         points = probed.get(one.case)
         if points is not None:

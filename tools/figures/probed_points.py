@@ -54,10 +54,10 @@ def along(run, name, axis):
             for cases in _features(run, lambda feature: feature == name).values() for case, one in cases.items()}
 
 
-def notches(run):
-    """{case: Points} of all features that are notches: X of their centre lines, both flanks weighing the same."""
+def notches(run, name="notch"):
+    """{case: Points} of all features whose names begin so: X of their centre lines, both flanks weighing the same."""
     found = {}
-    for cases in _features(run, lambda feature: feature.startswith("notch")).values():
+    for cases in _features(run, lambda feature: feature.startswith(name)).values():
         for case, one in cases.items():
             found.setdefault(case, []).append(_centre(one, _offset(run)))
     return {case: Points(*(np.array(column) for column in zip(*sorted(rows)))) for case, rows in found.items()}

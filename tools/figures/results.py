@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 
 from command_line import InputError
+from figures import names as naming
 
 SCHEMA_VERSION = 1
 SWEEP_SCHEMA_VERSION = 3
@@ -108,6 +109,8 @@ class Case:
 class Run(ResultFile):
     """A file that `servomill run` wrote."""
 
+    names = naming.Names()   # of its cases and sections, where they are not the paper's
+
     def __init__(self, path):
         super().__init__(path)
         if self.kind != "run":
@@ -124,12 +127,33 @@ class Run(ResultFile):
         """The case that the others are compared with: the scenario's, or the one named nominal."""
         named = [q["base"] for q in self.scenario.get("quantity", [])
                  if q.get("name") == "imposed_curve_residual" and "base" in q]
-        for name in named + ["nominal"]:
+        own = [self.names.cases["nominal"]] if "nominal" in self.names.cases else []
+        for name in own or named + ["nominal"]:
             if name in self.cases:
                 if not self.cases[name].finished:
                     raise NotInFile(f"case {name}, which the others are compared with, stopped")
                 return self.cases[name]
-        raise NotInFile("no case named nominal to compare with")
+        raise NotInFile(f"no case named {self.names.case('nominal')} to compare with" + self.case_hint("nominal"))
+
+    def case_hint(self, name):
+        return naming.hint("case", name, self.names.case(name), list(self.cases))
+
+    def part(self, name):
+        """The finished case that stands for the paper's of that name."""
+        own = self.names.case(name)
+        if own not in self.cases:
+            raise NotInFile(f"no case named {own}" + self.case_hint(name))
+        if not self.cases[own].finished:
+            raise NotInFile(f"case {own} stopped")
+        return self.cases[own]
+
+    def no_motion(self, names):
+        """What to throw where no section that stands for the paper's `names` has feed motion."""
+        own = [self.names.section(name) for name in names]
+        there = [name for case in self.cases.values() for name in case.sections if name]
+        what = "a section" if len(own) == 1 else "sections"
+        return NotInFile(f"no feed motion in {what} named {', '.join(own)}" +
+                         naming.hint("section", names[0], own[0], there))
 
     def others(self):
         """Finished cases without the base; all of these can be compared with it."""
@@ -313,14 +337,30 @@ class Budgets(ResultFile):
 KINDS = {"budget": Budgets, "run": Run, "sweep": Sweep, "bode": Responses, "step": Responses, "compensate": CompensatedProgram}
 
 
+# what h5py and numpy throw where groups, datasets or attributes are missing, of another type, or cannot be read
+DAMAGES = (KeyError, ValueError, TypeError, OSError, RuntimeError, AttributeError, IndexError, OverflowError)
+
+
+def damaged(path, fault):
+    reason = fault.args[0] if isinstance(fault, KeyError) else fault   # a KeyError puts quotes around it
+    return InputError(f"{path}: error: is damaged ({' '.join(str(reason).split())})")
+
+
 def open_result(path):
-    """The file as what its kind says."""
-    with ResultFile(path) as probe:
-        kind = probe.kind
+    """The file as what its kind says.
+    InputError: it cannot be read, is none of servomill, or is damaged"""
+    try:
+        with ResultFile(path) as probe:
+            kind = probe.kind
+    except DAMAGES as fault:
+        raise damaged(path, fault) from None
     if kind not in KINDS:
         raise InputError(f"{path}: error: holds a {kind}; figures are drawn from " +
                          ", ".join(KINDS))
-    return KINDS[kind](path)
+    try:
+        return KINDS[kind](path)
+    except DAMAGES as fault:
+        raise damaged(path, fault) from None
 
 
 def along_path(base, values, s):

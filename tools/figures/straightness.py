@@ -24,12 +24,12 @@ class Track:
 
 
 def tracks(run, axis, section):
-    """Tracks of all cases that can be compared, in the order of the scenario."""
+    """Tracks of all cases that can be compared, in the order of the scenario; `section` as the paper names it."""
     base, found = run.base(), []
     for case in run.others():
-        rows = case.samples([section])
+        rows = case.samples([run.names.section(section)])
         if not len(rows):
-            raise NotInFile(f"no feed motion in a section named {section}")
+            raise run.no_motion([section])
         if not case.has("imposed_linear"):
             raise NotInFile("no error model is imposed")
         one = Track(case, style.look_of(run, case.name), [])
@@ -44,7 +44,7 @@ def tracks(run, axis, section):
 def imposed_curve(run, axis, section):
     """X (mm) and imposed displacement (um) along the first pass of the base case."""
     base = run.base()
-    first = results.passes(base.samples([section]))[0]
+    first = results.passes(base.samples([run.names.section(section)]))[0]
     order = np.argsort(base.column("ref_linear", "X")[first], kind="stable")
     return (base.column("ref_linear", "X")[first][order],
             base.column("imposed_linear", axis)[first][order])
@@ -80,7 +80,7 @@ def draw(run, axis, section):
                     _pass(ax, at, residual, one.look, part)
     style.line(axes[0], x, imposed, style.IMPOSED, zorder=1.9)
 
-    probed = probed_points.along(run, section, axis)
+    probed = probed_points.along(run, run.names.section(section), axis)
     for one in found:
         points = probed.get(one.case.name)
         if points is None:

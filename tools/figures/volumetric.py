@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from figures import results, style
-from figures.results import NotInFile
 
 CONTOURS = ("circle", "diamond", "square")
 PLANE = ("plane",)
@@ -14,25 +13,21 @@ MOST_NAMED_PASSES = 7
 
 
 def differences(run, sections):
-    """Base samples of the sections, and per case its differences to the base at equal s there.
+    """Base samples of the sections (as the paper names them), and per case its differences to the base at equal s there.
 
     Returns (base, {case name: (s, x, y, z, d)}) with s, x, y, z the nominal path (mm) and d
     (sample, XYZ; um), one row where a pass ends that is NaN, so that lines break there.
     """
-    for name in NEEDED:
-        if name not in run.cases:
-            raise NotInFile(f"no case named {name}")
-        if not run.cases[name].finished:
-            raise NotInFile(f"case {name} stopped")
+    needed = [run.part(name).name for name in NEEDED]
     base = run.base()
     names = [case.name for case in run.others()
-             if case.name in NEEDED or case.name == "compensated_lead"]
+             if case.name in needed or case.name == run.names.case("compensated_lead")]
     out = {}
     for name in names:
         case = run.cases[name]
-        parts = results.passes(case.samples(sections))
+        parts = results.passes(case.samples([run.names.section(one) for one in sections]))
         if not parts:
-            raise NotInFile("no feed motion in sections named " + ", ".join(sections))
+            raise run.no_motion(sections)
         columns = []
         for rows in parts:
             s = case.column("s")[rows]
@@ -58,7 +53,7 @@ def draw_contours(run):
     base, found = differences(run, CONTOURS)
     figure, plan, side = _canvas(run, base, found)
 
-    _, path, moved = found["generated"]
+    _, path, moved = found[run.names.case("generated")]
     extent = np.nanmax(np.nanmax(path[:, :2], axis=0) - np.nanmin(path[:, :2], axis=0))
     scale = magnification(extent, np.nanmax(np.hypot(moved[:, 0], moved[:, 1])), 0.08)
     plan.plot(path[:, 0], path[:, 1], color=style.BLACK, linewidth=3.0, zorder=2)
@@ -66,7 +61,7 @@ def draw_contours(run):
         look = style.look_of(run, name)
         shown = at[:, :2] + difference[:, :2] * scale / results.UM_PER_MM
         style.line(plan, shown[:, 0], shown[:, 1], look, linewidth=1.5, zorder=3)
-        if name == "generated":
+        if name == run.names.case("generated"):
             for k in _every(s, at, 70):
                 plan.annotate("", xy=shown[k], xytext=at[k, :2], zorder=2.5,
                               arrowprops={"arrowstyle": "-|>,head_width=0.12,head_length=0.25",
@@ -77,7 +72,7 @@ def draw_contours(run):
     plan.set_xlabel("X, mm")
     plan.set_ylabel("Y, mm")
     _per_direction(run, side, base, found)
-    style.headline(figure, _message("Contours", found))
+    style.headline(figure, _message("Contours", run, found, CONTOURS))
     return figure
 
 
@@ -85,7 +80,7 @@ def draw_plane(run):
     base, found = differences(run, PLANE)
     figure, picture, side = _canvas(run, base, found)
 
-    s, path, moved = found["generated"]
+    s, path, moved = found[run.names.case("generated")]
     level = np.nanmean(path[:, 2])
     extent = np.nanmax(np.nanmax(path[:, :2], axis=0) - np.nanmin(path[:, :2], axis=0))
     scale = magnification(extent, np.nanmax(np.linalg.norm(moved, axis=1)), 0.3)
@@ -95,14 +90,14 @@ def draw_plane(run):
         look = style.look_of(run, name)
         shown = at - [0.0, 0.0, level] + difference * scale / results.UM_PER_MM
         style.line(picture, *_oblique(shown), look, linewidth=1.5, zorder=3)
-        if name == "generated":
+        if name == run.names.case("generated"):
             for k in _every(s, at, 75):
                 picture.plot(*_oblique(np.stack([flat[k], shown[k]])), color=look.colour,
                              linewidth=0.8, zorder=2.5)
     _oblique_scales(picture, flat, scale, np.nanmax(moved[:, 0]))
     picture.set_title(f"Seen obliquely, Z {level:.0f} mm; differences drawn × {scale:.0f}")
     _per_direction(run, side, base, found)
-    style.headline(figure, _message("Top plane", found))
+    style.headline(figure, _message("Top plane", run, found, PLANE))
     return figure
 
 
@@ -170,13 +165,13 @@ def _per_direction(run, axes, base, found):
         if ax is not axes[-1]:
             ax.tick_params(labelbottom=False)
     axes[-1].set_xlabel("path length s, mm   (case minus nominal at equal s)")
-    _name_sections(axes[0], base, found)
+    _name_sections(axes[0], run, base, found)
 
 
-def _name_sections(ax, base, found):
+def _name_sections(ax, run, base, found):
     # above the strips, over the middle of all passes of a section
-    s = found["generated"][0]
-    names = [name for name in CONTOURS if name in base.sections and len(base.samples([name]))]
+    s = found[run.names.case("generated")][0]
+    names = [name for name in map(run.names.section, CONTOURS) if name in base.sections and len(base.samples([name]))]
     for name in names:
         passes = [base.column("s")[part] for part in results.passes(base.samples([name]))]
         if any(np.nanmin(np.abs(s - part.mean())) < 1.0 for part in passes):
@@ -184,8 +179,16 @@ def _name_sections(ax, base, found):
                     transform=ax.get_xaxis_transform())
 
 
-def _message(what, found):
+def _message(what, run, found, sections):
+    own = list(dict.fromkeys(map(run.names.section, sections)))
+    if own != list(sections):
+        what = ", ".join(own)
+
     def largest(name):
-        return np.nanmax(np.abs(found[name][2]))
+        return np.nanmax(np.abs(found[run.names.case(name)][2]))
+
+    if run.names.cases:
+        return f"{what}: up to " + ", ".join(f"{style.number(largest(name))} µm in an axis "
+                                             f"({style.look_of(run, run.names.case(name)).label})" for name in NEEDED)
     return (f"{what}: up to {style.number(largest('generated'))} µm generated in an axis, "
             f"{style.number(largest('compensated'))} µm left after compensation")
