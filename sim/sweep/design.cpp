@@ -22,6 +22,12 @@ std::string as_toml(double value, const std::string& unit) {
   return unit.empty() ? number : quoted_text(number + " " + unit);
 }
 
+// Of a number between two that the user wrote: without the digits that rounding has made.
+std::string as_toml_between(double value, const std::string& unit) {
+  constexpr int kSure = 15;  // digits
+  return as_toml(std::strtod(fmt::format("{:.{}g}", value, kSure).c_str(), nullptr), unit);
+}
+
 std::string value_at(const ValueTexts& texts, std::uint64_t index) { return texts.at(index); }
 
 std::string value_at(const SweepRange& range, std::uint64_t index) {
@@ -30,7 +36,7 @@ std::string value_at(const SweepRange& range, std::uint64_t index) {
   const double share = static_cast<double>(index) / static_cast<double>(range.count - 1);
   const double value = range.log ? range.first * std::pow(range.last / range.first, share)
                                  : range.first + (range.last - range.first) * share;
-  return as_toml(value, range.unit);
+  return as_toml_between(value, range.unit);
 }
 
 std::string sampled(const ValueTexts& texts, double u) {

@@ -222,6 +222,29 @@ class Resume(Sweeps):
         self.refused("part.2-of-2.h5: error: was run with another file 'two.ngc' than part.1-of-2.h5", "merge",
                      self.path("part.1-of-2.h5"), self.path("part.2-of-2.h5"), "-o", self.path("merged.h5"))
 
+    def test_prints_one_line_a_point_in_order(self):
+        points = POINTS.replace("[1.0,2.0,3.0,4.0,5.0]", "{linear=[0.2,2.0],count=4}")
+        done = servomill("sweep", SCENARIO, "-o", self.path("out.h5"), "--set", points, status=1)
+        lines = done.stdout.splitlines()
+        begin = next(n for n, line in enumerate(lines) if line.startswith("point "))
+        names = lines[begin].split()
+        self.assertEqual(names[:4], ["point", "program.feed_override", "case.table.strategy.entry",
+                                     "case.table.strategy.response_time_ms"])
+        self.assertEqual(names[4:], [line.split()[0] for line in lines[:begin - 1]])
+        self.assertRegex(lines[0], r"^q1   \w+, .*\(\w+\)$")
+        rows = [line.split() for line in lines[begin + 1:-1]]
+        run = [n for n in range(1, 33) if n % 4 != 3]   # the others are refused
+        self.assertEqual([int(row[0]) for row in rows], run)
+        self.assertEqual([row[1] for row in rows[::6]], ["0.2", "0.8", "1.4", "2"])
+        self.assertEqual({len(row) for row in rows}, {len(names)})
+        self.assertEqual([int(line.split()[1]) for line in done.stderr.splitlines()], list(range(3, 33, 4)))
+        with h5py.File(self.path("out.h5")) as file:
+            first = next(data for data in file["sweep"].values() if data.attrs.get("role") == "quantity")
+            for row in rows:
+                self.assertAlmostEqual(float(row[4]) / first[int(row[0]) - 1], 1.0, delta=1e-4)
+        again = servomill("sweep", SCENARIO, "-f", "-j", "1", "-o", self.path("out.h5"), "--set", points, status=1)
+        self.assertEqual((again.stdout, again.stderr), (done.stdout, done.stderr))
+
     def test_refuses_what_another_version_wrote(self):
         self.sweep("out.h5")
         for name, value, message in (

@@ -14,6 +14,7 @@
 #include "sim/sweep/table.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
+#include "tools/servomill/sweep_lines.h"
 
 namespace servomill::tools {
 namespace {
@@ -64,39 +65,13 @@ std::vector<bool> points_done(const sim::SweepTable& table, const sim::Selection
   return done;
 }
 
-// What is told of a point as soon as it is known.
-class Teller {
- public:
-  Teller(const Options& options, const sim::SweepDesign& design)
-      : json_(options.has("json")),
-        quiet_(options.has("quiet") || options.has("csv")),
-        design_(design) {}
-
-  void tell(const sim::SweepPoint& point) const {
-    std::string where;
-    for (std::size_t k = 0; k < point.values.size(); ++k) {
-      where += fmt::format("{}{} = {}", k == 0 ? "" : ", ", design_.keys[k].key, point.values[k]);
-    }
-    const sim::BatchResult& result = point.result;
-    if (!result.reason.empty()) {
-      fmt::print(stderr, "point {} ({}): {}: {}\n", point.index + 1, where,
-                 sim::name_of(result.status), result.reason);
-    }
-    if (json_) {
-      for (const auto& row : result.rows) {
-        fmt::print("{{\"point\": \"{}\", \"row\": {}}}\n", sim::json_escaped(where),
-                   sim::to_json(row));
-      }
-    } else if (!quiet_ && !result.rows.empty()) {
-      fmt::print("{}\n\n{}\n", where, sim::format_table(result.rows));
-    }
-    std::fflush(stdout);  // to a pipe, too
-  }
-
- private:
-  bool json_, quiet_;
-  const sim::SweepDesign& design_;
-};
+SweepLines lines_of(const Options& options, const sim::Sweep& sweep,
+                    const sim::Selection& selection, const std::vector<bool>& done) {
+  using Form = SweepLines::Form;
+  const bool quiet = options.has("quiet") || options.has("csv");
+  const Form form = options.has("json") ? Form::json : quiet ? Form::none : Form::table;
+  return {form, sweep.design(), sweep.quantities(), selection, done};
+}
 
 void print_file(const std::string& path) {
   std::ifstream file(path);
@@ -152,7 +127,7 @@ void tell_mixed_levels(const std::string& path, const std::vector<SimdLevel>& le
 
 int sweep_command(const Arguments& arguments) {
   Options options("sweep", kSynopsis,
-                  "Runs a scenario at the points of its [sweep] table, prints the comparison at "
+                  "Runs a scenario at the points of its [sweep] table, prints one line for "
                   "each and writes one row a point to one HDF5 file. What an interrupted or killed "
                   "sweep has left is gone on with. Exit status 1: at some points the machine "
                   "stopped or the input was refused; their rows say why.",
@@ -190,7 +165,7 @@ int sweep_command(const Arguments& arguments) {
 
   const auto& stop = stop_on_interrupt();
   ProgressBar bar(options.has("quiet"));
-  const Teller teller(options, sweep.design());
+  SweepLines lines = lines_of(options, sweep, selection, done);
   sim::SweepControl control;
   control.threads = threads;
   control.stop = &stop;
@@ -211,10 +186,11 @@ int sweep_command(const Arguments& arguments) {
         });
     if (rows != points.begin()) table.write({points.begin(), rows});
     bar.clear();
-    for (const sim::SweepPoint& point : points) teller.tell(point);
+    for (const sim::SweepPoint& point : points) lines.add(point);
   };
   sim::run_sweep(sweep, selection, done, control);
   bar.clear();
+  lines.finish();
   tell_mixed_levels(out, levels_of(table, signals));
   if (left > 0) {
     fmt::print(stderr, "interrupted; kept in {}: {} complete points of {}\n", path,

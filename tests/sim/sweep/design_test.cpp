@@ -296,5 +296,14 @@ TEST(ReadSweep, RefusesMoreThanTenMillionPoints) {
             "10000000");
 }
 
+TEST(Range, HasNoDigitsOfRounding) {
+  const SweepDesign design =
+      design_of("\"program.feed_override\" = { linear = [0.2, 2.0], count = 10 }\n");
+  EXPECT_EQ(
+      all_points(design),
+      (std::vector<Point>{
+          {"0.2"}, {"0.4"}, {"0.6"}, {"0.8"}, {"1"}, {"1.2"}, {"1.4"}, {"1.6"}, {"1.8"}, {"2"}}));
+}
+
 }  // namespace
 }  // namespace servomill::sim

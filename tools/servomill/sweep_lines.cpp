@@ -1,0 +1,118 @@
+#include "tools/servomill/sweep_lines.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace servomill::tools {
+namespace {
+
+constexpr std::size_t kLeastWidth = 9;  // of a column
+
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.5g}", value) : "-";
+}
+
+// "q3": how a line of the comparison is called in the heading.
+std::string label(std::size_t row) { return fmt::format("q{}", row + 1); }
+
+std::size_t width_of(const std::string& heading) { return std::max(kLeastWidth, heading.size()); }
+
+}  // namespace
+
+SweepLines::SweepLines(Form form, const sim::SweepDesign& design,
+                       std::vector<sim::ComparisonRow> rows, const sim::Selection& selection,
+                       std::vector<bool> done)
+    : form_(form),
+      design_(design),
+      rows_(std::move(rows)),
+      selection_(selection),
+      done_(std::move(done)) {
+  done_.resize(selection_.size(), false);
+}
+
+std::string SweepLines::heading() const {
+  std::string out;
+  for (std::size_t n = 0; n < rows_.size(); ++n) {
+    const sim::ComparisonRow& row = rows_[n];
+    out += fmt::format("{:<4} {}", label(n), row.quantity);
+    for (const std::string& more : {row.axis, row.statistic, row.sections, row.case_name}) {
+      if (!more.empty()) out += ", " + more;
+    }
+    if (row.unit != "1") out += fmt::format(" ({})", row.unit);
+    out += '\n';
+  }
+  out += "\npoint";
+  for (const sim::SweepKey& key : design_.keys) {
+    out += fmt::format("  {:>{}}", key.key, width_of(key.key));
+  }
+  for (std::size_t n = 0; n < rows_.size(); ++n)
+    out += fmt::format("  {:>{}}", label(n), kLeastWidth);
+  return out + '\n';
+}
+
+std::string SweepLines::line_of(const sim::SweepPoint& point) const {
+  std::string out = fmt::format("{:>5}", point.index + 1);
+  for (std::size_t k = 0; k < point.values.size(); ++k) {
+    out += fmt::format("  {:>{}}", point.values[k], width_of(design_.keys[k].key));
+  }
+  for (const sim::ComparisonRow& row : point.result.rows) {
+    out += fmt::format("  {:>{}}", number(row.value), kLeastWidth);
+  }
+  return out + '\n';
+}
+
+SweepLines::Said SweepLines::said_of(const sim::SweepPoint& point) const {
+  Said said;
+  std::string where;
+  for (std::size_t k = 0; k < point.values.size(); ++k) {
+    where += fmt::format("{}{} = {}", k == 0 ? "" : ", ", design_.keys[k].key, point.values[k]);
+  }
+  const sim::BatchResult& result = point.result;
+  if (!result.reason.empty()) {
+    said.error = fmt::format("point {} ({}): {}: {}\n", point.index + 1, where,
+                             sim::name_of(result.status), result.reason);
+  }
+  if (form_ == Form::json) {
+    for (const auto& row : result.rows) {
+      said.out += fmt::format("{{\"point\": \"{}\", \"row\": {}}}\n", sim::json_escaped(where),
+                              sim::to_json(row));
+    }
+  } else if (form_ == Form::table && !result.rows.empty()) {
+    said.out = line_of(point);
+  }
+  return said;
+}
+
+void SweepLines::add(const sim::SweepPoint& point) {
+  waiting_.emplace(selection_.place(point.index), said_of(point));
+  for (; next_ < selection_.size(); ++next_) {
+    const auto first = waiting_.find(next_);
+    if (first != waiting_.end()) {
+      print(first->second);
+      waiting_.erase(first);
+    } else if (!done_[next_]) {
+      break;
+    }
+  }
+  std::fflush(stdout);  // to a pipe, too
+}
+
+void SweepLines::finish() {
+  for (const auto& [place, said] : waiting_) print(said);
+  waiting_.clear();
+  std::fflush(stdout);
+}
+
+void SweepLines::print(const Said& said) {
+  if (!said.out.empty() && form_ == Form::table && !headed_) {
+    fmt::print("{}", heading());
+    headed_ = true;
+  }
+  fmt::print(stderr, "{}", said.error);
+  fmt::print("{}", said.out);
+}
+
+}  // namespace servomill::tools

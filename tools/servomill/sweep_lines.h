@@ -1,0 +1,49 @@
+/// What a sweep prints while it runs.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/comparison.h"
+#include "sim/sweep/sweep.h"
+
+namespace servomill::tools {
+
+/// One line a point, in the order of the points: a line waits for those before it, so that two runs
+/// of a sweep print the same. Where a point is not done the reason goes to standard error.
+class SweepLines {
+ public:
+  enum class Form : std::uint8_t { table, json, none };
+
+  /// @param rows  the comparison of each point (Sweep::quantities)
+  /// @param done  places in the selection that are not run; empty: all are run
+  SweepLines(Form form, const sim::SweepDesign& design, std::vector<sim::ComparisonRow> rows,
+             const sim::Selection& selection, std::vector<bool> done);
+
+  /// Prints the points that no other holds up any more.
+  void add(const sim::SweepPoint& point);
+  /// Prints what still waits for points that were not run.
+  void finish();
+
+ private:
+  struct Said {
+    std::string out, error;
+  };
+  std::string heading() const;
+  std::string line_of(const sim::SweepPoint& point) const;
+  Said said_of(const sim::SweepPoint& point) const;
+  void print(const Said& said);
+
+  Form form_;
+  const sim::SweepDesign& design_;
+  std::vector<sim::ComparisonRow> rows_;
+  const sim::Selection& selection_;
+  std::vector<bool> done_;
+  std::map<std::uint64_t, Said> waiting_;  // by place in the selection
+  std::uint64_t next_ = 0;                 // place
+  bool headed_ = false;
+};
+
+}  // namespace servomill::tools
