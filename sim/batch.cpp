@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "plant/vocabulary/interrupt.h"
 #include "sim/memory.h"
 #include "sim/preparation_cache.h"
 
@@ -21,6 +22,8 @@ constexpr double kMemoryShare = 0.25;  // of the machine's memory
 BatchResult failure(std::exception_ptr error) {
   try {
     std::rethrow_exception(std::move(error));
+  } catch (const Interrupted&) {
+    throw;
   } catch (const InputError& refused) {
     return {PointStatus::refused, in_one_line(refused), {}};
   } catch (const std::bad_alloc&) {
@@ -58,6 +61,8 @@ Point prepared(const Scenario& scenario, PreparationCache* cache) {
     for (const PreparedCase& one : point.cases) point.inputs.push_back(one.inputs());
     point.results.resize(point.cases.size());
     point.left = point.cases.size();
+  } catch (const Interrupted&) {
+    point.interrupted = true;
   } catch (...) {
     point.error = std::current_exception();
   }
@@ -110,6 +115,8 @@ void simulate_group(std::span<const Run> group, const StopFlag& stop, std::atomi
     for (std::size_t k = 0; k < group.size(); ++k) {
       group[k].point->results[group[k].number] = std::move(results[k]);
     }
+  } catch (const Interrupted&) {
+    for (const Run& run : group) run.point->interrupted = true;
   } catch (...) {
     if (group.size() == 1) {
       group.front().point->error = std::current_exception();

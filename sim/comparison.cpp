@@ -11,6 +11,7 @@
 #include <limits>
 #include <optional>
 
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
 #include "sim/ball_quantities.h"
@@ -429,6 +430,7 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
   for (const CaseData& one : cases) compared.emplace_back(one);
   std::vector<ComparisonRow> rows;
   for (const QuantitySpec& spec : specs) {
+    throw_if_interrupted();
     const Compared* base = spec.base.empty() ? nullptr : find(compared, spec.base);
     for (const std::string& name : spec.cases) {
       Compared* one = find(compared, name);

@@ -10,6 +10,7 @@
 #include "plant/cutting/cutting_force.h"
 #include "plant/cutting/engagement.h"
 #include "plant/cutting/removed_volume.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 #include "sim/work_frame.h"
 
@@ -83,6 +84,7 @@ class Planner {
     double speed = 0.0;
     std::size_t piece = 0;
     for (const Move& move : in_.program->moves) {
+      throw_if_interrupted();
       if (move.kind == MoveKind::tool) tool = move.number;
       if (move.kind == MoveKind::spindle) {
         direction = move.direction;
@@ -118,10 +120,13 @@ class Planner {
     const plant::Cutter* before = nullptr;
     std::size_t count = 0;
     for (Stage& stage : stages_) {
+      throw_if_interrupted();
       std::vector<plant::CutterPosition> positions = {position(stage, 0.0)};
       stage.shares = {0.0};
       const int parts = stage.is_straight ? 1 : kFirstParts;
       for (int n = 1; n <= parts; ++n) {
+        throw_if_interrupted();
+        throw_if_interrupted();
         const double end = static_cast<double>(n) / parts;
         add_steps(stage, end, position(stage, end), positions, 0);
       }
@@ -190,6 +195,7 @@ class Planner {
     CuttingTable::Row a = row(stage, 0.0);
     push(stage, a);
     for (int n = 1; n <= parts; ++n) {
+      throw_if_interrupted();
       const CuttingTable::Row b = row(stage, static_cast<double>(n) / parts);
       refine(stage, a, b);
       a = b;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 #include "sim/work_frame.h"
 
@@ -202,6 +203,7 @@ ProbedPart probe_part(const PartSource& source, const std::vector<ProbeSpec>& pl
                               ? surface.touch(targets, cmm.probe_radius, cmm.clearance, cmm.depth)
                               : surface.meet(targets, cmm.clearance, cmm.depth);
     for (std::size_t i = 0; i < meetings.size(); ++i) {
+      throw_if_interrupted();
       const std::optional<Miss> miss = miss_of(meetings[i], targets[i], source.stock);
       found.deviation.push_back(miss ? kNone : meetings[i].distance);
       met += miss ? 0 : 1;

@@ -10,7 +10,7 @@
 namespace servomill::sim {
 namespace {
 
-constexpr auto kProgressPeriod = std::chrono::milliseconds(100);
+constexpr auto kProgressPeriod = std::chrono::milliseconds(20);  // an interrupt waits for it, too
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 
 #include "plant/kinematics/straight_tool_path.h"
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/move_curve.h"
 #include "plant/vocabulary/tool_axis.h"
 #include "strategies/pose_compensation.h"
@@ -186,6 +187,7 @@ class Rewriter {
     const double dt = 1.0 / static_cast<double>(pieces);
     Place a = place(0.0, Q_);
     for (std::int64_t i = 0; i < pieces; ++i) {
+      throw_if_interrupted();
       const Place b = place(i + 1 == pieces ? 1.0 : static_cast<double>(i + 1) * dt, a.Q);
       split(a, b, kMostSplits);
       a = b;
@@ -292,6 +294,7 @@ class RewrittenProgram final : public Strategy {
     std::vector<Move> out;
     Rewriter rewriter(belief_, params_, out);
     for (const Move& move : moves) {
+      throw_if_interrupted();
       if (is_motion(move.kind)) {
         rewriter.rewrite(move);
       } else {

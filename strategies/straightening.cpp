@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "plant/vocabulary/interrupt.h"
+
 namespace servomill::strategies {
 namespace {
 
@@ -55,6 +57,7 @@ class Inserter {
   std::vector<Move> run(const std::vector<Move>& moves) {
     at_ = belief_.layout.words(belief_.reference);
     for (const Move& move : moves) {
+      throw_if_interrupted();
       if (move.kind == MoveKind::arc && turns(at_, move)) {
         throw InputError({{}, move.line, 0},
                          "an arc on which rotary axes turn cannot be made straight; write it as "
@@ -75,6 +78,7 @@ class Inserter {
     const JointLayout& layout = belief_.layout;
     double t = 0.0;
     for (const plant::PathPoint& point : points(layout.joints(at_), move)) {
+      throw_if_interrupted();
       Move block = move;
       if (point.t < 1.0) {
         block.end_machine = layout.words(point.Q);

@@ -9,6 +9,7 @@
 
 #include "controllers/path/slowed_motion.h"
 #include "plant/kinematics/branches.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
@@ -53,6 +54,7 @@ class Post {
     for (const ClRecord& record : data_.records) loads_tool |= record.kind == MoveKind::tool;
     if (!loads_tool && tool_ > 0) load(tool_, 0);
     for (std::size_t i = 0; i < data_.records.size() && faults_.size() < kMostFaults; ++i) {
+      throw_if_interrupted();
       const ClRecord& record = data_.records[i];
       if (is_motion(record.kind)) {
         go_to(i);
@@ -295,6 +297,7 @@ class Post {
     out_.inserted += way.points.size() - 1;
     double t = 0.0;
     for (const plant::PathPoint& point : way.points) {
+      throw_if_interrupted();
       const double share = point.t - t;
       const bool stands = path.length() < kStandingTip;
       const double time =

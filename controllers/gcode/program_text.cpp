@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/user_file.h"
 
 namespace servomill::controllers {
@@ -65,6 +66,7 @@ bool ProgramText::refill() {
 }
 
 bool ProgramText::next(std::string_view& line) {
+  throw_if_interrupted();
   if (wanted_) seek(*std::exchange(wanted_, std::nullopt));
   const auto line_end = [&] {
     const void* found = std::memchr(buffer_.data() + at_, '\n', buffer_.size() - at_);

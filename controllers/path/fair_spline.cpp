@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "controllers/path/band.h"
+#include "plant/vocabulary/interrupt.h"
 
 namespace servomill::controllers {
 namespace {
@@ -63,6 +64,7 @@ bool FairSpline::fit(std::span<const PathVertex> v, std::span<const double> s,
   gather();
   set_ends();
   for (int round = 0; round < kMostRounds; ++round) {
+    throw_if_interrupted();
     solve();
     if (round < kBendRounds) {
       deviations();

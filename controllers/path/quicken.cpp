@@ -8,6 +8,7 @@
 
 #include "controllers/path/band.h"
 #include "controllers/path/barrier_kernel.h"
+#include "plant/vocabulary/interrupt.h"
 
 namespace servomill::controllers {
 namespace {
@@ -280,6 +281,7 @@ class Quickener {
       const std::size_t shift = kBlock / 4 * (pass % 4 + 1);
       double steps = 0.0, blocks = 0.0;
       for (std::size_t i = 1; i <= N_; blocks += 1.0) {
+        throw_if_interrupted();
         std::size_t to = i == 1 ? i + shift : i + kBlock;
         if (to + kBlock / 4 > N_ + 1) to = N_ + 1;
         steps += step_block(i, to, mu);

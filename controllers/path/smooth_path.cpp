@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "controllers/path/fair_spline.h"
+#include "plant/vocabulary/interrupt.h"
 
 namespace servomill::controllers {
 namespace {
@@ -254,6 +255,7 @@ class Smoother {
     std::vector<double> scale(n_ + 1), before;
     std::vector<std::pair<double, double>> parts = {{0.0, s_[n_]}};
     while (!parts.empty()) {
+      throw_if_interrupted();
       std::fill(scale.begin(), scale.end(), 1.0);
       bool fits = true;
       RollingDeviation deviation(*this);
@@ -344,6 +346,7 @@ class Smoother {
 
   void fair() {
     for (std::size_t i = 1; i < n_;) {
+      throw_if_interrupted();
       if (!is_dense(i)) {
         ++i;
         continue;
@@ -372,6 +375,7 @@ class Smoother {
     run.next = i, run.last = j;
     run.begin = state_at(a, i - 1), run.end = state_at(b, j);
     while (run.next <= run.last) {
+      throw_if_interrupted();
       const std::size_t to = std::min(run.next + run.length, run.last);
       if (to - run.next < kLeastRun) break;
       const FairSpline::State stop = to == j ? run.end : state_at(s_[to], to);

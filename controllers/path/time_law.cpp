@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "plant/vocabulary/interrupt.h"
+
 namespace servomill::controllers {
 namespace {
 
@@ -80,6 +82,7 @@ class SpeedPlanner {
   TimeLaw run() {
     dirty_ = {0};
     while (!dirty_.empty()) {
+      throw_if_interrupted();
       const std::size_t l = dirty_.back();
       dirty_.pop_back();
       solve(l);

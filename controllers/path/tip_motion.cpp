@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/move_curve.h"
 #include "plant/vocabulary/units.h"
 
@@ -133,6 +134,7 @@ class Tracer {
     }
     Point at{from.fraction, Q_};
     for (int i = 1; i <= parts; ++i) {
+      throw_if_interrupted();
       const double f = static_cast<double>(i) / parts;
       const double t = i == parts ? to.fraction : from.fraction + f * (to.fraction - from.fraction);
       const auto next = point_at(t, from, to);
@@ -270,6 +272,7 @@ TipMotions tip_motions(std::span<const Move> moves, const ToolCentrePoint& machi
   Tracer tracer(machine, tips, start, limits, options);
   std::vector<Fault> faults;
   for (std::size_t i = 0; i < moves.size(); ++i) {
+    throw_if_interrupted();
     if (!is_motion(moves[i].kind)) continue;
     if (moves[i].tool_control == ToolControl::none) {
       tracer.follow(moves[i]);

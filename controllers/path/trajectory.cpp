@@ -9,6 +9,7 @@
 #include "controllers/path/quicken.h"
 #include "controllers/path/stretch_limits.h"
 #include "plant/vocabulary/arc_sweep.h"
+#include "plant/vocabulary/interrupt.h"
 
 namespace servomill::controllers {
 namespace {
@@ -48,6 +49,7 @@ class Planner {
   Trajectory run(std::span<const Move> moves) {
     out_.moves_.reserve(moves.size());
     for (std::size_t i = 0; i < moves.size(); ++i) {
+      throw_if_interrupted();
       const Move& move = moves[i];
       out_.moves_.push_back({move.s_begin, move.s_end, move.line, move.kind == MoveKind::rapid});
       switch (move.kind) {

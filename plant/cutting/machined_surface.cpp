@@ -5,7 +5,9 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <exception>
 #include <limits>
+#include <mutex>
 #include <queue>
 #include <thread>
 
@@ -146,16 +148,27 @@ template <class Work>
 void for_each_on_threads(std::size_t count, unsigned threads, const Work& work) {
   if (threads == 0) threads = std::max(std::thread::hardware_concurrency(), 1U);
   std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::exception_ptr failure;
   const auto run = [&] {
-    while (true) {
-      const std::size_t begin = next.fetch_add(kTargetsAtOnce);
-      if (begin >= count) return;
-      for (std::size_t i = begin; i < std::min(begin + kTargetsAtOnce, count); ++i) work(i);
+    try {
+      while (true) {
+        const std::size_t begin = next.fetch_add(kTargetsAtOnce);
+        if (begin >= count) return;
+        for (std::size_t i = begin; i < std::min(begin + kTargetsAtOnce, count); ++i) work(i);
+      }
+    } catch (...) {
+      next = count;
+      const std::scoped_lock lock(mutex);
+      failure = std::current_exception();
     }
   };
-  std::vector<std::jthread> pool;
-  for (std::size_t t = 1; t < threads && t * kTargetsAtOnce < count; ++t) pool.emplace_back(run);
-  run();
+  {
+    std::vector<std::jthread> pool;
+    for (std::size_t t = 1; t < threads && t * kTargetsAtOnce < count; ++t) pool.emplace_back(run);
+    run();
+  }
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "plant/vocabulary/interrupt.h"
+
 namespace servomill::plant {
 namespace {
 
@@ -183,6 +185,7 @@ void RemovedVolume::add(const CutterPass& pass) {
   places_.push_back(pass.positions.front());
   const CutterPosition* before = &pass.positions.front();
   for (const CutterPosition& position : pass.positions) {
+    throw_if_interrupted();
     assert(position.tip.allFinite() && std::abs(position.axis.norm() - 1.0) < 1e-9);
     assert(before->axis.dot(position.axis) > 0.0);
     const double deviation = turn_deviation(*before, position, reach);
@@ -449,6 +452,7 @@ std::size_t RemovedVolume::position_of(std::uint32_t step) const {
 // The nearest run is what ends the way but for little, so that few others can go on; of these, the
 // one that reaches farthest comes first.
 FreeWay RemovedVolume::free_way(const Ray& ray) const {
+  throw_if_interrupted();
   if (nodes_.empty()) return {};
   Advance state;
   pass_nearest(ray, state);

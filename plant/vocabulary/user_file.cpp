@@ -13,6 +13,8 @@
 #include <set>
 #include <utility>
 
+#include "plant/vocabulary/interrupt.h"
+
 namespace servomill {
 namespace {
 
@@ -121,6 +123,7 @@ std::string read_input(const std::string& path, std::uintmax_t most, std::string
   std::string text;
   text.reserve(static_cast<std::size_t>(size));
   while (std::feof(file.get()) == 0 && std::ferror(file.get()) == 0) {
+    throw_if_interrupted();
     const std::size_t kept = text.size();
     text.resize(kept + std::clamp<std::size_t>(size - std::min<std::uintmax_t>(kept, size),
                                                1U << 12, kPiece));

@@ -12,6 +12,7 @@
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/parameters.h"
 #include "controllers/gcode/request.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 #include "sim/canon.h"
 #include "sim/compensate/dialect_writer.h"
@@ -230,6 +231,7 @@ Compensated compensate(const CompensateRequest& request) {
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
                                        known.setup);
   while (const auto block = interpreter.next_block()) {
+    throw_if_interrupted();
     refuse_unknown_system(*block, request, known);
     if (block->text.starts_with(kHeader)) {
       out.warnings.push_back({{request.program_file, block->line},

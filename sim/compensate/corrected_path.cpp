@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "plant/vocabulary/interrupt.h"
+
 namespace servomill::sim {
 namespace {
 
@@ -64,6 +66,7 @@ class Fitter {
     looks_.clear();
     looks_.push_back(look_at(0.0));
     for (int i = 1; i <= n; ++i) {
+      throw_if_interrupted();
       const Look b = look_at(i == n ? 1.0 : static_cast<double>(i) / n);
       refine(Look(looks_.back()), b, kMostHalvings);
       looks_.push_back(b);
@@ -147,6 +150,7 @@ class Fitter {
 
   void fit_lines() {
     for (std::size_t i = 0; i + 1 < looks_.size();) {
+      throw_if_interrupted();
       const std::size_t j = std::max(
           i + 1, farthest(i, [&](std::size_t a, std::size_t b) { return line_reaches(a, b); }));
       out_.push_back({looks_[i].t, looks_[j].t, looks_[j].c, {}});
@@ -257,6 +261,7 @@ class Fitter {
   // @return false if an arc is shorter than arcs should be
   bool fit_arcs() {
     for (std::size_t i = 0; i + 1 < looks_.size();) {
+      throw_if_interrupted();
       const std::size_t j =
           farthest(i, [&](std::size_t a, std::size_t b) { return arc_reaches(a, b); });
       if (j == i || !is_long_enough(i, j)) return false;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::sim {
@@ -51,6 +52,7 @@ std::vector<double> rounded_values(const TableLine& line, const Curve& error, in
                                    double step) {
   std::vector<double> out;
   for (std::size_t i = 0; i < line.points; ++i) {
+    throw_if_interrupted();
     const double exact = error(line.position(line.entry(i)), direction);
     out.push_back(std::round(exact / step) * step + 0.0);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "plant/geometry/volumetric.h"
+#include "plant/vocabulary/interrupt.h"
 
 namespace servomill::sim {
 namespace {
@@ -52,6 +53,7 @@ void for_all(const std::vector<Samples>& samples, std::size_t next, Joints& Q, c
   if (next == samples.size()) return f(Q, d);
   const Samples& s = samples[next];
   for (std::size_t i = 0; i < s.q.size(); ++i) {
+    throw_if_interrupted();
     Q[s.joint] = s.q[i];
     for_all(samples, next + 1, Q, d + s.d[i], f);
   }

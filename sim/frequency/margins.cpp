@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "plant/vocabulary/interrupt.h"
+
 namespace servomill::sim {
 namespace {
 
@@ -121,6 +123,7 @@ std::vector<double> logarithmic(double from, double to, std::size_t points,
 Curve curve_of(const ResponseAt& y, const std::vector<double>& f) {
   Curve curve;
   for (const double one : f) {
+    throw_if_interrupted();
     const Complex response = y(one);
     if (!curve.f.empty()) fill(curve, y, one, response, kDeepest);
     curve.f.push_back(one);

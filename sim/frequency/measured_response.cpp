@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "plant/vocabulary/interrupt.h"
+
 namespace servomill::sim {
 namespace {
 
@@ -174,6 +176,7 @@ void measure_window(AxisStand& stand, PositionLoop loop, const Measurement& how,
   const Tick H = stand.hyperperiod();
   const Tick first = static_cast<Tick>(std::ceil(wait / stand.period()));
   for (Tick p = 0; p < first; ++p) {
+    throw_if_interrupted();
     stand.run(p * H, feed, [](Tick, std::uint8_t, const AxisSignals&) {});
   }
   for (Tick p = first; p < first + window.hyperperiods; ++p) stand.run(p * H, feed, add);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "plant/vocabulary/interrupt.h"
+
 namespace servomill::sim {
 namespace {
 
@@ -90,6 +92,7 @@ StepResponse step_response(const MachineSettings& machine, int joint, Tick readi
   };
   const Tick periods = static_cast<Tick>(std::ceil(settings.duration / stand.period()));
   for (Tick p = 0; p <= periods; ++p) {
+    throw_if_interrupted();
     stand.run(
         p * stand.hyperperiod(), [&](Tick) { return in; }, record);
   }

@@ -8,6 +8,7 @@
 #include <functional>
 #include <numbers>
 
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/frequency_response.h"
 #include "sim/frequency/step_response.h"
@@ -70,6 +71,7 @@ Largest largest_gain(double least, double most,
   Largest found;
   double previous = 0.0;
   for (double gain = least; gain <= most; gain *= kScan) {
+    throw_if_interrupted();
     const auto limit = check(gain);
     if (!limit) {
       previous = gain;
@@ -110,6 +112,7 @@ double kept_at(double gain, const Kept& kept) {
   constexpr double kFirst = 1e-3, kMost = 0.5;
   double tried = rounded_down(gain);
   for (double share = kFirst; share <= kMost; share *= 2.0) {
+    throw_if_interrupted();
     if (kept(tried)) return tried;
     tried = rounded_down((1.0 - share) * gain);
   }
@@ -160,6 +163,7 @@ double lowered(double most, double bound, const Of& quantity) {
   if (quantity(most) <= bound) return most;
   double good = 0.0, bad = most;
   while (bad - good > 1e-4 * most) {
+    throw_if_interrupted();
     const double middle = 0.5 * (good + bad);
     (quantity(middle) <= bound ? good : bad) = middle;
   }

@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/user_file.h"
 #include "sim/output_name.h"
 
@@ -654,6 +655,7 @@ std::vector<std::size_t> InputFile::shape(const std::string& dataset) const {
 }
 
 std::vector<double> InputFile::values(const std::string& dataset) const {
+  throw_if_interrupted();
   const Library library;
   std::size_t count = 1;
   for (const std::size_t length : shape(dataset)) count *= length;

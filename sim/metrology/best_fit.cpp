@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::sim {
@@ -187,6 +188,7 @@ std::variant<BestFit, NoFit> fit_to(Points3 measured, const Find& find, const Is
   std::vector<Target> targets = find_all(points, find);
   double sum = sum_of_squares(targets), last_step = std::numeric_limits<double>::infinity();
   for (int steps = 1; steps <= kMostSteps; ++steps) {
+    throw_if_interrupted();
     const Linear linear(points, targets, count);
     const Linear::Step step = linear.step();
     const auto try_motion = [&](const Isometry3d& more, double limit) {

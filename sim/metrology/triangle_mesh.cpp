@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 #include "sim/metrology/read_stl.h"
 
@@ -37,6 +38,7 @@ std::string in_mm(const Vector3d& p) {
 void check_triangles(const Triangles& t, const std::string& file) {
   if (t.triangles.empty()) throw InputError({file}, "the mesh has no triangles");
   for (std::size_t i = 0; i < t.triangles.size(); ++i) {
+    throw_if_interrupted();
     double longest = 0.0;
     for (int k = 0; k < 3; ++k) {
       const Vector3d& corner = t.corners[t.triangles[i][k]];
@@ -61,6 +63,7 @@ void check_closed(const Triangles& t, const std::string& file) {
   };
   std::map<Edge, Use> edges;
   for (std::size_t i = 0; i < t.triangles.size(); ++i) {
+    throw_if_interrupted();
     for (int k = 0; k < 3; ++k) {
       const int a = t.triangles[i][k], b = t.triangles[i][(k + 1) % 3];
       Use& use = edges.try_emplace(std::minmax(a, b), Use{0, 0, i}).first->second;
@@ -198,6 +201,7 @@ struct TriangleMesh::Parts {
     std::map<Edge, Vector3d> of_edges;
     corner_normals.assign(body.corners.size(), Vector3d::Zero());
     for (std::size_t i = 0; i < body.triangles.size(); ++i) {
+      throw_if_interrupted();
       const Corners& c = body.triangles[i];
       const auto corner = corners(static_cast<int>(i));
       const Vector3d normal = area_vector(body, c).normalized();
@@ -223,6 +227,7 @@ struct TriangleMesh::Parts {
     for (const Corners& c : body.triangles) area += area_vector(body, c).norm();
     covering = std::sqrt(area / kSamples);
     for (std::size_t i = 0; i < body.triangles.size(); ++i) {
+      throw_if_interrupted();
       add_samples(corners(static_cast<int>(i)), static_cast<int>(i), covering, samples);
     }
     tree = std::make_unique<Tree>(3, samples, nanoflann::KDTreeSingleIndexAdaptorParams(10));

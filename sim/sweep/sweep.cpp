@@ -11,6 +11,7 @@
 #include <set>
 #include <thread>
 
+#include "plant/vocabulary/interrupt.h"
 #include "sim/background.h"
 #include "sim/config/document.h"
 #include "sim/preparation_cache.h"
@@ -19,7 +20,7 @@
 namespace servomill::sim {
 namespace {
 
-constexpr auto kProgressPeriod = std::chrono::milliseconds(100);
+constexpr auto kProgressPeriod = std::chrono::milliseconds(20);  // an interrupt waits for it, too
 constexpr std::uint64_t kProbes = 8;          // points tried before all are given up
 constexpr std::uint64_t kMostChecked = 256;   // points that `check` reads
 constexpr std::size_t kBatchesPerThread = 4;  // at least, so that threads end together
@@ -167,6 +168,8 @@ void Sweep::refuse_hopeless() const {
           return one.place == other.place && one.message == other.message;
         });
       });
+    } catch (const Interrupted&) {
+      throw;
     } catch (const std::exception&) {
       return;  // failed, not refused: its row will say why
     }
@@ -267,6 +270,8 @@ void run_points(const Sweep& sweep, const std::vector<std::uint64_t>& points, co
       continue;
     } catch (const InputError& error) {
       one.result = {PointStatus::refused, in_one_line(error), {}};
+    } catch (const Interrupted&) {
+      throw;
     } catch (const std::exception& error) {
       one.result = {PointStatus::failed, error.what(), {}};
     }
@@ -323,6 +328,8 @@ void run_sweep(const Sweep& sweep, const Selection& selection, const std::vector
         shares[thread] = 0.0F;
         ended += points.size();
       }
+    } catch (const Interrupted&) {
+      given_up = true;  // what has ended is there
     } catch (...) {
       failures[thread] = std::current_exception();
     }

@@ -15,6 +15,7 @@
 #include <numeric>
 #include <set>
 
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/user_file.h"
 #include "sim/build_identity.h"
 #include "sim/output_name.h"
@@ -440,6 +441,7 @@ void SweepTable::copy(const InputFile& from) {
   Hdf5Group group = file_->root().group("sweep");
   const std::size_t length = from.shape(kGroup + "/point").at(0);
   for (std::size_t begin = 0; begin < length; begin += kBlockRows) {
+    throw_if_interrupted();
     const std::size_t count = std::min(kBlockRows, length - begin);
     const auto numbers = from.values(kGroup + "/point", begin, count);
     const auto statuses = from.values(kGroup + "/status", begin, count);
@@ -595,6 +597,7 @@ void write_csv(const std::string& table, const std::string& csv) {
   out.write(csv_header(columns));
   const std::size_t length = file.shape(kGroup + "/point").at(0);
   for (std::size_t begin = 0; begin < length; begin += kBlockRows) {
+    throw_if_interrupted();
     const std::size_t count = std::min(kBlockRows, length - begin);
     const auto points = file.values(kGroup + "/point", begin, count);
     const auto statuses = file.values(kGroup + "/status", begin, count);

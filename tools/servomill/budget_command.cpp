@@ -211,7 +211,7 @@ int budget_command(const Arguments& arguments) {
   const std::vector<sim::Budget> budgets = sim::find_budgets(scenario, quantities, control);
   bar.clear();
   if (budgets.empty()) {
-    fmt::print(stderr, "interrupted\n");
+    print_interrupted("");
     return kInterrupted;
   }
   if (!options.has("json")) fmt::print("{}\n", scenario.title);

@@ -1,24 +1,95 @@
 #include "tools/servomill/interrupt.h"
 
+#include <fmt/format.h>
+#include <semaphore.h>
+#include <unistd.h>
+
+#include <chrono>
 #include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "plant/vocabulary/interrupt.h"
+#include "sim/output_name.h"
+#include "tools/servomill/command.h"
 
 namespace servomill::tools {
 namespace {
 
-std::atomic<bool> stopped = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch such");
+// Half a second less what the system needs to end a large process.
+constexpr auto kPatience = std::chrono::milliseconds(200);
+
+sem_t wanted;
+std::atomic<bool> told = false;
+std::mutex kept_mutex;
+std::function<std::string()> what_is_kept;
 
 void on_signal(int signal) {
-  stopped = true;
+  interrupt_wanted = true;
   std::signal(signal, SIG_DFL);
+  sem_post(&wanted);
+}
+
+// Neither closes nor flushes: the main thread may hold locks, and what it writes is incomplete.
+[[noreturn]] void end_process() {
+  sim::TemporaryFile::remove_all();
+  const std::scoped_lock lock(kept_mutex);
+  print_interrupted(what_is_kept ? what_is_kept() : "");
+  ::_exit(kInterrupted);
+}
+
+void watch() {
+  while (sem_wait(&wanted) != 0) {
+  }
+  std::this_thread::sleep_for(kPatience);
+  end_process();
 }
 
 }  // namespace
 
 const std::atomic<bool>& stop_on_interrupt() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  return stopped;
+  static const bool installed = [] {
+    sem_init(&wanted, 0, 0);
+    std::thread(watch).detach();
+    // system calls go on: a full pipe is no fault
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_RESTART;
+    for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+    return true;
+  }();
+  static_cast<void>(installed);
+  return interrupt_wanted;
+}
+
+KeptWhenInterrupted::KeptWhenInterrupted(std::function<std::string()> what) {
+  const std::scoped_lock lock(kept_mutex);
+  what_is_kept = std::move(what);
+}
+
+KeptWhenInterrupted::~KeptWhenInterrupted() {
+  const std::scoped_lock lock(kept_mutex);
+  what_is_kept = nullptr;
+}
+
+void print_interrupted(const std::string& kept) {
+  if (told.exchange(true)) return;
+  const std::string text = kept.empty() ? "interrupted\n" : "interrupted; " + kept + "\n";
+  // not through stdio, whose lock a thread that was stopped might hold
+  for (std::size_t from = 0; from < text.size();) {
+    const ssize_t written = ::write(STDERR_FILENO, text.data() + from, text.size() - from);
+    if (written <= 0) return;
+    from += static_cast<std::size_t>(written);
+  }
+}
+
+std::string kept_in(const std::string& partial_path, const std::string& details) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(partial_path, ignored)) return {};
+  return fmt::format("kept in {}: {}", partial_path, details);
 }
 
 }  // namespace servomill::tools

@@ -12,12 +12,14 @@
 #include <system_error>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/user_file.h"
 #include "sim/build_identity.h"
 #include "sim/hdf5/system_error.h"
 #include "sim/version.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/interrupt.h"
 
 namespace servomill::tools {
 namespace {
@@ -61,7 +63,7 @@ void print_usage(std::FILE* to) {
   fmt::print(to,
              "\n`servomill COMMAND --help` explains a command.\n"
              "Exit status: 0 done, 1 ran but the machine stopped, 2 the input is wrong, 3 the "
-             "system failed.\n");
+             "system failed, 130 interrupted.\n");
 }
 
 int dispatch(const Arguments& arguments) {
@@ -87,6 +89,7 @@ int dispatch(const Arguments& arguments) {
     throw InputError({"servomill"}, fmt::format("no command '{}'{}; see servomill --help", name,
                                                 did_you_mean(name, names)));
   }
+  stop_on_interrupt();
   const InputRecord inputs;
   simd_level();  // refuses what SERVOMILL_SIMD must not be
   return command->run({arguments.begin() + 1, arguments.end()});
@@ -107,6 +110,10 @@ int guarded(const servomill::tools::Arguments& arguments) {
   } catch (const sim::SystemError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return tools::kSystemFailed;
+  } catch (const Interrupted&) {
+    std::fflush(stdout);
+    tools::print_interrupted("");
+    return tools::kInterrupted;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "servomill: not enough memory\n");
     return tools::kSystemFailed;

@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
 #include "sim/hdf5/system_error.h"
 #include "sim/run.h"
 #include "sim/store.h"
@@ -40,23 +41,44 @@ void print_outcomes(const sim::RunOutput& output) {
   }
 }
 
-// What a run that did not end leaves behind.
-void print_kept(const std::string& partial_path, const std::vector<std::string>& complete,
-                const std::vector<std::string>& incomplete) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(partial_path, ignored)) {
-    fmt::print(stderr, "nothing is kept\n");
-    return;
+// What a run that did not end leaves behind. For any thread.
+class Kept {
+ public:
+  explicit Kept(const sim::Scenario& scenario) {
+    for (const sim::CaseSpec& one : scenario.cases) incomplete_.push_back(one.name);
   }
-  fmt::print(stderr, "kept in {}: ", partial_path);
-  if (complete.empty()) {
-    fmt::print(stderr, "no complete case");
-  } else {
-    fmt::print(stderr, "complete cases {}", fmt::join(complete, ", "));
+  void in(const std::string& partial_path) {
+    const std::scoped_lock lock(mutex_);
+    partial_path_ = partial_path;
   }
-  if (!incomplete.empty()) fmt::print(stderr, "; interrupted {}", fmt::join(incomplete, ", "));
-  fmt::print(stderr, "\n");
-}
+  void add(const sim::CaseOutput& one) {
+    const std::scoped_lock lock(mutex_);
+    if (one.result.outcome.interrupted) return;
+    std::erase(incomplete_, one.name);
+    complete_.push_back(one.name);
+  }
+  bool all_complete() const {
+    const std::scoped_lock lock(mutex_);
+    return incomplete_.empty();
+  }
+
+  std::string said() const {
+    const std::scoped_lock lock(mutex_);
+    if (partial_path_.empty()) return {};
+    std::string text = complete_.empty()
+                           ? "no complete case"
+                           : fmt::format("complete cases {}", fmt::join(complete_, ", "));
+    if (!incomplete_.empty()) {
+      text += fmt::format("; interrupted {}", fmt::join(incomplete_, ", "));
+    }
+    return kept_in(partial_path_, text);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::string partial_path_;
+  std::vector<std::string> complete_, incomplete_;
+};
 
 }  // namespace
 
@@ -88,27 +110,34 @@ int run_command(const Arguments& arguments) {
   control.threads = thread_count(options);
   control.stop = &stop;
   control.progress = [&](double share) { bar.show(share); };
-  std::vector<std::string> complete, incomplete;
+  Kept kept(scenario);
+  const KeptWhenInterrupted told([&kept] { return kept.said(); });
   control.case_done = [&](const sim::CaseOutput& one) {
     store->add(one);
-    (one.result.outcome.interrupted ? incomplete : complete).push_back(one.name);
+    kept.add(one);
   };
-  control.prepared = [&] { store.emplace(path, options.has("force"), scenario, control.threads); };
+  control.prepared = [&] {
+    store.emplace(path, options.has("force"), scenario, control.threads);
+    kept.in(store->partial_path());
+  };
   sim::RunOutput output;
   try {
     output = sim::run_scenario(scenario, control);
     bar.clear();
-    if (!incomplete.empty()) {
-      fmt::print(stderr, "interrupted; ");
-      print_kept(store->partial_path(), complete, incomplete);
+    if (!kept.all_complete()) {
+      print_interrupted(kept.said());
       return kInterrupted;
     }
     store->commit(output.comparison);
   } catch (const sim::SystemError& error) {
     bar.clear();
     fmt::print(stderr, "{}\n", error.what());
-    if (store) print_kept(store->partial_path(), complete, {});
+    if (const std::string said = kept.said(); !said.empty()) fmt::print(stderr, "{}\n", said);
     return kSystemFailed;
+  } catch (const Interrupted&) {
+    bar.clear();
+    print_interrupted(kept.said());
+    return kInterrupted;
   }
 
   bool finished = true;

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/simd.h"
 #include "sim/hdf5/system_error.h"
 #include "sim/output_name.h"
@@ -149,7 +151,8 @@ int sweep_command(const Arguments& arguments) {
   sim::SweepTable table(out, force, sweep.base(), sim::columns_of(sweep.base()), selection);
   if (options.has("retry-failed")) table.forget(sim::PointStatus::failed);
   const std::vector<bool> done = points_done(table, selection, sweep, signals);
-  auto left = static_cast<std::uint64_t>(std::count(done.begin(), done.end(), false));
+  std::atomic<std::uint64_t> left =
+      static_cast<std::uint64_t>(std::count(done.begin(), done.end(), false));
   const bool quiet = options.has("quiet") || options.has("json") || options.has("csv");
   if (table.is_complete() && left == 0) {
     if (!quiet) fmt::print("{} holds all {} points already\n", out, selection.size());
@@ -164,6 +167,11 @@ int sweep_command(const Arguments& arguments) {
   }
 
   const auto& stop = stop_on_interrupt();
+  const auto said = [&] {
+    const std::uint64_t all = selection.size();
+    return kept_in(path, fmt::format("{} complete points of {}", all - left, all));
+  };
+  const KeptWhenInterrupted told(said);
   ProgressBar bar(options.has("quiet"));
   SweepLines lines = lines_of(options, sweep, selection, done);
   sim::SweepControl control;
@@ -173,7 +181,6 @@ int sweep_command(const Arguments& arguments) {
   control.progress = [&](double share) { bar.show(share); };
   std::uint64_t still_without_signals = 0;
   control.batch_done = [&](std::vector<sim::SweepPoint>&& points) {
-    left -= points.size();
     for (const sim::SweepPoint& point : points) {
       if (signals.empty()) continue;
       sim::write_point_series(signals, sweep, point);
@@ -185,16 +192,22 @@ int sweep_command(const Arguments& arguments) {
           return table.statuses()[selection.place(point.index)] == sim::PointStatus::not_run;
         });
     if (rows != points.begin()) table.write({points.begin(), rows});
+    left -= points.size();
     bar.clear();
     for (const sim::SweepPoint& point : points) lines.add(point);
   };
-  sim::run_sweep(sweep, selection, done, control);
+  try {
+    sim::run_sweep(sweep, selection, done, control);
+  } catch (const Interrupted&) {
+    bar.clear();
+    print_interrupted(said());
+    return kInterrupted;
+  }
   bar.clear();
   lines.finish();
   tell_mixed_levels(out, levels_of(table, signals));
   if (left > 0) {
-    fmt::print(stderr, "interrupted; kept in {}: {} complete points of {}\n", path,
-               selection.size() - left, selection.size());
+    print_interrupted(said());
     return kInterrupted;
   }
   if (!table.is_complete()) table.commit();
