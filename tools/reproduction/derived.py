@@ -3,6 +3,7 @@
 Each function takes the results (values.Results) and what a row says beside `derived`; NotInFile says what is missing.
 """
 import csv
+import math
 import pathlib
 
 import numpy as np

@@ -2,6 +2,7 @@
 import base64
 import dataclasses
 import html
+import math
 
 from reproduction import rows as vocabulary
 from reproduction import verdicts
@@ -19,16 +20,23 @@ class Line:
     def here(self):
         if self.value.number is None:
             return f"missing: {self.value.reason}" if self.verdict == verdicts.MISSING else "-"
-        return quantity(self.value.number, self.row.unit)
+        return quantity(self.value.number, self.row.unit, self._digits())
+
+    def _digits(self):
+        # as many as tell whether the value lies within its tolerance
+        number, tolerance = abs(self.value.number), self.row.tolerance
+        if not tolerance or not number:
+            return 3
+        return max(3, math.ceil(math.log10(number)) - math.floor(math.log10(tolerance)))
 
 
 def judged(row, value):
     return Line(row, value, verdicts.verdict(row, value.number))
 
 
-def quantity(number, unit):
-    """A number with three or four digits and its unit; of a tiny one only that it is."""
-    text = f"{number:.4g}" if abs(number) >= 1000 else f"{number:.3g}"
+def quantity(number, unit, digits=3):
+    """A number with so many digits, or four above 1000, and its unit."""
+    text = f"{number:.{max(4, digits)}g}" if abs(number) >= 1000 else f"{number:.{digits}g}"
     return text if unit == "1" else f"{text} {unit}"
 
 
