@@ -33,6 +33,7 @@ struct State {
   std::optional<bool> is_shorter_path;       // M126
   std::optional<bool> is_rotary_feed_in_mm;  // M116
   std::optional<double> feed;                // F, in the unit of the program
+  bool has_block_feed = false;               // FT or FU was last
   std::optional<double> tool_call_feed;      // F of the last TOOL CALL
 
   std::optional<int> tool;       // nullopt: no TOOL CALL yet, the tool axis is unknown

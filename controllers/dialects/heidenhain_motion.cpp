@@ -54,6 +54,9 @@ double Control::effective_feed(const Positioning& p) {
     if (!state_.tool_call_feed) fail(place_, "FAUTO: the last TOOL CALL has no F");
     state_.feed = state_.tool_call_feed;
   }
+  if (!state_.feed && state_.has_block_feed) {
+    fail(place_, "no F in the block; how long FT and FU hold was not found in a manual");
+  }
   if (!state_.feed) fail(place_, "no F in the block, and none is in force");
   const double feed = *state_.feed;
   if (!rules_.f_is_modal) state_.feed.reset();
@@ -87,12 +90,14 @@ void Control::set_feed(const Positioning& p, MachineAction& action, const KnownP
     const double time = p.feed * (rules_.ft_is_in_seconds ? 1.0 : minute);
     action.feed_mode = FeedMode::inverse_time;
     action.feed = 1.0 / time;
-    state_.feed.reset();  // how long FT holds was not found in a manual
+    state_.feed.reset();
+    state_.has_block_feed = true;
     return;
   }
   const bool is_fu = p.feed_word == Positioning::FeedWord::fu;
   const double feed = is_fu ? p.feed : effective_feed(p);
   if (is_fu) state_.feed.reset();
+  state_.has_block_feed = is_fu;
   if (!is_fu && !state_.is_per_revolution) {
     fail(place_, "M136 may be active from the program before: write M137 before F");
   }

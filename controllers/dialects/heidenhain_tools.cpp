@@ -75,6 +75,7 @@ void Control::forget_tool_change() {
   state_.speed.reset();
   state_.feed.reset();
   state_.tool_call_feed.reset();
+  state_.has_block_feed = false;
   state_.is_radius_off.reset();
   state_.pole.reset();
 }

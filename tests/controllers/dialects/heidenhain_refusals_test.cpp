@@ -133,8 +133,11 @@ TEST(HeidenhainRefusals, OfUnknownPositionsAndLengths) {
 }
 
 TEST(HeidenhainRefusals, OfWhatIsNotDetermined) {
-  EXPECT_EQ(refusal_of("L X+1 FT2\nL X+2\n"),
-            "t.h:13:4: error: no F in the block, and none is in force");
+  for (const char* feed : {"FT2", "FU0.1"}) {
+    EXPECT_EQ(refusal_of(fmt::format("L X+1 {}\nL X+2\n", feed)),
+              "t.h:13:4: error: no F in the block; how long FT and FU hold was not found in a "
+              "manual");
+  }
   EXPECT_EQ(refusal_of("L X+1 F100\nL M136\nL X+2\n"),
             "t.h:14:4: error: no F in the block, and none is in force");
   EXPECT_EQ(refusal_of("L X+1 FAUTO\n"), "t.h:12:4: error: FAUTO: the last TOOL CALL has no F");
