@@ -241,6 +241,7 @@ Compensated compensate(const CompensateRequest& request) {
   }
 
   Summary& summary = out.summary;
+  summary.reversal_distance = correction.longest_reversal();
   summary.assumed = assumptions(request, known, summary, layout);
   for (std::string& clause : writer->assumptions()) {
     out.warnings.push_back({{request.program_file}, "assumes that " + clause});

@@ -2,8 +2,10 @@
 /// program adds to the programmed position.
 #pragma once
 
-#include <optional>
-#include <string>
+#include <array>
+#include <map>
+#include <memory>
+#include <vector>
 
 #include "plant/geometry/error_model.h"
 #include "plant/kinematics/chain.h"
@@ -12,6 +14,9 @@
 #include "strategies/pose_compensation.h"
 
 namespace servomill::sim {
+
+/// Of travel, one for each axis word: 1 up, -1 down, 0 unknown.
+using Directions = std::array<int, kAxisWords>;
 
 /// What is believed of a machine's errors, with the tool that works.
 class Correction {
@@ -22,9 +27,21 @@ class Correction {
   Correction& operator=(const Correction&) = delete;
 
   /// @param p_ST  tip in the spindle nose (3; m)
-  void set_tool(const Eigen::Vector3d& p_ST) { belief_.p_ST = p_ST; }
-  const Eigen::Vector3d& tool() const { return belief_.p_ST; }
-  const JointLayout& layout() const { return belief_.layout; }
+  void set_tool(const Eigen::Vector3d& p_ST);
+  const Eigen::Vector3d& tool() const { return model_->belief.p_ST; }
+  const JointLayout& layout() const { return model_->belief.layout; }
+
+  /// Whether errors depend on the direction of travel.
+  bool has_reversals() const { return longest_reversal_ > 0.0; }
+  /// Axes whose errors do.
+  const std::array<bool, kAxisWords>& reverses() const { return reverses_; }
+  /// m or rad of travel that a change of direction takes at most
+  double longest_reversal() const { return longest_reversal_; }
+  /// From here on errors with reversal are those of axes that travel so, long after they turned;
+  /// at first, and where the direction is unknown, the mean of both.
+  void set_directions(const Directions& directions);
+  /// Displacement of the tip between both directions of one axis at a place (m).
+  double reversal_at(const AxisWords& machine, Axis axis);
 
   /// What to add to the machine coordinates of the program (6; m, rad), so that the machine with
   /// the believed errors puts the tool where the ideal one would: F_ni(Q + d) = F_i(Q).
@@ -34,9 +51,28 @@ class Correction {
   strategies::Leftover leftover(const AxisWords& machine) const;
 
  private:
-  strategies::Belief belief_;
+  struct Model {
+    Model(const plant::MachineChain& chain, const plant::ErrorModel& errors);
+    strategies::Belief belief;
+    strategies::PoseCompensation all;
+  };
+
+  plant::MachineChain chain_;
+  plant::ErrorModel errors_;
   strategies::DisplacedAxes axes_;
-  strategies::PoseCompensation all_;
+  std::array<bool, kAxisWords> reverses_{};  // axes whose errors have reversals
+  double longest_reversal_ = 0.0;
+  Directions directions_{};
+  std::map<Directions, std::unique_ptr<Model>> models_;
+  Model* model_ = nullptr;  // of the directions
 };
+
+/// Shares of an arc at which the direction of travel of one of these machine axes changes, 0 and 1
+/// included.
+/// @param x, y  unit vectors of the arc's plane in machine coordinates (3)
+/// @param angle, sweep  rad
+std::vector<double> shares_between_reversals(const Eigen::Vector3d& x, const Eigen::Vector3d& y,
+                                             double angle, double sweep,
+                                             const std::array<bool, kAxisWords>& axes);
 
 }  // namespace servomill::sim

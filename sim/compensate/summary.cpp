@@ -42,6 +42,18 @@ std::vector<std::string> Summary::report(const JointLayout& layout) const {
   } else {
     out.emplace_back("nothing to correct");
   }
+  if (reversals > 0) {
+    out.push_back(fmt::format(
+        "{} changes of direction compensated; while each develops, over {:g} mm at most, up to "
+        "{:.1f} um stay",
+        reversals, reversal_distance / mm, reversal_width / um));
+  }
+  if (undirected) {
+    out.push_back(fmt::format(
+        "the direction of travel is not known from line {} on until each axis has moved: the mean "
+        "of both is taken there, up to {:.1f} um stay",
+        undirected->line, undirected_width / um));
+  }
   if (largest_turn > 0.0) {
     out.push_back(fmt::format("largest turn of a rotary axis {:.1f} urad", largest_turn / urad));
   }
@@ -71,6 +83,8 @@ std::string Summary::json(const JointLayout& layout) const {
       largest_turn / urad, length / mm, corrected_length / mm, time, corrected_time);
   out += fmt::format(",\"left_tip_um\":{:.4f},\"left_axis_urad\":{:.4f},\"left_line\":{}",
                      left.tip / um, left.axis / urad, most_left ? most_left->line : 0);
+  out += fmt::format(",\"reversals\":{},\"reversal_um\":{:.4f},\"undirected_um\":{:.4f}", reversals,
+                     reversal_width / um, undirected_width / um);
   out += fmt::format(",\"ends_outside_travel\":{},\"unrolled\":{},\"assumed\":[", outside_count,
                      unrolled);
   for (std::size_t i = 0; i < assumed.size(); ++i) {

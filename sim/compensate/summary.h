@@ -29,8 +29,13 @@ struct Summary {
   std::size_t outside_count = 0;
   std::optional<At> most_left;  // the place where correcting leaves most
   strategies::Leftover left;
-  bool unrolled = false;         // loops, subroutines
-  bool has_expressions = false;  // became numbers
+  std::size_t reversals = 0;    // of axes at feed, whose errors depend on the direction of travel
+  double reversal_width = 0.0;  // m, largest change of the tip at one
+  double reversal_distance = 0.0;  // m, travel that one takes at most
+  std::optional<At> undirected;    // first feed with an axis that has not travelled yet
+  double undirected_width = 0.0;   // m, by which the tip may be off there
+  bool unrolled = false;           // loops, subroutines
+  bool has_expressions = false;    // became numbers
   bool has_cycles = false, has_cutter_compensation = false;
   std::map<int, double> tools;       // m, length of each tool that worked
   std::vector<std::string> assumed;  // one sentence each

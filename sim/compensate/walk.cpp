@@ -18,8 +18,7 @@ using controllers::Group;
 
 // By how much of the tolerance the output may stand beside the corrected begin of a move.
 constexpr double kBeside = 0.25;
-constexpr double kLookForLeftover = 5e-3;  // m, between two looks, about
-constexpr double kStill = 1e-12;           // m, rad: what rounding leaves of positions
+constexpr double kStill = 1e-12;  // m, rad: what rounding leaves of positions
 
 bool is_named(const ExecutedBlock& block, int i) {
   return block.request != nullptr &&
@@ -35,12 +34,6 @@ bool names_any(const ExecutedBlock& block) {
 
 int non_modal(const ExecutedBlock& block) {
   return block.request == nullptr ? -1 : block.request->code(Group::g_non_modal);
-}
-
-bool is_worse(const strategies::Leftover& a, const strategies::Leftover& b) {
-  constexpr double kAxis = 1e-6;  // rad: of less nothing is said
-  const bool by_axis = std::max(a.axis, b.axis) > kAxis;
-  return by_axis ? a.axis > b.axis : a.tip > b.tip;
 }
 
 }  // namespace
@@ -80,6 +73,7 @@ void Walk::know_missing_axes() {
 void Walk::forget_positions() {
   known_.fill(false);
   know_missing_axes();
+  directions_.fill(0);
 }
 
 bool Walk::knows_all() const {
@@ -189,6 +183,7 @@ Step Walk::next(const Move& move, const ExecutedBlock& block, bool is_place) {
   step.is_place = is_place;
   step.is_corrected = !is_place && knows_all();
   if (!step.is_corrected) {
+    turn_directions(move.end_machine - programmed_, step.was_known);
     AxisWords end = out_;
     for (int i = 0; i < kAxisWords; ++i) {
       if (step.is_commanded[static_cast<std::size_t>(i)]) end[i] = move.end_machine[i];
@@ -198,6 +193,7 @@ Step Walk::next(const Move& move, const ExecutedBlock& block, bool is_place) {
   }
   choose_tool(*block.state);
   if (move.kind == MoveKind::rapid && !options_.splits_rapids) {
+    turn_directions(move.end_machine - programmed_, step.was_known);
     step.blocks = {{0.0, 1.0, corrected(step.programmed, correction_, 1.0), {}}};
   } else {
     fit_feed(step, options_.fit);
@@ -206,20 +202,90 @@ Step Walk::next(const Move& move, const ExecutedBlock& block, bool is_place) {
   return step;
 }
 
-void Walk::fit_feed(Step& step, const FitOptions& options) const {
+// Piece by piece where an arc turns the direction of travel of an axis whose errors depend on it.
+void Walk::fit_feed(Step& step, const FitOptions& options) {
   step.blocks.clear();
-  const AxisWords c_begin = corrected(step.programmed, correction_, 0.0);
-  const AxisWords off = c_begin - step.begin;
-  if (off.head<3>().norm() > kBeside * options.tolerance ||
-      off.tail<3>().norm() > kBeside * options.tolerance_turn) {
-    step.blocks.push_back({0.0, 0.0, c_begin, {}});
+  const ProgrammedMove& whole = step.programmed;
+  std::vector<double> shares = {0.0, 1.0};
+  if (whole.arc && correction_.has_reversals()) {
+    const ArcSweep& arc = *whole.arc;
+    AxisWords x = AxisWords::Zero(), y = AxisWords::Zero();
+    x[arc.a] = y[arc.b] = 1.0;
+    shares =
+        shares_between_reversals(whole.frame.turned(x).head<3>(), whole.frame.turned(y).head<3>(),
+                                 arc.angle, arc.sweep, correction_.reverses());
   }
-  const AxisWords& from = step.blocks.empty() ? step.begin : c_begin;
-  const auto fitted = fit(step.programmed, correction_, from, options);
-  step.blocks.insert(step.blocks.end(), fitted.begin(), fitted.end());
+  for (std::size_t i = 0; i + 1 < shares.size(); ++i) {
+    fit_piece(step, shares[i], shares[i + 1], options);
+  }
 }
 
-Step Walk::without_arcs(Step step) const {
+void Walk::fit_piece(Step& step, double t_begin, double t_end, const FitOptions& options) {
+  const ProgrammedMove& whole = step.programmed;
+  ProgrammedMove piece = whole;
+  piece.begin = whole.at(t_begin);
+  piece.end = whole.at(t_end);
+  if (whole.arc && t_end - t_begin < 1.0) {
+    ArcSweep& arc = *piece.arc;
+    arc.angle += t_begin * arc.sweep;
+    arc.sweep *= t_end - t_begin;
+    arc.along_begin = piece.begin[arc.c];
+    arc.along_end = piece.end[arc.c];
+    arc.r_begin = whole.arc->r_begin + t_begin * (whole.arc->r_end - whole.arc->r_begin);
+    arc.r_end = whole.arc->r_begin + t_end * (whole.arc->r_end - whole.arc->r_begin);
+  }
+  const Directions before = directions_;
+  AxisWords way = whole.frame.turned(piece.end - piece.begin);
+  if (piece.arc) {
+    AxisWords along = AxisWords::Zero();
+    along.head<3>() = piece.arc->derivative(0.5);
+    way.head<3>() = whole.frame.turned(along).head<3>();
+  }
+  turn_directions(way, step.was_known);
+  note_reversals(step, before);
+  const AxisWords c_begin = corrected(piece, correction_, 0.0);
+  const AxisWords at = step.blocks.empty() ? step.begin : step.blocks.back().end;
+  const AxisWords off = c_begin - at;
+  const bool leads = off.head<3>().norm() > kBeside * options.tolerance ||
+                     off.tail<3>().norm() > kBeside * options.tolerance_turn;
+  if (leads) step.blocks.push_back({t_begin, t_begin, c_begin, {}});
+  for (FittedBlock block : fit(piece, correction_, leads ? c_begin : at, options)) {
+    block.t_begin = t_begin + block.t_begin * (t_end - t_begin);
+    block.t_end = block.t_end >= 1.0 ? t_end : t_begin + block.t_end * (t_end - t_begin);
+    step.blocks.push_back(block);
+  }
+}
+
+// @param way  of the machine, or its derivative
+void Walk::turn_directions(const AxisWords& way, const AxisFlags& was_known) {
+  if (!correction_.has_reversals()) return;
+  for (int i = 0; i < kAxisWords; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!was_known[k]) directions_[k] = 0;
+    if (was_known[k] && std::abs(way[i]) > kStill) directions_[k] = way[i] > 0.0 ? 1 : -1;
+  }
+  correction_.set_directions(directions_);
+}
+
+// What stays behind a change of direction, and where no direction is known.
+void Walk::note_reversals(const Step& step, const Directions& before) {
+  if (!correction_.has_reversals()) return;
+  for (const Axis axis : kAllAxes) {
+    const auto k = static_cast<std::size_t>(index_of(axis));
+    if (directions_[k] == before[k] && directions_[k] != 0) continue;
+    const double width = correction_.reversal_at(programmed_, axis);
+    if (width == 0.0) continue;
+    if (directions_[k] == 0) {
+      if (!summary_.undirected) summary_.undirected = Summary::At{step.move->line, programmed_, {}};
+      summary_.undirected_width = std::max(summary_.undirected_width, 0.5 * width);
+    } else {
+      ++summary_.reversals;
+      summary_.reversal_width = std::max(summary_.reversal_width, width);
+    }
+  }
+}
+
+Step Walk::without_arcs(Step step) {
   FitOptions options = options_.fit;
   options.allow_arcs = false;
   fit_feed(step, options);
@@ -242,91 +308,6 @@ void Walk::hold_axes(Step& step) const {
     }
     block.end = is_turned ? frame.work(end) : end;
   }
-}
-
-void Walk::look_for_leftover(const Step& step) {
-  if (step.move->kind == MoveKind::rapid) return;
-  const double length = step.programmed.length();
-  const int looks = std::max(1, static_cast<int>(length / kLookForLeftover));
-  for (int i = 1; i <= looks; ++i) {
-    const AxisWords at =
-        step.programmed.frame.machine(step.programmed.at(static_cast<double>(i) / looks));
-    const strategies::Leftover left = correction_.leftover(at);
-    if (summary_.most_left && !is_worse(left, summary_.left)) continue;
-    summary_.left = left;
-    summary_.most_left = Summary::At{step.move->line, at, AxisWords::Zero()};
-  }
-}
-
-void Walk::warn_of_travel(const Step& step) {
-  const JointLayout& layout = correction_.layout();
-  for (const FittedBlock& block : step.blocks) {
-    const AxisWords at = step.programmed.frame.machine(block.end);
-    const Joints Q = layout.joints(at);
-    bool is_outside = false;
-    for (int j = 0; j < kJoints; ++j) {
-      if (!layout.has(j) || !is_known(*layout.axis[static_cast<std::size_t>(j)])) continue;
-      is_outside |= Q[j] < options_.lower[j] || Q[j] > options_.upper[j];
-    }
-    if (!is_outside) continue;
-    ++summary_.outside_count;
-    if (!summary_.outside) summary_.outside = Summary::At{step.move->line, at, AxisWords::Zero()};
-  }
-}
-
-void Walk::count(const Step& step) {
-  const Move& move = *step.move;
-  ++summary_.blocks_before;
-  summary_.blocks_after += step.blocks.size();
-  summary_.points_added += step.blocks.size() - 1;
-  if (move.kind == MoveKind::arc) {
-    ++summary_.arcs_before;
-    std::size_t arcs = 0;
-    for (const FittedBlock& block : step.blocks) arcs += block.arc ? 1 : 0;
-    ++(arcs == 0 ? summary_.arcs_to_lines : arcs == 1 ? summary_.arcs_kept : summary_.arcs_split);
-  }
-  const WorkFrame& frame = step.programmed.frame;
-  for (const FittedBlock& block : step.blocks) {
-    const AxisWords at = step.programmed.at(block.t_end);
-    const AxisWords d = frame.turned(block.end - at);
-    summary_.largest_turn = std::max(summary_.largest_turn, d.tail<3>().cwiseAbs().maxCoeff());
-    const double most = std::max(kStill, summary_.largest.correction.head<3>().norm());
-    if (d.head<3>().norm() <= most) continue;
-    summary_.largest = {move.line, frame.machine(at), d};
-  }
-  if (move.kind == MoveKind::rapid) return;
-  const double length = step.programmed.length();
-  double after = 0.0;
-  AxisWords from = step.begin;
-  for (const FittedBlock& block : step.blocks) {
-    after += block.arc ? ArcSweep(from.head<3>(), block.end.head<3>(), block.arc->centre,
-                                  block.arc->normal_axis, block.arc->turns)
-                             .length()
-                       : (block.end - from).head<3>().norm();
-    from = block.end;
-  }
-  summary_.length += length;
-  summary_.corrected_length += after;
-  const double turned = (step.programmed.end - step.programmed.begin).tail<3>().norm();
-  const double way = length > 0.0 ? length : turned;
-  const double time = move.feed > 0.0 ? way / move.feed : 0.0;
-  summary_.time += time;
-  const bool is_inverse = move.feed_mode == FeedMode::inverse_time;
-  summary_.corrected_time += length > 0.0 && !is_inverse ? time * after / length : time;
-}
-
-void Walk::arrive(const Step& step, const AxisWords& machine) {
-  if (step.is_corrected) {
-    count(step);
-    look_for_leftover(step);
-    if (record_ != nullptr) record_->add(step, correction_);
-  } else {
-    ++summary_.blocks_before;
-    ++summary_.blocks_after;
-  }
-  warn_of_travel(step);
-  programmed_ = step.move->end_machine;
-  out_ = machine;
 }
 
 void Walk::arrive_elsewhere(const Move& move) {

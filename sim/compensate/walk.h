@@ -57,7 +57,7 @@ class Walk {
   /// @param is_place  of the machine, not to be corrected
   Step next(const Move& move, const controllers::ExecutedBlock& block, bool is_place);
   /// The same step in straight blocks.
-  Step without_arcs(Step step) const;
+  Step without_arcs(Step step);
   /// @param machine  (6; m, rad), as printed
   void arrive(const Step& step, const AxisWords& machine);
   /// From here on no position is known: the tool has been changed, or the operator may have jogged.
@@ -75,7 +75,10 @@ class Walk {
   void refuse_unknown_begin(const Move& move, const controllers::ExecutedBlock& block,
                             const AxisFlags& commanded) const;
   void refuse(const Move& move, const AxisFlags& was_known) const;
-  void fit_feed(Step& step, const FitOptions& options) const;
+  void fit_feed(Step& step, const FitOptions& options);
+  void fit_piece(Step& step, double t_begin, double t_end, const FitOptions& options);
+  void turn_directions(const AxisWords& way, const AxisFlags& was_known);
+  void note_reversals(const Step& step, const Directions& before);
   void hold_axes(Step& step) const;
   void choose_tool(const controllers::ModalState& state);
   bool knows_all() const;
@@ -91,6 +94,7 @@ class Walk {
   PathRecord* record_;
   AxisWords programmed_, out_;  // machine coordinates
   AxisFlags known_{};
+  Directions directions_{};  // of travel, as programmed
 };
 
 /// Whether O-words skip the line.

@@ -301,5 +301,63 @@ TEST(Compensate, RapidsMoveNoAxisThatTheOriginalDoesNotMove) {
             "M2\n");
 }
 
+// The error is 5 um on either side of the mean: each way gets its own correction, and each change
+// of direction a step of 10 um.
+TEST(Compensate, ReversalIsCompensatedForTheDirectionOfTravel) {
+  Trial trial("G21 G90\nG0 X0 Y0 Z0\nG1 X10 F100\nX20\nX0\nY5\nM2\n");
+  trial.request.error_file =
+      written("play.toml", "[errors.e]\nEXX.reversal = { width_um = 10.0, distance_mm = 0.02 }\n");
+  const Compensated done = trial.run();
+  EXPECT_EQ(without_header(done.program),
+            "G21 G90\n"
+            "G0 X0 Y0 Z0\n"
+            "G1 X-0.005 F100\n"
+            "X9.995\n"
+            "X19.995\n"
+            "X20.005\n"
+            "X0.005\n"
+            "Y5\n"
+            "M2\n");
+  EXPECT_EQ(done.report[2],
+            "2 changes of direction compensated; while each develops, over 0.02 mm at most, up to "
+            "10.0 um stay");
+}
+
+TEST(Compensate, ReversalOnAnArcIsCompensatedWhereTheAxisTurns) {
+  Trial trial("G21 G90 G17\nG0 X0 Y0 Z0\nG0 X10\nX20\nG3 X10 Y10 I-10 J0 F100\nM2\n");
+  trial.request.error_file =
+      written("play.toml", "[errors.e]\nEXX.reversal = { width_um = 10.0, distance_mm = 0.02 }\n");
+  EXPECT_EQ(without_header(trial.run().program),
+            "G21 G90 G17\n"
+            "G0 X0 Y0 Z0\n"
+            "G0 X9.995\n"
+            "X19.995\n"
+            "G1 X20.005 Y0 F100\n"
+            "G3 X10.005 Y10 I-10 J0\n"
+            "M2\n");
+  Trial whole("G21 G90 G17\nG0 X0 Y0 Z0\nG0 X10\nX20\nG3 X20 Y0 I-10 J0 F100\nM2\n");
+  whole.request.error_file = trial.request.error_file;
+  EXPECT_EQ(without_header(whole.run().program),
+            "G21 G90 G17\n"
+            "G0 X0 Y0 Z0\n"
+            "G0 X9.995\n"
+            "X19.995\n"
+            "G1 X20.005 Y0 F100\n"
+            "G3 X0.005 I-10 J0\n"
+            "G1 X-0.005\n"
+            "G3 X19.995 I10 J0\n"
+            "M2\n");
+}
+
+TEST(Compensate, ReversalBeforeAnAxisHasMovedIsReported) {
+  Trial trial("G21 G90\nG0 X0 Y0 Z0\nG1 Y10 F100\nM2\n");
+  trial.request.error_file =
+      written("play.toml", "[errors.e]\nEXX.reversal = { width_um = 10.0, distance_mm = 0.02 }\n");
+  const Compensated done = trial.run();
+  EXPECT_EQ(done.report[2],
+            "the direction of travel is not known from line 3 on until each axis has moved: the "
+            "mean of both is taken there, up to 5.0 um stay");
+}
+
 }  // namespace
 }  // namespace servomill::sim
