@@ -84,6 +84,7 @@ void Original::take_motion(const Move& move, const ExecutedBlock& block, bool is
   OriginalAction action;
   action.move = move;
   action.begin = position_;
+  action.was_known = known_;
   action.auxiliary = auxiliary_;
   // a canned cycle follows its path exactly, whatever is in force
   const bool is_cycle =

@@ -30,6 +30,7 @@ struct OriginalAction {
   bool is_reference_return = false;   // G28, G30
   bool is_to_reference = false;       // the last move of those
   AxisFlags6 is_named{}, is_known{};  // named by its block; positions named so far, these included
+  AxisFlags6 was_known{};                          // positions named before it
   AxisWords begin = AxisWords::Zero();             // machine coordinates; m, rad
   Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();  // tip of the tool that works (m)
   AuxiliaryState auxiliary;                        // in force

@@ -1,5 +1,7 @@
 #include "sim/verification/replay_comparison.h"
 
+#include "sim/verification/travel.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -218,7 +220,19 @@ void ReplayComparison::match_other(const OriginalAction& action) {
 }
 
 void ReplayComparison::match(const OriginalAction& action) {
-  if (!is_motion(action.move.kind)) return match_other(action);
+  if (!is_motion(action.move.kind)) {
+    const bool is_lost = action.move.kind == MoveKind::tool || action.move.kind == MoveKind::stop;
+    if (is_lost && !limits_.is_linuxcnc) directions_.fill(0);
+    return match_other(action);
+  }
+  for (const OriginalAction& piece : pieces_of(action, correction_)) {
+    turn(directions_, piece);
+    correction_.set_directions(directions_);
+    match_motion(piece);
+  }
+}
+
+void ReplayComparison::match_motion(const OriginalAction& action) {
   correction_.set_tool(action.p_ST);
   if (!has_moved_ && !limits_.is_linuxcnc) skip_retracts(&action);
   has_moved_ = true;

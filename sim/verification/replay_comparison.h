@@ -66,6 +66,7 @@ class ReplayComparison {
   void take_auxiliary();
   void skip_retracts(const OriginalAction* before);
   void compare_auxiliary(const OriginalAction& action, bool is_strict) const;
+  void match_motion(const OriginalAction& action);
   void match_other(const OriginalAction& action);
 
   void match_place(const OriginalAction& action);
@@ -90,6 +91,7 @@ class ReplayComparison {
   std::size_t next_ = 0;
   controllers::KnownPosition at_;
   AuxiliaryState auxiliary_;
+  Directions directions_{};  // of travel, as the original has them
   bool has_moved_ = false, has_ended_ = false;
   double largest_ = 0.0;
   std::size_t blocks_ = 0;
