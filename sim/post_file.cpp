@@ -9,10 +9,10 @@
 
 #include "controllers/gcode/printer.h"
 #include "plant/vocabulary/units.h"
-#include "sim/config/document.h"
 #include "sim/read_file.h"
 #include "sim/read_machine.h"
 #include "sim/sweep/design.h"
+#include "sim/verify_post.h"
 
 namespace servomill::sim {
 namespace {
@@ -49,16 +49,6 @@ Joints joints_of(const std::string& text, const JointLayout& layout) {
   return layout.joints(words);
 }
 
-MachineSettings read_changed_machine(const std::string& path,
-                                     const std::vector<std::string>& changes) {
-  Document document = Document::from_file(path);
-  for (const std::string& change : changes) document.set(change);
-  Reader root(document);
-  MachineSettings machine = read_machine(root);
-  root.finish();
-  return machine;
-}
-
 std::set<int> tools_loaded(const controllers::ClData& data, int without) {
   std::set<int> tools;
   for (const auto& record : data.records) {
@@ -74,7 +64,7 @@ void take_tools(const PostRequest& request, const controllers::ClData& data,
     options.tools = controllers::ToolTable::parse(read_file(request.tool_table, {}, "tool table"),
                                                   request.tool_table);
   } else if (request.tool_length) {
-    if (options.tool == 0) options.tool = 1;
+    if (options.tool == 0 && !request.has_no_tool) options.tool = 1;
     for (const int number : tools_loaded(data, options.tool)) {
       controllers::ToolEntry tool;
       tool.number = number;
@@ -84,19 +74,45 @@ void take_tools(const PostRequest& request, const controllers::ClData& data,
   }
 }
 
-// Where the head turns, the axes go with the length of the tool; elsewhere G43 takes it into
-// account.
-void refuse_unknown_length(const PostRequest& request, const plant::MachineChain& chain) {
-  const bool head_turns =
-      std::any_of(chain.axes.begin(), chain.axes.end(), [](const plant::ChainAxis& axis) {
-        return axis.side == plant::Side::tool && !is_linear(axis.axis);
-      });
-  const bool is_known = request.tool_length || !request.tool_table.empty();
-  if (!head_turns || is_known || request.options.mode == controllers::PostMode::tip) return;
-  throw InputError(
-      {request.cl_file},
-      "the length of the tool is not given, and the head of this machine turns it; add "
-      "--tool-length or --tools");
+// Where rotary axes turn head or workpiece, the axes go with the length of the tool and the place
+// of the part: 0 may be given, but is not assumed.
+void refuse_unknown_places(const PostRequest& request, const plant::MachineChain& chain) {
+  const bool turns = std::any_of(chain.axes.begin(), chain.axes.end(),
+                                 [](const plant::ChainAxis& a) { return !is_linear(a.axis); });
+  if (!turns || request.options.mode == controllers::PostMode::tip) return;
+  std::vector<Fault> faults;
+  if (!request.part_zero) {
+    faults.push_back(
+        {{request.cl_file},
+         "the place of the part is not given, and the rotary axes of this machine turn "
+         "about points of their own; add --part-zero X,Y,Z (0,0,0 is a place, too)"});
+  }
+  if (!request.tool_length && request.tool_table.empty()) {
+    faults.push_back({{request.cl_file},
+                      "the length of the tool is not given, and this machine has rotary axes; add "
+                      "--tool-length or --tools"});
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+// Z of the machine from which every way down is free.
+double retract_height(const PostRequest& request, const MachineDescription& machine) {
+  const JointLayout& layout = machine.machine.chain.layout;
+  constexpr int kZ = 2;
+  if (!layout.has(kZ)) {
+    throw InputError({request.machine_file}, "the machine has no axis Z; use --approach direct");
+  }
+  const double lower = machine.machine.nc.lower[kZ], upper = machine.machine.nc.upper[kZ];
+  const double Z = request.retract_Z.value_or(machine.retract_Z.value_or(upper));
+  if (!std::isfinite(Z)) {
+    throw InputError({request.machine_file},
+                     "Z has no travel, so that the height to retract to is not known; add "
+                     "axis.Z.retract_mm or --retract Z=...");
+  }
+  if (Z >= lower && Z <= upper) return Z;
+  throw InputError({request.retract_Z ? std::string("--retract") : request.machine_file},
+                   fmt::format("Z = {:g} mm; beyond the travel of {:g} to {:g} mm", Z / mm,
+                               lower / mm, upper / mm));
 }
 
 std::string header(const PostRequest& request, const controllers::PostOptions& options,
@@ -120,6 +136,12 @@ std::string header(const PostRequest& request, const controllers::PostOptions& o
   const Eigen::Vector3d& zero = options.part_zero;
   text += fmt::format("\npart zero (G{}): X{:g} Y{:g} Z{:g} in the machine, rotary axes at zero",
                       53 + options.work_system, zero[0] / mm, zero[1] / mm, zero[2] / mm);
+  if (options.approach == controllers::Approach::safe) {
+    text += fmt::format(
+        "\nretracts to Z{:g} of the machine; {:g} mm along the tool axis to and from "
+        "the part",
+        options.safe.retract_Z / mm, options.safe.clearance / mm);
+  }
   for (const int number : tools_loaded(data, options.tool)) {
     const auto* tool = options.tools.find(number);
     text += fmt::format("\ntool {}: length {:g} mm", number,
@@ -131,16 +153,24 @@ std::string header(const PostRequest& request, const controllers::PostOptions& o
 }  // namespace
 
 PostedFile post_file(PostRequest request, std::vector<controllers::Warning>* of_refused) {
-  const MachineSettings machine = read_changed_machine(request.machine_file, request.changes);
+  const MachineDescription described =
+      read_machine_description(request.machine_file, request.changes);
+  const MachineSettings& machine = described.machine;
   std::vector<controllers::Warning> ignored;
   std::vector<controllers::Warning>& told = of_refused != nullptr ? *of_refused : ignored;
   const controllers::ClData data = controllers::read_cl_data(
       read_file(request.cl_file, {}, "cutter location file"), request.cl_file, &told);
   told = data.warnings;
-  refuse_unknown_length(request, machine.chain);
+  refuse_unknown_places(request, machine.chain);
   controllers::PostOptions& options = request.options;
   options.start = joints_of(request.start, machine.chain.layout);
-  options.v_max = machine.nc.v_max;
+  for (int j = 0; j < kJoints; ++j) {
+    if (machine.nc.v_max[j] > 0.0) options.v_max[j] = machine.nc.v_max[j];
+  }
+  options.part_zero = request.part_zero.value_or(Eigen::Vector3d::Zero());
+  if (options.approach == controllers::Approach::safe) {
+    options.safe.retract_Z = retract_height(request, described);
+  }
   take_tools(request, data, options);
 
   plant::InverseSettings settings;
@@ -157,6 +187,7 @@ PostedFile post_file(PostRequest request, std::vector<controllers::Warning>* of_
   out.program =
       controllers::print_program(posted.moves, print, header(request, options, data, machine.name))
           .text;
+  out.verified = to_string(verify_post(out.program, data, machine, options, request.cl_file));
   out.warnings = data.warnings;
   out.warnings.insert(out.warnings.end(), posted.warnings.begin(), posted.warnings.end());
   out.locations = data.locations();

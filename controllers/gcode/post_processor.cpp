@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
+#include "controllers/gcode/printer.h"
 #include "controllers/path/slowed_motion.h"
 #include "plant/kinematics/branches.h"
 #include "plant/vocabulary/interrupt.h"
@@ -31,7 +33,12 @@ class Post {
  public:
   Post(const ClData& data, const std::string& file, const plant::InverseKinematics& inverse,
        const PostOptions& options)
-      : data_(data), file_(file), inverse_(inverse), options_(options), Q_(options.start) {
+      : data_(data),
+        file_(file),
+        inverse_(inverse),
+        options_(options),
+        safe_(inverse, options.safe, options.part_zero, options.work_system),
+        Q_(options.start) {
     const double T = options.tolerance.tip;
     switch (options.mode) {
       case PostMode::joints:
@@ -50,6 +57,7 @@ class Post {
 
   Posted run(std::vector<Warning>* of_refused) {
     tool_ = options_.tool;
+    if (is_safe()) retract();
     bool loads_tool = false;
     for (const ClRecord& record : data_.records) loads_tool |= record.kind == MoveKind::tool;
     if (!loads_tool && tool_ > 0) load(tool_, 0);
@@ -61,9 +69,11 @@ class Post {
       } else if (record.kind == MoveKind::tool) {
         load(record.number, record.line);
       } else {
+        leave_before(i);
         pass_on(record);
       }
     }
+    if (is_safe()) finish();
     sum_up();
     if (faults_.empty()) return std::move(out_);
     if (of_refused != nullptr) {
@@ -118,13 +128,116 @@ class Post {
     if (entry == nullptr && !options_.tools.empty()) {
       return fault(line, fmt::format("tool {} is not in the tool table", tool));
     }
+    if (is_safe()) leave();
     tool_ = tool;
     tool_offset_ = entry != nullptr ? entry->offset : AxisWords::Zero();
     p_ST_ = -tool_offset_.head<3>();
     add(MoveKind::tool, line).number = tool;
+    if (is_safe()) retract();  // machines move in M6
+  }
+
+  // ---- to and from the workpiece
+
+  bool is_safe() const { return options_.approach == Approach::safe; }
+
+  void program_line(const std::string& text) {
+    if (text.empty()) return;
+    Move& move = add(MoveKind::message, last_line_);
+    move.number = kProgramLine;
+    move.text = text;
+  }
+
+  void retract() {
+    program_line(safe_.retract_line());
+    Q_ = safe_.retracted(Q_);
+    is_retracted_ = true;
+  }
+
+  // Along the tool axis away from the workpiece, then up.
+  void depart(int line) {
+    if (is_retracted_) return;
+    const auto clear = safe_.joints_clear_of(here_, Q_, p_ST_);
+    if (!clear.fault.empty()) return fault(line, "on the way back from here, " + clear.fault);
+    block(MoveKind::rapid, line, safe_.clear_of(here_), clear.Q, 0.0, 0.0);
+    retract();
+  }
+
+  // Departs, and stops coolant and spindle: what the data stop first, then the rest.
+  void leave() {
+    depart(last_line_);
+    for (const ClRecord& record : held_) {
+      const bool starts = (record.kind == MoveKind::spindle && record.direction != 0) ||
+                          (record.kind == MoveKind::coolant && record.number != 0);
+      if (!starts) emit(record);
+    }
+    held_.clear();
+    if (runs_.coolant != 0) add(MoveKind::coolant, last_line_).number = 0;
+    if (runs_.direction != 0) add(MoveKind::spindle, last_line_).value = spindle_->value;
+    runs_ = {};
+  }
+
+  // What follows the last location before a tool change or the end waits for the retract; a dwell
+  // belongs to the location.
+  void leave_before(std::size_t i) {
+    const MoveKind kind = data_.records[i].kind;
+    if (!is_safe() || is_retracted_ || kind == MoveKind::dwell || kind == MoveKind::message) return;
+    for (std::size_t n = i; n < data_.records.size(); ++n) {
+      if (is_motion(data_.records[n].kind)) return;
+      if (data_.records[n].kind == MoveKind::tool) break;
+    }
+    depart(last_line_);
+  }
+
+  void approach(const ClRecord& record, const ToolPose& P, const Joints& Q) {
+    depart(record.line);
+    const auto clear = safe_.joints_clear_of(P, Q, p_ST_);
+    if (!clear.fault.empty()) return fault(record.line, "on the way here, " + clear.fault);
+    program_line(safe_.rotary_line(Q));
+    switch_on();
+    if (options_.mode != PostMode::tip) program_line(safe_.plane_line(clear.Q));
+    is_retracted_ = false;
+    block(MoveKind::rapid, record.line, safe_.clear_of(P), clear.Q, 0.0, 0.0);
+    const double feed = record.feed > 0.0 ? record.feed : options_.feed;
+    const bool feeds = record.kind != MoveKind::rapid && feed > 0.0;
+    const double c = safe_.clearance();
+    block(feeds ? MoveKind::feed : MoveKind::rapid, record.line, P, Q, feeds ? c : 0.0,
+          feeds ? c / feed : 0.0);
+  }
+
+  // Spindle and coolant as the locations ask for them, in the order of their records.
+  void switch_on() {
+    for (const ClRecord& record : held_) emit(record);
+    held_.clear();
+    if (spindle_ && spindle_->direction != 0 && runs_.direction == 0) emit(*spindle_);
+    if (coolant_ && coolant_->number != 0 && runs_.coolant == 0) emit(*coolant_);
+  }
+
+  void finish() {
+    leave();
+    Joints home = options_.start;
+    for (int j = kLinearJoints; j < kJoints; ++j) {
+      const bool is_endless = !std::isfinite(inverse_.settings().lower[j]) ||
+                              !std::isfinite(inverse_.settings().upper[j]);
+      if (!is_endless) continue;
+      constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
+      home[j] += kTurn * std::round((Q_[j] - home[j]) / kTurn);
+    }
+    if (turn_of(home) > 0.0) program_line(safe_.rotary_line(home));
   }
 
   void pass_on(const ClRecord& record) {
+    if (record.kind == MoveKind::spindle) spindle_ = record;
+    if (record.kind == MoveKind::coolant) coolant_ = record;
+    if (is_safe() && is_retracted_) {
+      held_.push_back(record);
+    } else {
+      emit(record);
+    }
+  }
+
+  void emit(const ClRecord& record) {
+    if (record.kind == MoveKind::spindle) runs_.direction = record.direction;
+    if (record.kind == MoveKind::coolant) runs_.coolant = record.number;
     Move& move = add(record.kind, record.line);
     move.value = record.value;
     move.number = record.number;
@@ -138,7 +251,8 @@ class Post {
 
   void go_to(std::size_t i) {
     const ClRecord& record = data_.records[i];
-    if (record.kind == MoveKind::rapid || !has_location_) return jump_to(i);
+    const bool is_first = is_safe() ? is_retracted_ : !has_location_;
+    if (record.kind == MoveKind::rapid || is_first) return jump_to(i);
     const double feed = record.feed > 0.0 ? record.feed : options_.feed;
     if (feed == 0.0) {
       if (!missed_feed_)
@@ -156,7 +270,12 @@ class Post {
     if (!next.is_reached()) return fault(record.line, reason(next, inverse_));
     note_singular(next, record.line);
     if (next.is_singular) next.Q = looking_ahead(i, P, next.Q);
-    block(MoveKind::rapid, record.line, P, next.Q, 0.0, 0.0);
+    const bool crosses = is_retracted_ || turn_of(next.Q) > kSameAngle;
+    if (is_safe() && crosses) {
+      approach(record, P, next.Q);
+    } else {
+      block(MoveKind::rapid, record.line, P, next.Q, 0.0, 0.0);
+    }
     here_ = P;
     has_location_ = true;
   }
@@ -362,6 +481,7 @@ class Post {
 
   // One block to the joints Q, on which the tip takes its way (m) in that time (s).
   void block(MoveKind kind, int line, const ToolPose& P, const Joints& Q, double way, double time) {
+    last_line_ = line;
     Move& move = add(kind, line);
     AxisWords words = inverse_.chain().layout.words(Q);
     move.end_machine = words;
@@ -395,6 +515,15 @@ class Post {
   const std::string& file_;
   const plant::InverseKinematics& inverse_;
   const PostOptions& options_;
+  SafeApproach safe_;
+  bool is_retracted_ = false;
+  int last_line_ = 0;                          // of a location
+  std::vector<ClRecord> held_;                 // while retracted, for switch_on()
+  std::optional<ClRecord> spindle_, coolant_;  // as last asked for
+  struct Runs {
+    int direction = 0, coolant = 0;
+  };
+  Runs runs_;                            // as last programmed
   double chord_ = 0.0, rounding_ = 0.0;  // m, shares of the tolerance of the tip
   Posted out_;
   std::vector<Fault> faults_;

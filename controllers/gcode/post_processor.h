@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "controllers/gcode/cl_data.h"
+#include "controllers/gcode/safe_approach.h"
 #include "controllers/gcode/tool_table.h"
 #include "plant/kinematics/straight_tool_path.h"
 #include "plant/vocabulary/move.h"
@@ -19,7 +20,16 @@ enum class PostMode : std::uint8_t {
   tip,        // the NC, under G43.4: words are the tip; points are inserted for the tool axis alone
 };
 
+/// Way to the first location, to the first one after a tool change, and across rapids on which the
+/// tool axis changes.
+enum class Approach : std::uint8_t {
+  safe,   // controllers/gcode/safe_approach.h
+  direct  // one rapid of all axes, from wherever the machine is; no retract
+};
+
 struct PostOptions {
+  Approach approach = Approach::safe;
+  SafeApproachParams safe;
   PostMode mode = PostMode::joints;
   plant::ToolTolerance tolerance;
   Eigen::Vector3d part_zero = Eigen::Vector3d::Zero();  // m in W: what the work offset holds
@@ -45,11 +55,14 @@ struct Posted {
 
 /// Posts every location to the joints nearest to those before, so that endless axes go on turning.
 ///
-/// Rapids, and the first location whatever it is, become rapids of the joints; points are inserted
-/// in feed moves only. The feed is that of the tip in the workpiece: without tip control each block
-/// says how long it takes (G93), for an NC would take F as the speed of X, Y and Z in the machine.
-/// The tolerance of the tip is shared by the chords of `PostMode::joints` and the rounding of
-/// corners (G64 P); other modes leave all of it to the latter.
+/// Rapids, and with Approach::direct the first location whatever it is, become rapids of the
+/// joints; points are inserted in feed moves only. With Approach::safe the last stretch to a
+/// location that is no rapid is moved at its feed, spindle and coolant are switched on between the
+/// rotary and the linear axes, off at the retract height, and rotary axes come back to the start at
+/// the end. The feed is that of the tip in the workpiece: without tip control each block says how
+/// long it takes (G93), for an NC would take F as the speed of X, Y and Z in the machine. The
+/// tolerance of the tip is shared by the chords of `PostMode::joints` and the rounding of corners
+/// (G64 P); other modes leave all of it to the latter.
 ///
 /// Where the tool axis is singular an axis is free. A rapid turns it to where it will be when the
 /// tool axis leaves that direction, if such a location follows; a feed to that direction leaves it,

@@ -96,16 +96,24 @@ class Printer {
       case MoveKind::end:
         return line("M30");
       case MoveKind::message:
+        if (move.number == kProgramLine) return print_line(move.text);
         return line(fmt::format("({},{})", move.number == kPrintMessage ? "PRINT" : "MSG",
                                 comment_text(move.text)));
     }
   }
 
+  void print_line(const std::string& text) {
+    line(text);
+    for (std::string* mode : {&work_, &tool_, &path_, &F_, &S_}) mode->clear();
+    steps_.reset();
+  }
+
   void print_spindle(const Move& move) {
     const std::string S = significant_text(move.value / rpm);
-    const bool new_speed = S != S_;
+    const bool only_stops = S_.empty() && move.direction == 0;
+    const bool new_speed = S != S_ && !only_stops;
     if (new_speed) line("S" + S);
-    S_ = S;
+    if (!only_stops) S_ = S;
     if (!new_speed || move.direction != direction_) {
       line(move.direction > 0 ? "M3" : move.direction < 0 ? "M4" : "M5");
     }

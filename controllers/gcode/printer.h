@@ -10,6 +10,10 @@
 
 namespace servomill::controllers {
 
+/// `Move::number` of a message that is printed as it is: a line of the program. Work system, tool
+/// length, path control, S, F and positions are restated after it.
+inline constexpr int kProgramLine = 2;
+
 struct PrintOptions {
   int decimals_mm = 7;          // of X Y Z I J K
   int decimals_deg = 7;         // of A B C

@@ -23,6 +23,10 @@ PostRequest request_of(const std::string& cl_file) {
   request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/li2024.toml";
   request.options.mode = controllers::PostMode::locations;
   request.options.tolerance.tip = 0.01 * um;
+  request.options.approach = controllers::Approach::direct;
+  request.part_zero = Eigen::Vector3d::Zero();
+  request.tool_length = 0.0;
+  request.has_no_tool = true;
   return request;
 }
 
@@ -81,9 +85,10 @@ TEST(PostFile, HeaderSaysWhatTheNcMustKnow) {
   request.options.mode = controllers::PostMode::joints;
   request.options.feed = 10 * mm;
   request.options.tolerance = {2.5 * um, 50 * urad};
-  request.options.part_zero << 10 * mm, -20 * mm, 30.5 * mm;
+  request.part_zero = Eigen::Vector3d(10 * mm, -20 * mm, 30.5 * mm);
   request.options.work_system = 2;
   request.tool_length = 110 * mm;
+  request.has_no_tool = false;
   const std::string program = post_file(request).program;
   EXPECT_TRUE(program.starts_with(
       "(servomill post: table32.csv for dual rotary table C' A' after Li 2024)\n"
@@ -94,24 +99,34 @@ TEST(PostFile, HeaderSaysWhatTheNcMustKnow) {
       << program.substr(0, 400);
 }
 
-// What the head turns goes with the length of the tool; a table does not care.
-TEST(PostFile, AHeadNeedsTheLengthOfTheTool) {
-  PostRequest request = request_of("table32.csv");
-  request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/generic_head_table_bc.toml";
-  request.options.feed = 300 * mm_per_min;
-  try {
-    post_file(request);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.what(), request.cl_file +
-                                ": error: the length of the tool is not given, and the head of "
-                                "this machine turns it; add --tool-length or --tools");
+// Head or table: the axes go with the length of the tool and the place of the part. 0 may be given.
+TEST(PostFile, PlaceOfThePartAndLengthOfTheToolAreNotAssumed) {
+  for (const char* machine : {"generic_head_table_bc.toml", "generic_trunnion_ac.toml"}) {
+    PostRequest request = request_of("table32.csv");
+    request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/" + std::string(machine);
+    request.options.feed = 300 * mm_per_min;
+    request.tool_length.reset();
+    request.part_zero.reset();
+    try {
+      post_file(request);
+      FAIL();
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(),
+                request.cl_file +
+                    ": error: the place of the part is not given, and the rotary axes of this "
+                    "machine turn about points of their own; add --part-zero X,Y,Z (0,0,0 is a "
+                    "place, too)\n" +
+                    request.cl_file +
+                    ": error: the length of the tool is not given, and this machine has rotary "
+                    "axes; add --tool-length or --tools");
+    }
+    request.options.mode = controllers::PostMode::tip;  // the NC knows
+    EXPECT_NO_THROW(post_file(request));
+    request.options.mode = controllers::PostMode::locations;
+    request.tool_length = 0.0;  // said on purpose
+    request.part_zero = Eigen::Vector3d::Zero();
+    EXPECT_NO_THROW(post_file(request));
   }
-  request.tool_length = 0.0;  // said on purpose
-  EXPECT_NO_THROW(post_file(request));
-  request.tool_length.reset();
-  request.options.mode = controllers::PostMode::tip;  // the NC knows
-  EXPECT_NO_THROW(post_file(request));
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -68,11 +70,20 @@ std::vector<int> chosen_joints(const Options& options, const sim::MachineSetting
   return joints;
 }
 
+std::optional<double> plain_number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_whole = error == std::errc() && end == text.data() + text.size();
+  return is_whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
 std::optional<double> quantity_option(const Options& options, const std::string& name,
-                                      sim::Quantity quantity) {
+                                      sim::Quantity quantity, std::string_view bare_unit) {
   if (!options.has(name)) return std::nullopt;
   const auto& text = options.get<std::string>(name);
-  const sim::ScaledText scaled = sim::scale_text(text, quantity);
+  const bool is_bare = plain_number(text).has_value();
+  const sim::ScaledText scaled =
+      sim::scale_text(is_bare ? fmt::format("{} {}", text, bare_unit) : text, quantity);
   if (scaled.complaint.empty() && std::isfinite(scaled.si)) return scaled.si;
   throw InputError(
       {"--" + name},
@@ -80,13 +91,23 @@ std::optional<double> quantity_option(const Options& options, const std::string&
 }
 
 std::optional<double> positive_option(const Options& options, const std::string& name,
-                                      sim::Quantity quantity) {
-  const auto value = quantity_option(options, name, quantity);
+                                      sim::Quantity quantity, std::string_view bare_unit) {
+  const auto value = quantity_option(options, name, quantity, bare_unit);
   if (value && !(*value > 0.0)) {
     throw InputError({"--" + name},
                      fmt::format("'{}' must be > 0", options.get<std::string>(name)));
   }
   return value;
+}
+
+std::string_view bare_unit(sim::Quantity quantity) {
+  if (quantity == sim::kLength) return "mm";
+  if (quantity == sim::kVelocity) return "mm/s";
+  if (quantity == sim::kForce) return "N";
+  if (quantity == sim::kAngle) return "deg";
+  if (quantity == sim::kAngularVelocity) return "deg/s";
+  assert(quantity == sim::kTorque);
+  return "Nm";
 }
 
 double positive_number(const Options& options, const std::string& name) {

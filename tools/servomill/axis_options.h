@@ -22,14 +22,21 @@ sim::Scenario scenario_for_axes(const Options& options);
 /// @throws InputError for an axis that the machine lacks
 std::vector<int> chosen_joints(const Options& options, const sim::MachineSettings& machine);
 
-/// Value of an option that takes a number with a unit ("20 um"), in SI.
+/// The finite number that a whole text is, or nullopt.
+std::optional<double> plain_number(std::string_view text);
+
+/// Value of an option that takes a number with a unit ("20 um"), in SI. A bare number is in
+/// `bare_unit`, which the help of the option names.
 /// @throws InputError
 std::optional<double> quantity_option(const Options& options, const std::string& name,
-                                      sim::Quantity quantity);
+                                      sim::Quantity quantity, std::string_view bare_unit);
 
 /// The same, which must be > 0.
 std::optional<double> positive_option(const Options& options, const std::string& name,
-                                      sim::Quantity quantity);
+                                      sim::Quantity quantity, std::string_view bare_unit);
+
+/// Unit of a bare number where the quantity depends on other options: mm, mm/s, N; deg, deg/s, Nm.
+std::string_view bare_unit(sim::Quantity quantity);
 
 /// Value of an option that takes a bare number > 0.
 /// @throws InputError for anything else, NaN included

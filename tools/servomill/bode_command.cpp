@@ -85,9 +85,11 @@ sim::BodeSettings settings_of(const Options& options, const sim::MachineSettings
   const std::size_t method = choice_option(options, "method", kMethods);
   settings.measure = method < 2;
   settings.method = method == 1 ? sim::Method::multi_sine : sim::Method::sine;
-  settings.amplitude = positive_option(options, "amplitude", quantity_of(loop, joint));
+  const sim::Quantity fed_in = quantity_of(loop, joint);
+  settings.amplitude = positive_option(options, "amplitude", fed_in, bare_unit(fed_in));
   settings.velocity = quantity_option(
-      options, "velocity", joint < kLinearJoints ? sim::kVelocity : sim::kAngularVelocity);
+      options, "velocity", joint < kLinearJoints ? sim::kVelocity : sim::kAngularVelocity,
+      joint < kLinearJoints ? "mm/min" : "deg/min");
   const double v_max = machine.nc.v_max[joint];
   if (settings.velocity && v_max > 0.0 && std::abs(*settings.velocity) > v_max) {
     throw InputError(
@@ -256,10 +258,12 @@ int bode_command(const Arguments& arguments) {
                 "or none (exact only)");
   options.add()("amplitude", po::value<std::string>()->value_name("\"20 um\""),
                 "peak of what is fed in: a length (position), a velocity (velocity), a force "
-                "(compliance), angles and torques for a rotary axis (default: the velocity loop "
+                "(compliance), angles and torques for a rotary axis; bare numbers in mm, mm/s, N, "
+                "deg, deg/s, Nm (default: the velocity loop "
                 "asks for 2 % of the largest current)");
   options.add()("velocity", po::value<std::string>()->value_name("\"300 mm/min\""),
-                "steady velocity beneath, so that friction does not stick (default: 0 without "
+                "steady velocity beneath, so that friction does not stick; bare numbers in mm/min "
+                "or deg/min (default: 0 without "
                 "friction and backlash, else four times the velocity of the amplitude)");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
                 "writes the curves to a result file, for tools/plot.py");

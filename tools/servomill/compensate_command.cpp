@@ -129,8 +129,8 @@ sim::CompensateRequest request_of(const Options& options) {
   request.error_file = text_of(options, "errors");
   request.model = text_of(options, "model");
   request.changes = options.list("set");
-  request.tolerance = *positive_option(options, "tolerance", sim::kLength);
-  request.max_block = positive_option(options, "max-block", sim::kLength).value_or(0.0);
+  request.tolerance = *positive_option(options, "tolerance", sim::kLength, "um");
+  request.max_block = positive_option(options, "max-block", sim::kLength, "mm").value_or(0.0);
   request.splits_rapids = options.has("split-rapids");
   request.axes = static_cast<strategies::DisplacedAxes>(choice_option(options, "axes", kAxes));
   request.dialect = dialect_of(options);
@@ -187,9 +187,10 @@ int compensate_command(const Arguments& arguments) {
                 "before its extension; PROGRAM_compensated.h or .mpf for heidenhain, siemens, "
                 "O1234.nc for fanuc");
   options.add()("tolerance", text()->default_value("1 um")->value_name("\"1 um\""),
-                "by which the path may leave the exactly corrected one");
+                "by which the path may leave the exactly corrected one; a bare number is in um");
   options.add()("max-block", text()->value_name("\"1 mm\""),
-                "longest block where the correction varies; default: as long as the tolerance "
+                "longest block where the correction varies, bare numbers in mm; default: as long "
+                "as the tolerance "
                 "allows");
   options.add()("split-rapids", "corrects G0 on its way, too");
   options.add()("axes", text()->default_value("linear")->value_name("linear|all"),

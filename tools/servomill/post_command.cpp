@@ -10,17 +10,46 @@
 #include "sim/post_file.h"
 #include "sim/sweep/design.h"
 #include "sim/write_file.h"
-#include "tools/servomill/command.h"
+#include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {
 namespace {
 
-// The number of an option within bounds, both included.
-double number_option(const Options& options, const std::string& name, double least, double most) {
-  const double value = options.get<double>(name);
-  if (value >= least && value <= most) return value;
-  throw InputError({"--" + name},
-                   fmt::format("{:g}; must be >= {:g} and <= {:g}", value, least, most));
+// A whole number within bounds, both included.
+int whole_option(const Options& options, const std::string& name, int min, int max) {
+  const int value = options.get<int>(name);
+  if (value >= min && value <= max) return value;
+  throw InputError({"--" + name}, fmt::format("{}; must be >= {} and <= {}", value, min, max));
+}
+
+// A quantity from 0.001 to 1e9 of its unit.
+double bounded_option(const Options& options, const std::string& name, sim::Quantity quantity,
+                      std::string_view unit) {
+  constexpr double kMin = 1e-3, kMax = 1e9;
+  const double value = *quantity_option(options, name, quantity, unit);
+  const double in_unit = value / sim::parse_unit(unit).unit->factor;
+  if (in_unit >= kMin && in_unit <= kMax) return value;
+  throw InputError({"--" + name}, fmt::format("'{}' must be >= {:g} and <= {:g} {}",
+                                              options.get<std::string>(name), kMin, kMax, unit));
+}
+
+double length_option(const Options& options, const std::string& name) {
+  const double value = *quantity_option(options, name, sim::kLength, "mm");
+  if (value >= 0.0) return value;
+  throw InputError({"--" + name}, fmt::format("'{}' must be >= 0", options.get<std::string>(name)));
+}
+
+// "Z=400" or "400 mm": machine coordinate of Z.
+double retract_of(const Options& options) {
+  std::string text = options.get<std::string>("retract");
+  if (text.starts_with("Z=")) text = text.substr(2);
+  const auto bare = plain_number(text);
+  const sim::ScaledText scaled = sim::scale_text(text, sim::kLength);
+  if (bare) return *bare * mm;
+  if (scaled.complaint.empty()) return scaled.si;
+  throw InputError({"--retract"},
+                   fmt::format("'{}' must be a position of Z such as Z=400 or Z=\"400 mm\"",
+                               options.get<std::string>("retract")));
 }
 
 // "10,0,-5.5" in mm
@@ -66,39 +95,63 @@ std::string program_name(const Options& options) {
   return std::filesystem::path(options.word()).stem().string() + ".ngc";
 }
 
-sim::PostRequest request_of(const Options& options) {
-  constexpr double kLeast = 1e-3, kMost = 1e9;
+// Options that contradict each other.
+void refuse_contradictions(const Options& options) {
   if (!options.has("machine")) {
     throw InputError({"servomill post"}, "needs --machine M.toml; see --help");
   }
-  if (options.has("tcp") && options.has("classical")) {
-    throw InputError({"servomill post"}, "--tcp and --classical exclude each other");
+  constexpr std::array<std::array<const char*, 2>, 2> kPairs = {
+      {{"tcp", "classical"}, {"tools", "tool-length"}}};
+  for (const auto& [a, b] : kPairs) {
+    if (!options.has(a) || !options.has(b)) continue;
+    throw InputError({"servomill post"}, fmt::format("--{} and --{} exclude each other", a, b));
   }
-  if (options.has("tools") && options.has("tool-length")) {
-    throw InputError({"servomill post"}, "--tools and --tool-length exclude each other");
+}
+
+void read_approach(const Options& options, sim::PostRequest& request) {
+  constexpr std::array<std::string_view, 2> kApproaches = {"safe", "direct"};
+  request.options.approach =
+      static_cast<controllers::Approach>(choice_option(options, "approach", kApproaches));
+  if (request.options.approach == controllers::Approach::direct) {
+    for (const char* name : {"clearance", "retract"}) {
+      if (!options.has(name)) continue;
+      throw InputError({std::string("--") + name}, "means nothing to --approach direct");
+    }
   }
+  if (options.has("clearance")) {
+    request.options.safe.clearance = bounded_option(options, "clearance", sim::kLength, "mm");
+  }
+  if (options.has("retract")) request.retract_Z = retract_of(options);
+}
+
+sim::PostRequest request_of(const Options& options) {
+  refuse_contradictions(options);
   sim::PostRequest request;
   request.cl_file = options.word();
   request.machine_file = options.get<std::string>("machine");
   request.changes = options.list("set");
   if (options.has("tools")) request.tool_table = options.get<std::string>("tools");
-  if (options.has("tool-length")) {
-    request.tool_length = number_option(options, "tool-length", 0.0, kMost) * mm;
-  }
+  if (options.has("tool-length")) request.tool_length = length_option(options, "tool-length");
   if (options.has("start")) request.start = options.get<std::string>("start");
   controllers::PostOptions& post = request.options;
   post.mode = options.has("tcp")         ? controllers::PostMode::tip
               : options.has("classical") ? controllers::PostMode::locations
                                          : controllers::PostMode::joints;
-  post.tolerance.tip = number_option(options, "tolerance", kLeast, kMost) * um;
-  post.tolerance.axis = number_option(options, "axis-tolerance", kLeast, kMost) * urad;
-  if (options.has("feed")) post.feed = number_option(options, "feed", kLeast, kMost) * mm_per_min;
-  post.turn_rate = number_option(options, "turn-feed", kLeast, kMost) * deg_per_min;
-  if (options.has("part-zero")) {
-    post.part_zero = part_zero_of(options.get<std::string>("part-zero"));
+  post.tolerance.tip = bounded_option(options, "tolerance", sim::kLength, "um");
+  post.tolerance.axis = bounded_option(options, "axis-tolerance", sim::kAngle, "urad");
+  if (options.has("feed")) {
+    post.feed = bounded_option(options, "feed", sim::kVelocity, "mm/min");
   }
-  post.work_system = static_cast<int>(number_option(options, "work-system", 54, 59)) - 53;
-  if (options.has("tool")) post.tool = static_cast<int>(number_option(options, "tool", 1, 99999));
+  post.turn_rate = bounded_option(options, "turn-feed", sim::kAngularVelocity, "deg/min");
+  if (options.has("part-zero")) {
+    request.part_zero = part_zero_of(options.get<std::string>("part-zero"));
+  }
+  post.work_system = whole_option(options, "work-system", 54, 59) - 53;
+  if (options.has("tool")) {
+    post.tool = whole_option(options, "tool", 0, 99999);
+    request.has_no_tool = post.tool == 0;
+  }
+  read_approach(options, request);
   return request;
 }
 
@@ -112,37 +165,56 @@ int post_command(const Arguments& arguments) {
       "(GOTO, FEDRAT, RAPID, ...) or, named .csv, a table x,y,z,i,j,k[,feed].\n\n"
       "Between locations the tip goes straight and the tool axis on a great circle: points are\n"
       "inserted where the axes alone would leave the tolerance. The feed is that of the tip; each\n"
-      "block says how long it takes (G93). The first location is approached by a rapid.\n"
-      "Every location takes the axis positions nearest to those before, within the travel.",
+      "block says how long it takes (G93). Every location takes the axis positions nearest to "
+      "those\n"
+      "before, within the travel.\n\n"
+      "To the first location, after a tool change and across rapids on which the tool axis "
+      "changes:\n"
+      "Z to the height to retract to, rotary axes, spindle on, X and Y, Z to the clearance, and "
+      "along\n"
+      "the tool axis; back the same way. The program is read back and compared with the locations\n"
+      "before it is written. Bare numbers are in the unit that each option names.",
       "PART.cls");
   options.add()("machine,m", po::value<std::string>()->value_name("M.toml"), "machine file");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the machine, such as axis.A.centre_mm=[0,0,-150]");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.ngc"),
                 "program; - for standard output. Default: PART.ngc in the current folder");
-  options.add()(
-      "tolerance", po::value<double>()->default_value(1.0, "1")->value_name("UM"),
-      "by which the tip may leave the straight way, um: half of it for the chords between "
-      "inserted points, half for the NC to round corners (G64 P)");
+  options.add()("tolerance",
+                po::value<std::string>()->default_value("1 um")->value_name("\"1 um\""),
+                "by which the tip may leave the straight way (um): half of it for the chords "
+                "between inserted points, half for the NC to round corners (G64 P)");
   options.add()("axis-tolerance",
-                po::value<double>()->default_value(100.0, "100")->value_name("URAD"),
-                "by which the tool axis may leave its great circle, urad");
+                po::value<std::string>()->default_value("100 urad")->value_name("\"100 urad\""),
+                "by which the tool axis may leave its great circle (urad)");
   options.add()("classical", "one block a location, nothing between them");
   options.add()("tcp", "for an NC with tool-centre-point control: G43.4, X Y Z are the tip");
   options.add()("part-zero", po::value<std::string>()->value_name("X,Y,Z"),
                 "where the part's zero lies in the machine when the rotary axes are at zero, mm: "
-                "what the NC's work offset holds. Default: 0,0,0");
-  options.add()("work-system", po::value<double>()->default_value(54.0, "54")->value_name("54..59"),
+                "what the NC's work offset holds; needed with rotary axes unless --tcp");
+  options.add()("approach",
+                po::value<std::string>()->default_value("safe")->value_name("safe|direct"),
+                "safe as above; direct: one rapid of all axes to the first location, no retract");
+  options.add()("clearance", po::value<std::string>()->value_name("\"10 mm\""),
+                "distance from which the tool moves along its own axis (mm); default: 10 mm");
+  options.add()("retract", po::value<std::string>()->value_name("Z=400"),
+                "machine coordinate of Z to retract to (mm); default: axis.Z.retract_mm of the "
+                "machine file, or the upper end of the travel");
+  options.add()("work-system", po::value<int>()->default_value(54)->value_name("54..59"),
                 "G54 to G59");
   options.add()("tools", po::value<std::string>()->value_name("TABLE"),
                 "tool table in LinuxCNC's format, mm: lengths of the tools");
-  options.add()("tool-length", po::value<double>()->value_name("MM"), "length of every tool");
-  options.add()("tool", po::value<double>()->value_name("N"),
-                "tool of a file that loads none (LOADTL)");
-  options.add()("feed", po::value<double>()->value_name("F"),
-                "feed of the tip where the file gives none, mm/min");
-  options.add()("turn-feed", po::value<double>()->default_value(3600.0, "3600")->value_name("F"),
-                "of the tool axis where the tip stands still, deg/min");
+  options.add()(
+      "tool-length", po::value<std::string>()->value_name("\"110 mm\""),
+      "length of every tool (mm); this or --tools is needed with rotary axes unless --tcp");
+  options.add()("tool", po::value<int>()->value_name("N"),
+                "tool of a file that loads none (LOADTL); 0: no tool change, no G43");
+  options.add()("feed", po::value<std::string>()->value_name("\"300 mm/min\""),
+                "feed of the tip where the file gives none (mm/min)");
+  options.add()(
+      "turn-feed",
+      po::value<std::string>()->default_value("3600 deg/min")->value_name("\"3600 deg/min\""),
+      "of the tool axis where the tip stands still (deg/min)");
   options.add()("start", po::value<std::string>()->value_name("A=10,C=90"),
                 "axis positions near which the first location is sought; default: zero");
   options.add()("force,f", "replaces the program if it exists");
@@ -161,8 +233,8 @@ int post_command(const Arguments& arguments) {
     sim::write_text_file(name, posted.program, options.has("force"));
   }
   if (!options.has("quiet")) {
-    fmt::print(to_stdout ? stderr : stdout, "{}: {} locations, {} points between them\n", name,
-               posted.locations, posted.inserted);
+    fmt::print(to_stdout ? stderr : stdout, "{}: {} locations, {} points between them\n{}\n", name,
+               posted.locations, posted.inserted, posted.verified);
   }
   return kDone;
 }

@@ -55,8 +55,8 @@ sim::StepSettings settings_of(const Options& options, sim::StepKind kind, int jo
   sim::StepSettings settings;
   settings.kind = kind;
   const Units units = units_of(kind, joint);
-  settings.height =
-      quantity_option(options, "height", units.quantity).value_or(units.default_height);
+  settings.height = quantity_option(options, "height", units.quantity, bare_unit(units.quantity))
+                        .value_or(units.default_height);
   if (settings.height == 0.0) {
     throw InputError({"--height"},
                      fmt::format("'{}' must not be 0", options.get<std::string>("height")));
@@ -64,7 +64,7 @@ sim::StepSettings settings_of(const Options& options, sim::StepKind kind, int jo
   const double band = positive_number(options, "band");
   if (band >= 100.0) throw InputError({"--band"}, fmt::format("{:g}; must be < 100", band));
   settings.band = band / 100.0;
-  settings.duration = positive_option(options, "duration", sim::kTime).value_or(0.0);
+  settings.duration = positive_option(options, "duration", sim::kTime, "s").value_or(0.0);
   if (settings.duration > kLongestDuration) {
     throw InputError({"--duration"},
                      fmt::format("'{}' must be <= {:g} s", options.get<std::string>("duration"),
@@ -133,11 +133,12 @@ int step_command(const Arguments& arguments) {
                 "position, velocity, load or all");
   options.add()("height", po::value<std::string>()->value_name("\"0.1 mm\""),
                 "of the step, with --kind (default: 0.1 mm, 10 mm/s, 500 N; 0.02 deg, 1 deg/s, "
-                "50 Nm)");
+                "50 Nm); bare numbers are in these units");
   options.add()("band", po::value<double>()->default_value(2.0)->value_name("PERCENT"),
                 "settled within this share of the height, of the peak of a load step");
-  options.add()("duration", po::value<std::string>()->value_name("\"0.5 s\""),
-                "simulated after the step (default: 12 of the slowest time constant)");
+  options.add()(
+      "duration", po::value<std::string>()->value_name("\"0.5 s\""),
+      "simulated after the step, bare numbers in s (default: 12 of the slowest time constant)");
   options.add()("linear", "leaves friction, backlash, constant load, quantisation and limits away");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
                 "writes the signals to a result file, for tools/plot.py");

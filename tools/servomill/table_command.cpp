@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -67,13 +66,6 @@ const plant::ErrorModel& model_of(const Inputs& inputs, const Options& options, 
                                             did_you_mean(name, names), there_are));
 }
 
-std::optional<double> number_of(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
-
 // "X=..." of an option that may come once for each axis.
 struct AxisWord {
   int joint;
@@ -107,8 +99,8 @@ void read_axes(const Options& options, const sim::MachineSettings& machine,
     const auto [joint, range] = axis_word("travel", text, kTravelForm, machine);
     const auto colon = range.find(':');
     const bool split = colon != std::string_view::npos;
-    const auto from = split ? number_of(range.substr(0, colon)) : std::nullopt;
-    const auto to = split ? number_of(range.substr(colon + 1)) : std::nullopt;
+    const auto from = split ? plain_number(range.substr(0, colon)) : std::nullopt;
+    const auto to = split ? plain_number(range.substr(colon + 1)) : std::nullopt;
     if (!from || !to || !(*from < *to)) {
       throw InputError({"--travel"},
                        fmt::format("'{}'; must be {} with FROM < TO", text, kTravelForm));
@@ -118,7 +110,7 @@ void read_axes(const Options& options, const sim::MachineSettings& machine,
   }
   for (const std::string& text : options.list("at")) {
     const auto [joint, value] = axis_word("at", text, kAtForm, machine);
-    const auto position = number_of(value);
+    const auto position = plain_number(value);
     if (!position) throw InputError({"--at"}, fmt::format("'{}'; must be {}", text, kAtForm));
     place_of(joint).reference = *position * unit_of(joint);
   }
@@ -154,13 +146,13 @@ sim::TableRequest request_of(const Options& options, const sim::MachineSettings&
   request.format =
       static_cast<sim::TableFormat>(choice_option(options, "format", sim::kTableFormats));
   refuse_idle_options(options, machine, request.format);
-  request.tool_length = quantity_option(options, "tool-length", sim::kLength).value_or(0.0);
+  request.tool_length = quantity_option(options, "tool-length", sim::kLength, "mm").value_or(0.0);
   if (request.tool_length < 0.0) {
     throw InputError({"--tool-length"},
                      fmt::format("'{}' must be >= 0", options.get<std::string>("tool-length")));
   }
-  request.spacing = positive_option(options, "spacing", sim::kLength);
-  request.rotary_spacing = positive_option(options, "rotary-spacing", sim::kAngle);
+  request.spacing = positive_option(options, "spacing", sim::kLength, "mm");
+  request.rotary_spacing = positive_option(options, "rotary-spacing", sim::kAngle, "deg");
   if (options.has("max-points")) {
     const int points = options.get<int>("max-points");
     const std::size_t most = sim::rules_of(request.format).most_points;
@@ -229,10 +221,11 @@ int table_command(const Arguments& arguments) {
   options.add()("axis,a", po::value<std::string>()->default_value("all")->value_name("X,Y"),
                 "axes over which tables run");
   options.add()("spacing", po::value<std::string>()->value_name("\"5 mm\""),
-                "distance of the points of linear axes; otherwise 1, 2 or 5 x 10^n mm, heidenhain "
+                "distance of the points of linear axes, bare numbers in mm; otherwise 1, 2 or 5 x "
+                "10^n mm, heidenhain "
                 "2^n x 0.1 um: the smallest that gives 256 points or fewer (siemens: 200)");
   options.add()("rotary-spacing", po::value<std::string>()->value_name("\"5 deg\""),
-                "the same of rotary axes");
+                "the same of rotary axes, bare numbers in deg");
   options.add()("max-points", po::value<int>()->value_name("N"),
                 "points that the NC takes in one table: siemens as MD38000 and MD18342 say (200 "
                 "unless you say so), linuxcnc and heidenhain at most 256, csv 10000");
@@ -242,7 +235,7 @@ int table_command(const Arguments& arguments) {
                 "where an axis stands while the tables of others are made, in mm or deg; otherwise "
                 "the middle of travel (linear) or 0 (rotary)");
   options.add()("tool-length", po::value<std::string>()->value_name("\"110 mm\""),
-                "from the spindle nose to the tip, 0 unless given");
+                "from the spindle nose to the tip, 0 unless given; bare numbers in mm");
   options.add()("comp-file-type", po::value<int>()->value_name("0|1"),
                 "of linuxcnc: 0 positions reached (unless you say so), 1 trims");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),

@@ -28,7 +28,7 @@ sim::TuneSettings settings_of(const Options& options) {
   // what rounds to none
   settings.overshoot = std::max(overshoot, 0.01) / 100.0;
   if (options.has("bandwidth")) settings.bandwidth = positive_number(options, "bandwidth");
-  settings.wv_most = positive_option(options, "velocity-bandwidth", sim::kAngularVelocity);
+  settings.wv_most = positive_option(options, "velocity-bandwidth", sim::kAngularVelocity, "rad/s");
   settings.reset_ratio = positive_number(options, "reset-ratio");
   return settings;
 }
@@ -195,7 +195,7 @@ int tune_command(const Arguments& arguments) {
   options.add()("bandwidth", po::value<double>()->value_name("HZ"),
                 "of the closed position loop (-3 dB); Kv goes no higher than it needs");
   options.add()("velocity-bandwidth", po::value<std::string>()->value_name("\"300 rad/s\""),
-                "no more than this");
+                "no more than this; a bare number is in rad/s");
   options.add()("reset-ratio", po::value<double>()->default_value(4.0)->value_name("N"),
                 "reset time times velocity bandwidth");
   options.add()("json", "prints one JSON object an axis");
