@@ -100,6 +100,18 @@ std::optional<double> positive_option(const Options& options, const std::string&
   return value;
 }
 
+std::optional<double> retract_option(const Options& options) {
+  if (!options.has("retract")) return std::nullopt;
+  const auto& text = options.get<std::string>("retract");
+  const bool names_Z = text.size() > 2 && (text[0] == 'Z' || text[0] == 'z') && text[1] == '=';
+  if (names_Z) {
+    if (const auto value = plain_number(text.substr(2))) return *value * mm;
+    const sim::ScaledText scaled = sim::scale_text(text.substr(2), sim::kLength);
+    if (scaled.complaint.empty() && std::isfinite(scaled.si)) return scaled.si;
+  }
+  throw InputError({"--retract " + text}, "must be Z=NUMBER, a machine coordinate in mm");
+}
+
 std::string_view bare_unit(sim::Quantity quantity) {
   if (quantity == sim::kLength) return "mm";
   if (quantity == sim::kVelocity) return "mm/s";

@@ -38,6 +38,10 @@ std::optional<double> positive_option(const Options& options, const std::string&
 /// Unit of a bare number where the quantity depends on other options: mm, mm/s, N; deg, deg/s, Nm.
 std::string_view bare_unit(sim::Quantity quantity);
 
+/// Machine coordinate of Z that --retract names (m): "Z=400", "Z=400 mm".
+/// @throws InputError
+std::optional<double> retract_option(const Options& options);
+
 /// Value of an option that takes a bare number > 0.
 /// @throws InputError for anything else, NaN included
 double positive_number(const Options& options, const std::string& name);

@@ -83,19 +83,10 @@ std::string program_name(const Options& options) {
   return upper(name);
 }
 
-// "Z=-5": mm
-std::optional<double> retract_of(const Options& options) {
-  if (!options.has("retract")) return std::nullopt;
-  const auto& text = options.get<std::string>("retract");
-  const bool names_Z = text.size() > 2 && (text[0] == 'Z' || text[0] == 'z') && text[1] == '=';
-  const double value = names_Z ? sim::number_of(text.substr(2)) : std::nan("");
-  if (std::isfinite(value)) return value * mm;
-  throw InputError({"--retract " + text}, "must be Z=NUMBER, a machine coordinate in mm");
-}
-
 // A power of ten in mm, so that positions have whole digits.
 double resolution_of(const Options& options) {
-  const double resolution = positive_option(options, "resolution", sim::kLength).value_or(0.0);
+  const double resolution =
+      positive_option(options, "resolution", sim::kLength, "um").value_or(0.0);
   if (resolution == 0.0) return 0.0;
   const double digits = -std::log10(resolution / mm);
   if (std::abs(digits - std::round(digits)) < 1e-6 && digits > 1.5 && digits < 6.5) {
@@ -142,7 +133,7 @@ sim::CompensateRequest request_of(const Options& options) {
   request.program_name = program_name(options);
   request.program_number = program_number(options);
   request.resolution = resolution_of(options);
-  request.retract_Z = retract_of(options);
+  request.retract_Z = retract_option(options);
   request.preset = preset_of(options);
   request.records = options.has("record");
   return request;
@@ -202,8 +193,10 @@ int compensate_command(const Arguments& arguments) {
                 "default: axis.Z.retract_mm of the machine file");
   options.add()("program-number", text()->value_name("1234"),
                 "fanuc: number of the program; default: that of a file called 1234 or O1234");
-  options.add()("resolution", text()->value_name("\"1 um\""),
-                "other dialects: least step of a position; default: 1 um (IS-B), siemens 10 nm");
+  options.add()(
+      "resolution", text()->value_name("\"1 um\""),
+      "other dialects: least step of a position, bare numbers in um; default: 1 um (IS-B), "
+      "siemens 10 nm");
   options.add()("preset", text()->value_name("N"),
                 "heidenhain: activates this row of the preset table (cycle 247) as G54; default: "
                 "the active preset is G54");

@@ -39,19 +39,6 @@ double length_option(const Options& options, const std::string& name) {
   throw InputError({"--" + name}, fmt::format("'{}' must be >= 0", options.get<std::string>(name)));
 }
 
-// "Z=400" or "400 mm": machine coordinate of Z.
-double retract_of(const Options& options) {
-  std::string text = options.get<std::string>("retract");
-  if (text.starts_with("Z=")) text = text.substr(2);
-  const auto bare = plain_number(text);
-  const sim::ScaledText scaled = sim::scale_text(text, sim::kLength);
-  if (bare) return *bare * mm;
-  if (scaled.complaint.empty()) return scaled.si;
-  throw InputError({"--retract"},
-                   fmt::format("'{}' must be a position of Z such as Z=400 or Z=\"400 mm\"",
-                               options.get<std::string>("retract")));
-}
-
 // "10,0,-5.5" in mm
 Eigen::Vector3d part_zero_of(const std::string& text) {
   std::array<double, 3> values{};
@@ -121,7 +108,7 @@ void read_approach(const Options& options, sim::PostRequest& request) {
   if (options.has("clearance")) {
     request.options.safe.clearance = bounded_option(options, "clearance", sim::kLength, "mm");
   }
-  if (options.has("retract")) request.retract_Z = retract_of(options);
+  request.retract_Z = retract_option(options);
 }
 
 sim::PostRequest request_of(const Options& options) {

@@ -483,7 +483,7 @@ POST = [
           POST_IT + " --part-zero 1,2", POST_IT + " --part-zero 1,2,x", POST_IT + " --start Q=1", POST_IT + " --start A=10",
           POST_IT + " --start X=ten", POST_IT + " --work-system 60", POST_IT + " --feed -1", POST_IT + " --tool -1",
           POST_IT + " --approach sideways", POST_IT + " --clearance '0 mm'", POST_IT + " --retract up", POST_IT + " --retract Z=9999",
-          POST_IT + " --approach direct --retract Z=10", POST_IT + " --clearance '2 m'", POST_IT + " --retract 15",
+          POST_IT + " --approach direct --retract Z=10", POST_IT + " --clearance '2 m'", POST_IT + " --retract Z=15",
           POST_IT + " --tool-length '5 deg'", POST_IT + " --set structure=3", POST_IT + " --set axis.X.lead=3", write={"part.cls": RIGHT}),
     typed("a part and a tool that are nowhere on a machine with rotary axes", POST_IT, POST_IT + " --part-zero 0,0,0",
           write={"part.cls": RIGHT, "machine.toml": 'structure = "[w C\' A\' b X Y Z t]"\n'}),
