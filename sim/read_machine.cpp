@@ -310,7 +310,8 @@ MachineDescription read_machine_description(const std::string& path,
   MachineDescription out;
   out.has_drives = describes_drives(root);
   out.machine = out.has_drives ? read_machine(root, &out.errors) : read_geometry(root, &out.errors);
-  if (root.has("axis") && root.table("axis").has("Z")) {
+  const bool has_axes = out.machine.chain.layout != JointLayout{};  // not with a faulty structure
+  if (has_axes && root.has("axis") && root.table("axis").has("Z")) {
     Reader Z = root.table("axis").table("Z");
     if (Z.has(kRetractKey)) out.retract_Z = Z.real(kRetractKey, kLength);
   }

@@ -83,6 +83,7 @@ BodeResult bode(const MachineSettings& machine, int joint, Tick reading_delay,
   out.nyquist = nyquist_frequency(machine.nc.periods, settings.loop);
   out.time_constant = slowest_time_constant(machine, joint, reading_delay, loop);
   out.stable = std::isfinite(out.time_constant);
+  out.has_stable_velocity_loop = out.stable || velocity_spectral_radius(machine, joint) < 1.0;
   out.measured = settings.measure && out.stable;
   out.method = settings.method;
 

@@ -27,6 +27,7 @@ struct BodeResult {
   BodeLoop loop = BodeLoop::position;
   std::vector<BodeCurve> curves;
   bool stable = true;
+  bool has_stable_velocity_loop = true;  // without the position loop
   double time_constant = 0.0;  // s, slowest; infinite if unstable
   double nyquist = 0.0;        // Hz, half the rate of the loop
   Margins margins;             // of position and velocity

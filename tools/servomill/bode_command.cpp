@@ -147,7 +147,9 @@ void print_margins(const sim::BodeResult& result) {
   const sim::Margins& m = result.margins;
   const sim::ClosedLoop& c = result.closed;
   if (!result.stable) {  // distances to oscillation mean nothing
-    if (std::isfinite(m.reduction)) {
+    if (result.loop == sim::BodeLoop::position && !result.has_stable_velocity_loop) {
+      fmt::print("  the velocity loop inside is unstable: no Kv helps, lower velocity_bandwidth\n");
+    } else if (std::isfinite(m.reduction)) {
       fmt::print("  the gain must fall   by {:.2f} dB or more\n", decibel(m.reduction));
     }
     return;

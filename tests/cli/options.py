@@ -1,0 +1,102 @@
+#!/usr/bin/python3
+"""Quantities on the command line have one form in every command. options.py SERVOMILL"""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SERVOMILL = os.path.abspath(sys.argv.pop(1))
+SCENARIO = os.path.join(HERE, "gallery", "scenario.toml")
+MACHINE = os.path.join(HERE, "gallery", "machine.toml")
+PATIENCE = 60  # s, for one command: far more than any takes
+
+PART = "GOTO/0,0,10\nGOTO/5,0,10\nGOTO/5,0,10,0,0,1\nGOTO/5,7,10\n"
+PROGRAM = "G21 G90\nG0 X0 Y0 Z5\nG1 X10 F100\nG1 X300 Y200\nM2\n"
+TRUNNION = 'structure = "[w C\' A\' b X Y Z t]"\naxis.Z.travel_mm = [-300.0, 300.0]\n'
+TILTING = "GOTO/0,0,10,0.3,0.1,0.9\nGOTO/5,0,10,0.2,0.3,0.9\nGOTO/5,0,10,0.1,0.3,0.9\n"
+
+# command without the option, option, bare number, the same with its unit, another value that must matter
+POST = ["post", "part.cls", "-m", MACHINE, "-o", "-"]
+POST_5 = ["post", "tilt.cls", "-m", "trunnion.toml", "-o", "-", "--part-zero", "0,0,0", "--feed", "500", "--turn-feed", "900"]
+COMPENSATE = ["compensate", "cut.ngc", "-m", MACHINE, "--errors", "errors.toml", "--work-offset", "X=0,Y=0,Z=0", "-o", "-"]
+TABLE = ["table", SCENARIO, "--format", "siemens", "-f", "-o", "out"]
+TABLE_C = ["table", "--machine", "turning.toml", "--format", "csv", "-f", "-o", "out"]
+BODE = ["bode", SCENARIO, "-a", "Y", "--points", "2", "--from", "20", "--to", "40"]
+STEP = ["step", SCENARIO, "-a", "Y"]
+OPTIONS = [
+    (POST + ["--feed", "500"], "--tolerance", "3", "3 um", "5"),
+    (POST_5 + ["--tool-length", "0", "--tolerance", "1 mm"], "--axis-tolerance", "500", "500 urad", "90"),
+    (POST_5, "--tool-length", "80", "80 mm", "90"),
+    (POST, "--feed", "500", "500 mm/min", "0.6 m/min"),
+    (POST_5[:-2] + ["--tool-length", "0"], "--turn-feed", "1800", "1800 deg/min", "20 deg/s"),
+    (POST + ["--feed", "500"], "--clearance", "4", "4 mm", "5"),
+    (POST + ["--feed", "500"], "--retract", "Z=120", "Z=120 mm", "Z=130"),
+    (COMPENSATE, "--tolerance", "0.5", "0.5 um", "50"),
+    (COMPENSATE, "--max-block", "7", "7 mm", "9"),
+    (TABLE, "--spacing", "5", "5 mm", "8"),
+    (TABLE, "--tool-length", "50", "50 mm", "60"),
+    (TABLE_C, "--rotary-spacing", "5", "5 deg", "9"),
+    (BODE, "--amplitude", "0.02", "0.02 mm", "0.04"),
+    (BODE + ["--amplitude", "0.02 mm"], "--velocity", "300", "300 mm/min", "5 mm/s"),
+    (STEP + ["--kind", "position"], "--height", "0.2", "0.2 mm", "0.3"),
+    (STEP + ["--kind", "velocity"], "--height", "7", "7 mm/s", "9"),
+    (STEP + ["--kind", "load"], "--height", "300", "300 N", "400"),
+    (STEP + ["--kind", "position"], "--duration", "0.4", "0.4 s", "0.3"),
+    (["tune", SCENARIO, "-a", "Y"], "--velocity-bandwidth", "150", "150 rad/s", "120"),
+]
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        files = {"part.cls": PART, "tilt.cls": TILTING, "cut.ngc": PROGRAM, "trunnion.toml": TRUNNION,
+                 "errors.toml": "[errors.e]\nEXX = { polynomial_um = [0.0, 0.1, 0.0005] }\n",
+                 "turning.toml": TRUNNION + "axis.X.travel_mm = [0.0, 10.0]\naxis.Y.travel_mm = [0.0, 10.0]\n"
+                 "[errors.e]\nECC = { harmonic = { amplitude_urad = 30.0, period_deg = 90.0 } }\n"}
+        for name, text in files.items():
+            with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
+                file.write(text)
+
+    def servomill(self, *arguments):
+        done = subprocess.run([SERVOMILL, *arguments], capture_output=True, text=True, timeout=PATIENCE, check=False, cwd=self.folder)
+        return done.returncode, done.stdout, done.stderr
+
+    def outcome(self, *arguments):
+        """All that a command says and writes."""
+        status, said, faults = self.servomill(*arguments)
+        self.assertEqual(status, 0, (arguments, faults))
+        out = os.path.join(self.folder, "out")
+        written = {}
+        for name in sorted(os.listdir(out)) if os.path.isdir(out) else []:
+            with open(os.path.join(out, name), encoding="utf-8") as file:
+                written[name] = file.read()
+            os.remove(os.path.join(out, name))
+        return said, written
+
+    def test_bare_numbers_are_in_the_unit_of_the_option(self):
+        for command, option, bare, with_unit, other in OPTIONS:
+            with self.subTest(command=command[0], option=option):
+                first = self.outcome(*command, option, bare)
+                self.assertEqual(self.outcome(*command, option, with_unit), first)
+                self.assertNotEqual(self.outcome(*command, option, other), first)
+
+    def test_a_loop_that_its_own_gain_does_not_stabilise(self):
+        bode = ["bode", SCENARIO, "--axis", "Y", "--method", "none", "--points", "2", "--set",
+                "machine_override.nc.check_stability=false", "--set"]
+        falls, helps = "  the gain must fall ", "  the velocity loop inside is unstable: no Kv helps, lower velocity_bandwidth\n"
+        fast = 'machine_override.axis.Y.velocity_bandwidth="90000 rad/s"'
+        for loop, change, says, not_says in (("position", "machine_override.axis.Y.Kv=5000", falls, helps),
+                                             ("position", fast, helps, falls), ("velocity", fast, falls, helps)):
+            status, said, _ = self.servomill(*bode, change, "--loop", loop)
+            self.assertEqual(status, 1)
+            self.assertIn("UNSTABLE", said)
+            self.assertIn(says, said)
+            self.assertNotIn(not_says, said)
+
+
+if __name__ == "__main__":
+    unittest.main()
