@@ -250,19 +250,14 @@ void read_models(Reader& machine, const JointLayout& layout, ErrorModels* errors
 }
 
 // Keys that every drive needs: a file with one of them is that of a machine to simulate.
-bool describes_drives(Reader& machine) {
+bool describes_drives(const Document& machine) {
   constexpr std::array<std::string_view, 4> kNeeded = {"Kt", "load", "motor_inertia", "i_max_A"};
-  if (!machine.has("axis")) return false;
-  Reader axes = machine.table("axis");
-  for (const std::string& name : axes.keys()) {
-    if (!axes.is(name, Value::Type::table)) continue;
-    Reader axis = axes.table(name);
-    if (std::any_of(kNeeded.begin(), kNeeded.end(),
-                    [&](std::string_view key) { return axis.has(key); })) {
-      return true;
-    }
-  }
-  return false;
+  const Value* axes = machine.root().find("axis");
+  if (axes == nullptr) return false;
+  return std::any_of(axes->children.begin(), axes->children.end(), [&](const Value& axis) {
+    return std::any_of(kNeeded.begin(), kNeeded.end(),
+                       [&](std::string_view key) { return axis.find(key) != nullptr; });
+  });
 }
 
 // A machine file without drives: structure, travel, limits, errors.
@@ -308,7 +303,7 @@ MachineDescription read_machine_description(const std::string& path,
   for (const std::string& change : changes) document.set(change);
   Reader root(document);
   MachineDescription out;
-  out.has_drives = describes_drives(root);
+  out.has_drives = describes_drives(document);
   out.machine = out.has_drives ? read_machine(root, &out.errors) : read_geometry(root, &out.errors);
   const bool has_axes = out.machine.chain.layout != JointLayout{};  // not with a faulty structure
   if (has_axes && root.has("axis") && root.table("axis").has("Z")) {

@@ -39,7 +39,7 @@ OPTIONS = [
     (TABLE, "--tool-length", "50", "50 mm", "60"),
     (TABLE_C, "--rotary-spacing", "5", "5 deg", "9"),
     (BODE, "--amplitude", "0.02", "0.02 mm", "0.04"),
-    (BODE + ["--amplitude", "0.02 mm"], "--velocity", "300", "300 mm/min", "5 mm/s"),
+    (BODE + ["--amplitude", "0.02 mm"], "--velocity", "300", "300 mm/min", "6 mm/s"),
     (STEP + ["--kind", "position"], "--height", "0.2", "0.2 mm", "0.3"),
     (STEP + ["--kind", "velocity"], "--height", "7", "7 mm/s", "9"),
     (STEP + ["--kind", "load"], "--height", "300", "300 N", "400"),
