@@ -260,6 +260,57 @@ class Values(WithResults):
                 self.assertEqual(self.verdict_after(row_id, run, wrong_scenario, *wrong), verdicts.NOT_REPRODUCED)
 
 
+class Derived(WithResults):
+    """Numbers that no command prints, beside what they are by hand."""
+
+    ROWS = [{"case": case, "quantity": "trajectory_difference", "axis": axis, "sections": derived.PATHS, "value": value}
+            for case, axis, value in (("on", "X", 0.2), ("off", "X", 40.0), ("on", "Y", -0.7), ("off", "Y", math.nan))]
+
+    def of(self, function, **arguments):
+        return function(types.SimpleNamespace(compared=lambda _: self.ROWS), "r", **arguments)
+
+    def test_effectiveness_is_what_a_case_takes_away_of_another(self):
+        self.assertAlmostEqual(self.of(derived.effectiveness, case="on", generated="off", base="b", axis="X"), 99.5, delta=1e-12)
+        with self.assertRaises(files.NotInFile) as fault:
+            self.of(derived.effectiveness, case="on", generated="off", base="b", axis="Y")
+        self.assertEqual(str(fault.exception), "r holds no trajectory_difference of off, Y")
+
+    def test_the_largest_of_cases_and_axes_counts_magnitudes(self):
+        self.assertEqual(self.of(derived.largest_of, quantity="trajectory_difference", cases=["on"]), 0.7)
+        for cases, missing in ((["on", "gone"], "gone"), (["off"], "off")):
+            with self.assertRaises(files.NotInFile) as fault:
+                self.of(derived.largest_of, quantity="trajectory_difference", cases=cases)
+            self.assertEqual(str(fault.exception), f"r holds no trajectory_difference of {missing}")
+
+    def test_lengths_of_tool_axes_count_in_what_their_digits_allow(self):
+        length = math.sqrt(0.00639**2 + 0.036377**2 + 0.99927**2)
+        allowed = 0.5e-6 * 0.036377 + 0.5e-5 * 0.99927
+        self.assertAlmostEqual(derived.error_of_length(self.shared, "example1", 1), (1.0 - length) / allowed, delta=1e-9)
+        self.assertGreater(derived.error_of_length(self.shared, "example1", 2), 100.0)
+        for location in (1, 2):
+            self.assertLess(derived.error_of_length(self.shared, "example1_unit", location), 1.0)
+
+    def test_table_3_1_follows_to_the_printed_digit(self):
+        printed = 1000.0 * derived.table31()
+        found = [derived.error_at_point(self.shared, "example1_centre", k, "line") for k in range(1, 24)]
+        self.assertLess(np.abs(found - printed).max(), 0.05)
+        of_the_tip = [derived.error_at_point(self.shared, "example1_unit", k) for k in range(1, 24)]
+        self.assertAlmostEqual(np.sqrt(np.mean((of_the_tip - printed) ** 2)), 0.77, delta=0.005)   # um
+
+    def test_a_pass_above_another_one(self):
+        with self.assertRaises(files.NotInFile) as fault:
+            derived.height_of_pass(self.shared, "signal_delay", "direct", "plane semi-finishing", "plane")
+        self.assertEqual(str(fault.exception), "signal_delay holds no plane semi-finishing of direct")
+        self.assertEqual(derived.height_of_pass(self.shared, "signal_delay", "direct", "cruise", "cruise"), 0.0)
+
+
+class Digits(unittest.TestCase):
+    def test_are_as_many_as_the_tolerance_needs(self):
+        for value, tolerance, text in ((323.4767, 0.05, "323.48 um"), (972.9039, 1.2, "973 um"), (0.0391, 1.5, "0.0391 um"),
+                                       (1394.0, 0.0, "1394 um"), (0.0, 0.05, "0 um")):
+            self.assertEqual(report.judged(row(tolerance=tolerance), values.Value(value)).here(), text)
+
+
 class Accepted(unittest.TestCase):
     def test_is_told_by_meaning(self):
         for one, text in ((row(), "1.5 to 2.5"), (row(tolerance=0.0), "2"), (row(meaning="below", tolerance=0.0), "magnitude <= 2"),

@@ -72,18 +72,24 @@ class Segments:
         chord = tip[-1] - tip[0]
         return t * np.linalg.norm(chord), (tip - tip[0] - np.outer(t, chord)) * UM_PER_MM
 
-    def off_the_line(self):
-        """The same error where the axes are, perpendicular to the line between the posts: (way along the chord (mm), um).
-        Turned into the machine by the equations of the paper for its tables A and C."""
-        places = self.longest_error()
-        way, error = self.off_the_chord()
+    def in_machine(self, error, places):
+        """Vectors of the workpiece, turned into the machine by the equations of the paper for its tables C' A'; as they
+        are on other machines."""
+        if "C' A'" not in str(self.run.scenario.get("machine", {}).get("structure", "")):
+            return error
         A, C = np.radians(self.at(self.plain, "ref_rotary", "AC")[places]).T
         turned = np.sin(C) * error[:, 0] + np.cos(C) * error[:, 1]
-        axes = np.column_stack([np.cos(C) * error[:, 0] - np.sin(C) * error[:, 1],
+        return np.column_stack([np.cos(C) * error[:, 0] - np.sin(C) * error[:, 1],
                                 np.cos(A) * turned - np.sin(A) * error[:, 2],
                                 np.sin(A) * turned + np.cos(A) * error[:, 2]])
+
+    def off_the_line(self):
+        """The error of off_the_chord where the axes are, perpendicular to the line between the posts: (way along the
+        chord (mm), um)."""
+        places = self.longest_error()
+        way, error = self.off_the_chord()
         line = self.straight[places][-1] - self.straight[places][0]
-        return way, np.linalg.norm(np.cross(axes, line / np.linalg.norm(line)), axis=1)
+        return way, np.linalg.norm(np.cross(self.in_machine(error, places), line / np.linalg.norm(line)), axis=1)
 
 
 def _models(way, error):
@@ -97,7 +103,8 @@ def draw_distribution(run):
     segments = Segments(run)
     places = segments.longest_error()
     way = segments.chord(places)
-    errors = [("tip off the chord (joints go linearly)", segments.tip_error(segments.plain)[places]),
+    tip = segments.in_machine(segments.tip_error(segments.plain)[places], places)   # amplitudes as strategies take them
+    errors = [("tip off the chord (joints go linearly)", tip),
               ("posts off the line between the posts", segments.post_error(segments.post_exact)[places])]
     looks = [style.Look("error", style.BLACK, "-", "o"), style.Look("model a sin πt", style.BLUE, style.DASH, ""),
              style.Look("model 4 a t (1 − t)", style.RED, style.DASH_DOT, "")]
