@@ -2,18 +2,24 @@
 /// a control makes of a text, in machine coordinates. It knows the control's manuals only, and
 /// serves to verify programs that were written for this control.
 ///
-/// Sources: V seen, M from memory, to be confirmed before it is relied upon.
-///   [430]  TNC 426, TNC 430 user's manual: p. 108 feed of TOOL CALL, p. 153 helix, p. 468 formats
-///   (V) [476]  TNC 426 (280 476) user's manual: p. 192 M126, M94 (V) [472]  TNC 426B (280 472)
-///   ISO: p. 122 M91, M92 (V) [410]  TNC 410 user's manual: p. 79 CC, C, full circle, tolerance (V)
-///   [ISO]  TNC 410, 426, 430 ISO: p. 159 M136, p. 164 M116 (V)
-///   [530]  iTNC 530 user's manual: p. 520 M126, MP7682; 340 49x-04 ISO: p. 290 M128 (V)
-///   [PIL]  TNC 310 pilot: p. 8 pole, angle reference axes (V)
-///   [155]  TNC 155: p. 15 functions at the start and at the end of a block (V)
-///   [306]  TNC 306 technical manual: p. 4-99 MP7440, halt at M6 (V)
-///   [640]  TNC 640 ISO (34059x-05): p. 170 tool 0, p. 631 formats (V)
+/// Sources (V: seen; M: from memory, to be confirmed before it is relied upon):
+/// [430] TNC 426, TNC 430 user's manual: p. 108 feed, p. 153 helix, p. 468 formats (V)
+/// [476] TNC 426 (280 476) user's manual: p. 192 M126, M94 (V)
+/// [472] TNC 426B (280 472) ISO: p. 122 M91, M92 (V)
+/// [410] TNC 410 user's manual: p. 79 CC, C, full circle, tolerance (V)
+/// [ISO] TNC 410, 426, 430 ISO: p. 159 M136, p. 164 M116 (V)
+/// [530] iTNC 530 user's manual: p. 520 M126, MP7682; 340 49x-04 ISO: p. 290 M128 (V)
+/// [PIL] TNC 310 pilot: p. 8 pole, angle reference axes (V)
+/// [155] TNC 155: p. 15 functions at the start and at the end of a block (V)
+/// [306] TNC 306 technical manual: p. 4-99 MP7440, halt at M6 (V)
+/// [640] TNC 640 ISO (34059x-05): p. 170 tool 0, p. 631 formats (V)
 /// Everything else is M: cycles 7 to 11, 19, 32 and 247, PLANE RESET STAY, TRANS DATUM, M140, FT,
 /// FU, F of inch programs in 0.1 inch/min.
+///
+/// Assumptions, where no manual was found that says otherwise: M90, M103, M109, M110, M112, M118
+/// and M120 are off when a program starts; transformations and M functions of the control survive a
+/// tool change, while F, S, R0, the pole and all positions do not; F of a helix is along its path;
+/// the active preset at the start is number 1; the tool table holds the lengths of `ControlSetup`.
 #pragma once
 
 #include <string>
