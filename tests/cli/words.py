@@ -1,7 +1,9 @@
 #!/usr/bin/python3
-"""What the scenarios about statements of [G] say at their heads. words.py SERVOMILL"""
+"""What the scenarios about statements of [G] say at their heads, and what is identified with its intervals.
+words.py SERVOMILL"""
 import csv
 import json
+import math
 import os
 import subprocess
 import sys
@@ -102,15 +104,15 @@ class Words(unittest.TestCase):
         self.assertAlmostEqual(tip["off_centre"] - tip["off_centre_0"], 20.0, delta=0.6)
 
     def swept(self, name):
-        """Columns of a sweep of discriminating/, as numbers."""
-        done = self.servomill("sweep", os.path.join(SCENARIOS, "discriminating", name), "--quiet")
+        """Columns of a sweep below scenarios/, as numbers."""
+        done = self.servomill("sweep", os.path.join(SCENARIOS, name), "--quiet")
         self.assertEqual(done.returncode, 0, done.stderr)
         with open(self.out[:-3] + ".csv", encoding="utf-8", newline="") as file:
             rows = list(csv.DictReader(file))
         return {key.split(" [")[0]: [float(row[key]) for row in rows] for key in rows[0] if key not in ("status", "reason")}
 
     def test_another_gain_or_feed_forward_tells_where_a_table_enters(self):
-        found = self.swept("table_entry.toml")
+        found = self.swept("discriminating/table_entry.toml")
         gain, share = found["machine_nc_Kv"], found["machine_nc_velocity_feed_forward"]
         behind, fed = (found[case + "_imposed_curve_residual_Y_max_flank"] for case in ("behind_tap", "fed_forward"))
 
@@ -125,7 +127,7 @@ class Words(unittest.TestCase):
                               span(values, 0.5, 60, 90)), wanted)
 
     def test_a_step_of_the_table_tells_lag_dead_time_and_update_period_apart(self):
-        found = self.swept("table_step.toml")
+        found = self.swept("discriminating/table_step.toml")
 
         def span(case, window, statistic="mean"):
             values = found[f"{case}_trajectory_difference_Y_{statistic}_{window}_ms"]
@@ -136,6 +138,31 @@ class Words(unittest.TestCase):
                                            ("update", (2.3, 7.0), (19.3, 19.6), (10.1, 17.9))):
             self.assertEqual((span(case, "10_to_20"), span(case, "60_to_100"), span(case, "10_to_20", "max")),
                              (early, late, largest), case)
+
+    def test_what_experiment_1_identifies_has_an_interval_and_is_a_product(self):
+        scenario = os.path.join(SCENARIOS, "guevel2025", "experiment1.toml")
+        for Kv, response, period, brought_out in ((63.4, 41.2, 62.0, 96.0), (73.0, 43.3, 62.0, 96.5), (86.8, 45.5, 62.0, 97.0),
+                                                  (73.0 * 62.0 / 80.0, 43.3 * 80.0 / 62.0, 80.0, 96.5)):
+            done = self.servomill("run", scenario, "--json", "--set", f"machine_override.nc.Kv={Kv} 1/s",
+                                  "--set", f"case.table.strategy.response_time_ms={response}",
+                                  "--set", f"errors.imposed.EYX.harmonic.period_mm={period}")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            found = {(row["case"], row["quantity"], row["axis"]): row["value"] for row in map(json.loads, done.stdout.splitlines())}
+            self.assertAlmostEqual(found["feedback", "brought_out", "Y"], brought_out, delta=0.06)
+            self.assertAlmostEqual(found["table", "imposed_curve_residual", "Y"], 20.0, delta=0.1)
+
+    def test_block_length_and_friction_leave_what_the_README_of_the_sweeps_says(self):
+        found = self.swept("sweeps/blocks_friction.toml")
+        residual = {(length, force): value for length, force, value in
+                    zip(found["case_gcode_strategy_max_block_mm"], found["machine_axis_Y_friction_coulomb"],
+                        found["gcode_imposed_curve_residual_Y_max_flank"])}
+        for length, row in ((0.5, (0.1, 2.4, 3.6, 5.4)), (1.0, (0.2, 2.1, 3.4, 5.2)), (2.0, (0.8, 1.8, 3.1, 5.0)),
+                            (3.2, (1.9, 1.9, 2.8, 4.7)), (4.0, (3.0, 3.0, 3.0, 4.3))):
+            self.assertEqual(tuple(round(residual[length, force], 1) for force in (0.45, 112.5, 225.0, 450.0)), row)
+        curvature = 0.150 * (2.0 * math.pi / 62.0) ** 2
+        length = 186.0 / math.ceil(186.0 / 3.2)           # mm, of equal blocks
+        chord = curvature * length**2 / 8.0 * 1000.0      # um
+        self.assertAlmostEqual(residual[3.2, 0.45], chord, delta=0.01)
 
 
 if __name__ == "__main__":
