@@ -125,6 +125,7 @@ void Interpreter::Machine::stop_compensation() {
   Compensation& compensation = state_.compensation;
   if (compensation.is_entered) {
     end_queue_at(state_.in_plane(state_.position));
+    compensation.left_at = state_.to_account(state_.position);
     state_.position = state_.programmed();
     compensation.refuses_arc = true;
   }
@@ -156,6 +157,7 @@ void Interpreter::Machine::compensate(MoveKind kind, const PlaneMove& path, cons
 
   const double s_begin = state_.s;
   state_.s += length;
+  compensation.left_at.reset();
   state_.position = state_.with_plane(end, made.move.end);
   compensation.programmed = path.end;
   compensation.is_entered = true;

@@ -33,6 +33,8 @@ struct Compensation {
   HeldMove last_front;                   // of the queue before this one
   std::optional<Eigen::Vector2d> begin;  // where the front of the queue begins, if known
   bool refuses_arc = false;              // G40, and no straight move since
+  /// Where G40 has left the tool, as `to_account`; until the next motion. M6 goes on from there.
+  std::optional<AxisWords> left_at;
 
   bool acts() const { return is_on && cutter.radius > 0.0; }
   const HeldMove& front() const { return queue.empty() ? last_front : queue.front().path; }

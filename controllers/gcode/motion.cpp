@@ -267,6 +267,7 @@ void Interpreter::Machine::move_to(MoveKind kind, const AxisWords& end, double l
                                    double feed) {
   const double s_begin = state_.s;
   state_.s += length;
+  state_.compensation.left_at.reset();
   state_.position = end;
   Move& move = emit(kind);
   set_feed(move, feed);

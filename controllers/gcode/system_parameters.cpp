@@ -71,6 +71,9 @@ std::optional<double> Interpreter::Machine::system_name(std::string_view name) c
     }
     if (name[1] >= 'u' && name[1] <= 'w') return 0.0;  // axes that there are not
   }
+  if (name.size() == 6 && name.starts_with("_abs_")) {
+    if (const auto axis = axis_of(name[5])) return machine_now(0)[index_of(*axis)] / unit_of(*axis);
+  }
   using Read = double (*)(const Machine&);
   // sorted by name. Source: LinuxCNC 2.9, "Predefined Named Parameters"
   static constexpr auto kNames = std::to_array<std::pair<std::string_view, Read>>({

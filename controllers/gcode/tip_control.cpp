@@ -59,6 +59,7 @@ AxisWords Interpreter::Machine::machine_now(int column) const {
 }
 
 void Interpreter::Machine::stand_at(const AxisWords& machine, int column) {
+  state_.compensation.left_at.reset();
   if (!state_.controls_tip()) {
     state_.position = state_.from_account(machine);
     return;
