@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "plant/vocabulary/byte_order_mark.h"
+
 namespace servomill::sim {
 
 std::string read_file(const std::string& path, const Place& at, std::string_view what,
@@ -13,6 +15,8 @@ std::string read_file(const std::string& path, const Place& at, std::string_view
   std::string why;
   std::string text = read_input(path, most, why);
   if (!why.empty()) fail(why);
+  // a part may be binary
+  if (what != "part" && text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
   return text;
 }
 

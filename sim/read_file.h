@@ -10,7 +10,7 @@
 
 namespace servomill::sim {
 
-/// The bytes of a file.
+/// The bytes of a file, without a byte-order mark (UTF-8).
 /// @param at    where the file was named; without a file name: the file itself
 /// @param what  "program", "machine", ...
 /// @param most  bytes that it may hold

@@ -370,7 +370,8 @@ void Interpreter::Machine::change_tool() {
     emit_spindle();
   }
   if (state_.selected_tool >= 0) state_.tool = state_.selected_tool;
-  if (const std::optional<AxisWords> at = std::exchange(state_.compensation.left_at, std::nullopt)) {
+  if (const std::optional<AxisWords> at =
+          std::exchange(state_.compensation.left_at, std::nullopt)) {
     state_.position = state_.from_account(*at);
   }
   emit(MoveKind::tool).number = state_.tool;

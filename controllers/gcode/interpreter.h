@@ -30,7 +30,8 @@
 ///
 /// Different from LinuxCNC on purpose: a change of unit under cutter compensation leaves feeds and
 /// the test against gouging as they are (there, what waits for the next move is scaled wrongly); M6
-/// takes over where the tool is after G40, and leaves any other position as it is; M48 ... M53 only set parameters like
+/// takes over where the tool is after G40, and leaves any other position as it is; M48 ... M53 only
+/// set parameters like
 /// #<_feed_override>, since no operator turns the override; Q of G64
 /// is accepted and unused (it allows, and does not ask for, the merging of short lines); words in
 /// the block of M98 other than P and L are warned of; M99 behind other words is refused in a

@@ -35,6 +35,8 @@ std::uint8_t class_of(char c) { return kClasses[static_cast<unsigned char>(c)]; 
 
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
+bool is_of_utf_16(char first) { return first == '\xFF' || first == '\xFE'; }
+
 std::string shown(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return byte >= 0x20 && byte < 0x7f ? fmt::format("'{}'", c) : fmt::format("byte 0x{:02X}", byte);
@@ -79,7 +81,10 @@ void check_characters(std::string_view line, const std::string& file, int number
         fail(i, "')' without '('");
         break;
       case kForbidden:
-        fail(i, fmt::format("{} is not allowed outside comments", shown(line[i])));
+        fail(i, fmt::format("{} is not allowed outside comments{}", shown(line[i]),
+                            number == 1 && i == 0 && is_of_utf_16(line[i])
+                                ? "; the file seems to be UTF-16: save it as UTF-8"
+                                : ""));
         break;
       default:
         break;

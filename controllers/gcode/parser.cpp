@@ -422,7 +422,7 @@ void Parser::real(std::string_view what) {
   } else if (accept("#")) {
     parameter(OpCode::numbered, OpCode::named);
   } else if (is_letter(peek())) {
-    function();
+    function(what);
   } else {
     const double x = number(what);
     emit(OpCode::push, here, x);
@@ -481,13 +481,16 @@ int Parser::name_in_angles(std::string_view what) {
   return static_cast<int>(block_->names.size()) - 1;
 }
 
-void Parser::function() {
+void Parser::function(std::string_view what) {
   const std::size_t start = cursor_.at();
   const int here = column();
   const std::string name = take_letters(cursor_);
   const Function* found = nullptr;
   for (const Function& f : kFunctions) {
     if (f.name == name) found = &f;
+  }
+  if (found == nullptr && name.size() == 1) {  // the letter of the next word
+    fail(start, fmt::format("a value is expected after {}, not the word {}", what, name));
   }
   if (found == nullptr) {
     fail(start, fmt::format("unknown function '{}'{}", name, did_you_mean(name, kFunctionNames)));

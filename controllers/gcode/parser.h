@@ -71,7 +71,7 @@ class Parser {
   double number(std::string_view what);
   void parameter(OpCode numbered, OpCode named);
   int name_in_angles(std::string_view what);
-  void function();
+  void function(std::string_view what);
   void bracketed();
   void expression(int loosest);
 

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <utility>
 
+#include "plant/vocabulary/byte_order_mark.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/user_file.h"
@@ -34,6 +35,7 @@ ProgramText ProgramText::of_text(std::string text, std::string file) {
   out.file_ = std::move(file);
   out.buffer_ = std::move(text);
   out.at_end_ = true;
+  out.skip_byte_order_mark();
   return out;
 }
 
@@ -44,6 +46,7 @@ ProgramText ProgramText::of_file(const std::string& path) {
   out.reader_ = std::make_unique<Reader>(Reader{open_input(path, why)});
   if (!why.empty()) throw InputError({path}, fmt::format("cannot be read: {}", why));
   if (!out.refill()) out.fail();
+  out.skip_byte_order_mark();
   return out;
 }
 
@@ -109,9 +112,15 @@ void ProgramText::skip_to_line_end() {
   }
 }
 
+// LinuxCNC refuses such a program.
+void ProgramText::skip_byte_order_mark() {
+  if (base_ == 0 && at_ == 0 && buffer_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+}
+
 void ProgramText::seek(std::uint64_t offset) {
   if (offset >= base_ && offset <= base_ + buffer_.size()) {
     at_ = static_cast<std::size_t>(offset - base_);
+    skip_byte_order_mark();
     return;
   }
   buffer_.clear();
@@ -121,6 +130,7 @@ void ProgramText::seek(std::uint64_t offset) {
   if (::fseeko(reader_->file.get(), static_cast<off_t>(offset), SEEK_SET) != 0 || !refill()) {
     fail();
   }
+  skip_byte_order_mark();
 }
 
 }  // namespace servomill::controllers

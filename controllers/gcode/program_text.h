@@ -14,7 +14,8 @@ inline bool is_blank(std::string_view line) {
 }
 
 /// Hands out the lines of a text or of a file, and goes back to a line that it has handed out. Of
-/// a file it holds a piece of constant size, however long the file is.
+/// a file it holds a piece of constant size, however long the file is. A byte-order mark (UTF-8) at
+/// the begin is left out.
 class ProgramText {
  public:
   /// Where a line begins.
@@ -57,6 +58,7 @@ class ProgramText {
   bool refill();
   void seek(std::uint64_t offset);
   void skip_to_line_end();
+  void skip_byte_order_mark();
 
   std::string file_;
   std::string buffer_;      // of a text: all of it

@@ -116,10 +116,33 @@ const Name* find_name(Quantity quantity) {
   return nullptr;
 }
 
-std::string unknown_symbol(std::string_view word) {
+// The one symbol that is nearest to a word; empty if several are: "mn" may be mm, m, min or ms.
+std::string_view nearest_symbol(std::string_view word) {
   std::vector<std::string_view> names;
   for (const Symbol& symbol : kSymbols) names.push_back(symbol.name);
-  return fmt::format("unknown unit '{}'{}", word, did_you_mean(word, names));
+  const std::string_view nearest = nearest_name(word, names);
+  std::erase(names, nearest);
+  const std::string_view next = nearest_name(word, names);
+  const std::array both = {next, nearest};  // of equals the first is taken
+  const bool is_unique = next.empty() || nearest_name(word, both) == nearest;
+  return is_unique ? nearest : std::string_view();
+}
+
+std::string unknown_symbol(std::string_view word) {
+  const std::string_view nearest = nearest_symbol(word);
+  return fmt::format("unknown unit '{}'{}", word,
+                     nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+}
+
+// "m, mm, um, nm, inch": the symbols of a quantity that has some of its own.
+std::string symbols_of(Quantity quantity) {
+  std::string out;
+  if (quantity == kNumber) return out;  // um/m are numbers, too
+  for (const Symbol& symbol : kSymbols) {
+    if (symbol.quantity == quantity)
+      out += fmt::format("{}{}", out.empty() ? "" : ", ", symbol.name);
+  }
+  return out;
 }
 
 void multiply(Unit& unit, const Symbol& symbol, int exponent) {
@@ -289,6 +312,13 @@ ScaledText scale_text(std::string_view text, Quantity quantity) {
   if (!split) return {0.0, {}, expected()};
   if (split->unit.empty()) return {0.0, {}, "has no unit; " + expected()};
   ParsedUnit parsed = parse_unit(split->unit);
+  const bool is_product = split->unit.find_first_of(" /^") != std::string_view::npos;
+  if (!parsed.unit && !is_product && nearest_symbol(split->unit).empty()) {
+    const std::string symbols = symbols_of(quantity);
+    if (!symbols.empty()) {
+      parsed.complaint += fmt::format("; {} is in {}", name_of(quantity), symbols);
+    }
+  }
   if (!parsed.unit) return {0.0, {}, parsed.complaint};
   if (parsed.unit->quantity != quantity) {
     return {0.0,

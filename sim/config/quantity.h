@@ -60,7 +60,7 @@ struct Unit {
   double factor = 1.0;  // SI = value * factor
 };
 
-/// What a text says: a unit, or why it is none ("unknown unit 'mn'; did you mean 'mm'?").
+/// What a text says: a unit, or why it is none ("unknown unit 'mmm'; did you mean 'mm'?").
 struct ParsedUnit {
   std::optional<Unit> unit;
   std::string complaint;

@@ -29,10 +29,23 @@ TEST(ErrorGallery, Characters) {
   EXPECT_EQ(fault_of("G0 X1" + std::string(247, ' ')), "");
 }
 
+TEST(ErrorGallery, Encodings) {
+  EXPECT_EQ(
+      fault_of("\xFF\xFEG"),
+      "p.nc:1:1: error: byte 0xFF is not allowed outside comments; the file seems to be UTF-16: "
+      "save it as UTF-8");
+  EXPECT_EQ(fault_of("G0\n\xFF"), "p.nc:2:1: error: byte 0xFF is not allowed outside comments");
+  EXPECT_EQ(fault_of("\xEF\xBB\xBFG0 Q"),
+            "p.nc:1:5: error: a value is expected after Q, not the end of the line");
+}
+
 TEST(ErrorGallery, Values) {
   expect_gallery({
       {"G0 X", "1:5: error: a value is expected after X, not the end of the line"},
-      {"G0 XY1", "1:5: error: unknown function 'Y'"},
+      {"G0 XY1", "1:5: error: a value is expected after X, not the word Y"},
+      {"Y F100", "1:3: error: a value is expected after Y, not the word F"},
+      {"#1=F3", "1:4: error: a value is expected after =, not the word F"},
+      {"X[1+Y2]", "1:5: error: a value is expected after '[' or an operator, not the word Y"},
       {"G0 X.", "1:5: error: a value is expected after X, not the end of the line"},
       {"G0 X1.2.3", "1:8: error: a second decimal point in one number"},
       {"G0 X[1+2", "1:5: error: '[' is not closed; ']' is missing"},

@@ -41,6 +41,20 @@ TEST(ProgramText, AFileReadsLikeItsText) {
   EXPECT_EQ(lines_of(ProgramText::of_text("a\n\nb", "p.nc")), (Lines{"a", "", "b"}));
 }
 
+TEST(ProgramText, LeavesOutAByteOrderMark) {
+  const TempFile file("\xEF\xBB\xBF%\na\n");
+  ProgramText program = ProgramText::of_file(file.path());
+  for (int pass = 0; pass < 2; ++pass) {
+    std::string_view line;
+    ASSERT_TRUE(program.next(line));
+    EXPECT_EQ(line, "%");
+    program.rewind();
+  }
+  EXPECT_EQ(lines_of(ProgramText::of_text("\xEF\xBB\xBF", "p.nc")), Lines{});
+  EXPECT_EQ(lines_of(ProgramText::of_text("a\n\xEF\xBB\xBFG0", "p.nc")),
+            (Lines{"a", "\xEF\xBB\xBFG0"}));
+}
+
 TEST(ProgramText, GoesBackToAnyLineOfALongFile) {
   std::string text;
   for (int i = 1; i <= 50'000; ++i) text += "line " + std::to_string(i) + "\n";

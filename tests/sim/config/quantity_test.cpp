@@ -67,6 +67,16 @@ TEST(ParseUnit, NamesTheNearestSymbolOfAnUnknownOne) {
   EXPECT_EQ(parse_unit("mm/mins").complaint, "unknown unit 'mins'; did you mean 'min'?");
 }
 
+TEST(ParseUnit, GuessesNothingWhereSeveralSymbolsAreAsNear) {
+  EXPECT_EQ(parse_unit("mn").complaint, "unknown unit 'mn'");
+  EXPECT_EQ(scale_text("5 mn", kLength).complaint,
+            "unknown unit 'mn'; a length is in m, mm, um, nm, inch");
+  EXPECT_EQ(scale_text("5 mn", kTime).complaint,
+            "unknown unit 'mn'; a time is in s, ms, us, min, h");
+  EXPECT_EQ(scale_text("5 mn", kStiffness).complaint, "unknown unit 'mn'");
+  EXPECT_EQ(scale_text("5 1/mn", kRate).complaint, "unknown unit 'mn'");
+}
+
 TEST(ParseUnit, RefusesWhatIsNoProduct) {
   for (const std::string_view text : {"", "m/", "/s", "m//s", "m^", "m^0", "m^12", "m s ", "2 m"}) {
     EXPECT_FALSE(parse_unit(text).unit) << "'" << text << "'";
