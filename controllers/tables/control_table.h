@@ -26,8 +26,8 @@ struct ControlTable {
   Axis base_axis = Axis::X;
   Axis compensated_axis = Axis::X;
   std::vector<TablePoint> points = {};  // at least two, in order of position
-  bool is_one_turn = false;        // the control takes positions into 0 to 360 deg
-  bool repeats = false;            // positions are taken into the range of the table
+  bool is_one_turn = false;             // the control takes positions into 0 to 360 deg
+  bool repeats = false;                 // positions are taken into the range of the table
 
   /// Displacement added to the command (m, rad).
   /// @param direction  1: towards larger positions, -1: towards smaller ones

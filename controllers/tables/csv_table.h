@@ -13,9 +13,9 @@ namespace servomill::controllers {
 /// One error over the position of its axis, by its name of ISO 230-1 or ISO 230-7.
 struct ErrorColumn {
   std::string file;
-  std::string name = {};           // "EXX"
-  Axis base_axis = Axis::X;        // of the first column
-  int direction = 0;               // of travel: 1 up, -1 down, 0 both
+  std::string name = {};                // "EXX"
+  Axis base_axis = Axis::X;             // of the first column
+  int direction = 0;                    // of travel: 1 up, -1 down, 0 both
   std::vector<TablePoint> points = {};  // `up` and `down` both hold the error; m, rad
 };
 

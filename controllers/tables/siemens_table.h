@@ -17,11 +17,12 @@ namespace servomill::controllers {
 ///   - point k lies at MIN + k STEP; MAX is the last point, k from 0 to (MAX - MIN) / STEP
 ///   - $AA_ENC_COMP: a value is the error of the axis; a positive one moves it in the negative
 ///     direction (SINUMERIK 808D Function Manual, 01/2017, page 106)
-///   - $AN_CEC: a value is added to the setpoint of OUTPUT_AXIS; tables of the same axes add up
+///   - $AN_CEC: a value is added to the setpoint of OUTPUT_AXIS as a function of the setpoint of
+///     INPUT_AXIS; tables of the same axes add up; constant beyond MIN and MAX (page 248)
 ///   - $AN_CEC_DIRECTION: 0 both directions of travel of INPUT_AXIS, 1 the positive, -1 the
 ///     negative one (page 249)
 ///   - IS_MODULO 1: the table repeats; its first and last values are then the same (page 249)
-///   - values in mm or deg; constant beyond MIN and MAX otherwise
+///   - values in mm or deg
 ///
 /// A point, and every variable of a table, must be assigned: the control otherwise keeps what it
 /// held before. Machine axes are called X1, Y1, ...

@@ -142,6 +142,21 @@ void add_omitted(const TableExport& e, std::vector<std::string>& out) {
   }
 }
 
+// SINUMERIK 828D: eight tables of $AN_CEC, which cannot be extended (6FC5397-1BP40-3BA1, page 264).
+void add_table_count(const TableExport& e, std::vector<std::string>& out) {
+  constexpr int kTables = 8;
+  if (e.request.format != TableFormat::siemens) return;
+  int count = 0;
+  for (const CompensationTable& table : e.tables) {
+    const bool is_cross = table.output != table.line.joint;
+    count += table.depends_on_direction() ? 2 : static_cast<int>(is_cross);
+  }
+  if (count <= kTables) return;
+  out.push_back(
+      fmt::format("note: {} tables of $AN_CEC; a SINUMERIK 828D has {}: choose axes with --axis",
+                  count, kTables));
+}
+
 void add_notes(const TableExport& e, std::vector<std::string>& out) {
   for (const CompensationTable& table : e.tables) {
     if (!table.line.one_turn || table.line.wraps || table.component) continue;
@@ -163,6 +178,7 @@ void add_notes(const TableExport& e, std::vector<std::string>& out) {
     }
   }
   add_omitted(e, out);
+  add_table_count(e, out);
   if (!e.rules().power_of_two) return;
   for (const TableLine& line : e.lines) {
     const double exponent = std::log2(line.spacing / kGridStep);

@@ -201,9 +201,41 @@ Example siemens_modulo() {
            {Axis::C, Axis::C, 765.0, -1, -2.0}}};
 }
 
+// The first points of the examples of the manuals: compensation values of X1 (6FC5397-1BP40-3BA1,
+// page 242), and of X1 over Y1 (SINUMERIK 802D sl, 6FC5397-1CP10-5BA0, page 222).
+Example siemens_manuals() {
+  return {"SINUMERIK, manuals",
+          [] {
+            return read_siemens_tables(
+                std::vector<TableText>{
+                    {"AX_EEC.INI",
+                     "%_N_AX_EEC_INI\nCHANDATA(1)\n"
+                     "$AA_ENC_COMP[0,0,X1]=0.003 ; 1st value: +3 um\n$AA_ENC_COMP[0,1,X1]=0.01\n"
+                     "$AA_ENC_COMP[0,2,X1]=0.012\n$AA_ENC_COMP_STEP[0,X1]=1.0\n"
+                     "$AA_ENC_COMP_MIN[0,X1]=-200.0\n$AA_ENC_COMP_MAX[0,X1]=-198.0\n"
+                     "$AA_ENC_COMP_IS_MODULO[0,X1]=0\nM17\n"},
+                    {"NC_CEC.INI",
+                     "%_N_NC_CEC_INI\nCHANDATA(1)\n$AN_CEC[0,0]=0\n$AN_CEC[0,1]=0.01\n"
+                     "$AN_CEC[0,2]=0.012\n$AN_CEC_INPUT_AXIS[0]=(Y1)\n"
+                     "$AN_CEC_OUTPUT_AXIS[0]=(X1)\n$AN_CEC_STEP[0]=6.73\n$AN_CEC_MIN[0]=-400.0\n"
+                     "$AN_CEC_MAX[0]=-386.54\n$AN_CEC_DIRECTION[0]=0\n"
+                     "$AN_CEC_MULT_BY_TABLE[0]=0\n$AN_CEC_IS_MODULO[0]=0\nM17\n"}},
+                200);
+          },
+          {{Axis::X, Axis::X, -250.0, 1, -3.0},
+           {Axis::X, Axis::X, -199.5, 1, -6.5},
+           {Axis::X, Axis::X, -199.0, -1, -10.0},
+           {Axis::X, Axis::X, -198.5, 1, -11.0},
+           {Axis::Y, Axis::X, -450.0, 1, 0.0},
+           {Axis::Y, Axis::X, -396.635, 1, 5.0},
+           {Axis::Y, Axis::X, -393.27, -1, 10.0},
+           {Axis::Y, Axis::X, -389.905, 1, 11.0},
+           {Axis::Y, Axis::X, 0.0, 1, 12.0}}};
+}
+
 std::vector<Example> examples() {
-  return {linuxcnc_positions(), linuxcnc_trims(), heidenhain(),
-          heidenhain_rotary(),  siemens(),        siemens_modulo()};
+  return {linuxcnc_positions(), linuxcnc_trims(), heidenhain(), heidenhain_rotary(), siemens(),
+          siemens_modulo(),     siemens_manuals()};
 }
 
 TEST(ControlTable, ReadersAgreeWithTheExamplesWorkedOutByHand) {
@@ -212,7 +244,7 @@ TEST(ControlTable, ReadersAgreeWithTheExamplesWorkedOutByHand) {
     EXPECT_EQ(differences(example.read(), example), std::vector<std::string>{});
     positions += example.expected.size();
   }
-  EXPECT_EQ(positions, 48U);
+  EXPECT_EQ(positions, 57U);
 }
 
 // Each wrong rule changes what was read; the examples of a control must notice.

@@ -391,6 +391,19 @@ TEST(VerifyTables, WhatAControlCannotHoldIsReported) {
             "both directions are held by X over X, Y over X");
 }
 
+TEST(VerifyTables, MoreTablesThanASmallSinumerikHasAreReported) {
+  plant::ErrorModel errors = reversal_of_x();
+  for (const char* name : {"EXX", "EYX", "EZX", "EXY", "EYZ"}) {
+    errors.component(*plant::error_name_of(name)) =
+        plant::polynomial({0.0, 1e-4}) + plant::reversal({2.0 * um}, 0.1 * mm);
+  }
+  const auto lines = report(
+      export_tables(machine_of("[w X b Y Z t]"), errors, three_points(TableFormat::siemens)));
+  const std::string note =
+      "note: 10 tables of $AN_CEC; a SINUMERIK 828D has 8: choose axes with --axis";
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), note), 1);
+}
+
 // --- axes without an error of their own
 
 // Squareness alone: Y inclined by 200 urad is shorter by 200e-6^2 / 2 of 0.6 m, 12 nm. Neither X
