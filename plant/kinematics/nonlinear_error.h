@@ -16,7 +16,7 @@
 ///
 ///   harmonic    eps(t) = a sin(pi t)         (equation 3.3)
 ///   parabolic   eps(t) = 4 a t (1 - t)       e has a constant second derivative to leading order,
-///                                            so this is what the sine stands for
+///                                            so the sine approximates this
 ///
 /// Compensation takes eps away from the interpolated points (equation 3.4). With
 /// joint_interpolation the tip then keeps to the chord. Its amplitude is taken in the machine, as

@@ -111,7 +111,7 @@ class Words(unittest.TestCase):
             rows = list(csv.DictReader(file))
         return {key.split(" [")[0]: [float(row[key]) for row in rows] for key in rows[0] if key not in ("status", "reason")}
 
-    def test_another_gain_or_feed_forward_tells_where_a_table_enters(self):
+    def test_another_gain_or_feed_forward_shows_where_a_table_enters(self):
         found = self.swept("discriminating/table_entry.toml")
         gain, share = found["machine_nc_Kv"], found["machine_nc_velocity_feed_forward"]
         behind, fed = (found[case + "_imposed_curve_residual_Y_max_flank"] for case in ("behind_tap", "fed_forward"))
@@ -126,7 +126,7 @@ class Words(unittest.TestCase):
             self.assertEqual((span(values, 1.0, 60, 90), span(values, 1.0, 30, 50), span(values, 1.0, 90, 140),
                               span(values, 0.5, 60, 90)), wanted)
 
-    def test_a_step_of_the_table_tells_lag_dead_time_and_update_period_apart(self):
+    def test_a_step_of_the_table_distinguishes_lag_dead_time_and_update_period(self):
         found = self.swept("discriminating/table_step.toml")
 
         def span(case, window, statistic="mean"):

@@ -1,4 +1,4 @@
-"""Table 3.1 of X. Li (2024) beside the error of the same segment here, in micrometres."""
+"""Table 3.1 of X. Li (2024) compared with the error of the same segment here, in micrometres."""
 import numpy as np
 
 from figures import nonlinear, style

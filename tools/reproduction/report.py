@@ -23,7 +23,7 @@ class Line:
         return quantity(self.value.number, self.row.unit, self._digits())
 
     def _digits(self):
-        # as many as tell whether the value lies within its tolerance
+        # as many as show whether the value is within its tolerance
         number, tolerance = abs(self.value.number), self.row.tolerance
         if not tolerance or not number:
             return 3
