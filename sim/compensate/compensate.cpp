@@ -170,6 +170,7 @@ DialectSettings dialect_settings(const CompensateRequest& request,
   settings.program_number = request.program_number;
   settings.resolution = resolution_of(request);
   settings.preset = request.preset;
+  settings.smoothing = request.smoothing;
   const auto retract = request.retract_Z ? request.retract_Z : described.retract_Z;
   if (!retract) {
     throw InputError({"--retract"},
@@ -190,6 +191,9 @@ DialectSettings dialect_settings(const CompensateRequest& request,
 std::unique_ptr<ProgramWriter> writer_of(const CompensateRequest& request,
                                          const MachineDescription& described, Walk& walk,
                                          Summary& summary) {
+  if (request.dialect == Dialect::linuxcnc && request.smoothing > 0.0) {
+    throw InputError({"--smoothing"}, "is for other controls; LinuxCNC takes G64 P in the program");
+  }
   if (request.dialect != Dialect::linuxcnc) {
     return std::make_unique<DialectWriter>(walk, summary, dialect_settings(request, described),
                                            request.program_file);
@@ -242,6 +246,7 @@ Compensated compensate(const CompensateRequest& request) {
 
   Summary& summary = out.summary;
   summary.reversal_distance = correction.longest_reversal();
+  summary.smoothing = request.smoothing;
   summary.assumed = assumptions(request, known, summary, layout);
   for (std::string& clause : writer->assumptions()) {
     out.warnings.push_back({{request.program_file}, "assumes that " + clause});

@@ -27,6 +27,7 @@ struct CompensateRequest {
   std::string program_name;         // other dialects: as the file is called, without extension
   int program_number = 0;           // Fanuc: O; 0: not given
   double resolution = 0.0;          // m, of positions in other dialects; 0: the usual one
+  double smoothing = 0.0;           // m, tolerance of the control's smoothing; 0: as the control is
   std::optional<double> retract_Z;  // m, machine coordinate; absent: that of the machine's file
   std::optional<int> preset;        // Heidenhain: number of the preset
   ProgramInputs inputs;             // of the program; `machine` is the one above

@@ -54,6 +54,16 @@ void DialectPrinter::comment(std::string_view text) {
   put_comment(text);
 }
 
+void DialectPrinter::begin_smoothing() {
+  if (settings_.smoothing > 0.0 && !smooths_) put_smoothing(true);
+  smooths_ = settings_.smoothing > 0.0;
+}
+
+void DialectPrinter::end_smoothing() {
+  if (smooths_) put_smoothing(false);
+  smooths_ = false;
+}
+
 void DialectPrinter::assume(std::string clause) {
   if (std::find(assumptions_.begin(), assumptions_.end(), clause) == assumptions_.end()) {
     assumptions_.push_back(std::move(clause));

@@ -113,8 +113,10 @@ class DialectPrinter {
   virtual void dwell(double seconds) = 0;
   virtual void stop(int code) = 0;  // 0, 1
   virtual void end() = 0;           // M30
-  /// Ends what must not be in force at a tool change and at the end.
-  virtual void end_smoothing() {}
+  /// The control's smoothing of short blocks, where it is wanted: not in force at tool changes,
+  /// stops, machine positions and the end.
+  void begin_smoothing();
+  void end_smoothing();
 
   /// The whole text, numbered.
   virtual std::string text() const = 0;
@@ -124,6 +126,7 @@ class DialectPrinter {
 
  protected:
   virtual void put_comment(std::string_view text) = 0;
+  virtual void put_smoothing(bool is_on) = 0;
   void put(std::string line) { lines_.push_back(std::move(line)); }
   void assume(std::string clause);
   void warn(std::string sentence);
@@ -136,6 +139,7 @@ class DialectPrinter {
   bool is_inch_ = false;
 
  private:
+  bool smooths_ = false;
   std::vector<std::string> assumptions_, warnings_;
 };
 

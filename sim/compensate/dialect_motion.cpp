@@ -42,6 +42,7 @@ void DialectWriter::write_reference(const Move& move, const Block& block, bool i
     return;
   }
   restate_spindle_and_coolant();
+  printer_->end_smoothing();
   bool is_at_reference = false;
   if (is_G28) {
     is_at_reference = printer_->reference_Z();
@@ -59,9 +60,15 @@ void DialectWriter::write_path_mode(const Block& block, const Move& move) {
   // a canned cycle follows its path exactly, whatever is in force
   const bool is_of_cycle =
       block.request != nullptr && controllers::is_canned_cycle(block.request->motion_code());
-  if (path == path_ || !says_path_ || is_of_cycle) return;
-  printer_->path_mode(move.path_mode, move.path_tolerance);
-  path_ = path;
+  const bool is_exact = says_path_ && !is_of_cycle && move.path_mode != PathMode::continuous;
+  if (is_exact) printer_->end_smoothing();
+  if (path != path_ && says_path_ && !is_of_cycle) {
+    // the tolerance of smoothing takes the place of G64's
+    const double tolerance = settings_.smoothing > 0.0 ? 0.0 : move.path_tolerance;
+    printer_->path_mode(move.path_mode, tolerance);
+    path_ = path;
+  }
+  if (!is_exact && move.kind != MoveKind::rapid) printer_->begin_smoothing();
 }
 
 DialectMotion DialectWriter::motion_of(const Block& block, const Step& step) const {
@@ -230,7 +237,8 @@ void DialectWriter::write_step(const Block& block, const Step& given) {
   DialectMotion motion = motion_of(block, given);
   AxisWords origin = AxisWords::Zero();  // of work coordinates without rotation and shift
   if (!motion.is_place) origin = block.state->work_offset + block.state->tool_offset;
-  write_path_mode(block, *given.move);
+  if (motion.is_place) printer_->end_smoothing();
+  if (!motion.is_place) write_path_mode(block, *given.move);
   const Step step = takes_arcs(motion, given, origin) ? given : walk_.without_arcs(given);
   AxisWords at = walk_.out() - origin;
   for (const FittedBlock& fitted : step.blocks) {

@@ -214,6 +214,7 @@ void DialectWriter::write_other(const Move& move, const Block& block, std::size_
 
 // The operator may have jogged behind it.
 void DialectWriter::write_stop(int number) {
+  printer_->end_smoothing();
   printer_->stop(number == 1 ? 1 : 0);
   if (coolant_ != 0) known_coolant_.reset();
   forget_positions();
@@ -232,6 +233,7 @@ void DialectWriter::write_end() {
 // Macros of builders move axes, stop the coolant and leave modes behind.
 void DialectWriter::change_tool(int number, const Block& block) {
   tool_ = number;
+  printer_->end_smoothing();
   printer_->tool(number, rpm_, block.state->work_system);
   if (coolant_ != 0) known_coolant_.reset();
   path_.clear();

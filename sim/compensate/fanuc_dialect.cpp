@@ -39,6 +39,13 @@ class Fanuc final : public IsoDialect {
   }
   void put_comment(std::string_view text) override { put(fmt::format("({})", plain(text, true))); }
 
+  // In a block of its own; its tolerance is the control's (B-63944EN, AI contour control; M)
+  void put_smoothing(bool is_on) override {
+    put(is_on ? "G5.1 Q1" : "G5.1 Q0");
+    warn(fmt::format("G5.1 Q1 has no tolerance: set the control's to {:g} mm",
+                     settings_.smoothing / mm));
+  }
+
   bool takes_arc(const DialectMotion& motion, bool) const override {
     return !motion.names(Axis::Z) || modes_.length == motion.length;
   }
@@ -85,7 +92,6 @@ class Fanuc final : public IsoDialect {
   }
   void preselect(int tool) override { put(fmt::format("T{}", tool)); }
   void tool(int number, double, int system) override {
-    end_smoothing();
     put(fmt::format("T{} M6", number));
     assume("T and M6 in one block change the tool, T first");
     forget_modes();

@@ -45,6 +45,11 @@ class Heidenhain final : public DialectPrinter {
 
   bool takes_arc(const DialectMotion&, bool) const override { return true; }
 
+  // Cycle 32 without a tolerance takes that of the machine (M).
+  void put_smoothing(bool is_on) override {
+    path_mode(PathMode::continuous, is_on ? settings_.smoothing : 0.0);
+  }
+
   // A helix turns by an angle about CC (TNC 430 p. 153).
   void turn_by_angle(const DialectMotion& motion, const AxisWords& begin,
                      AxisWords& end) const override {

@@ -29,6 +29,12 @@ class Siemens final : public IsoDialect {
     put(fmt::format("MSG(\"{}\")", plain(text, false)));
   }
 
+  // CYCLE832(tolerance, kind, orientation tolerance): 6FC5398-2EP40-0BA0 p. 1108
+  void put_smoothing(bool is_on) override {
+    put(is_on ? fmt::format("CYCLE832({},1,1)", fixed_text(settings_.smoothing / mm, 5))
+              : "CYCLE832(0,0,1)");
+  }
+
   // Tool length acts on G0, G1, POLY and POS only: no arc in a block that changes it (W1 p. 13).
   bool takes_arc(const DialectMotion& motion, bool) const override {
     return !motion.names(Axis::Z) || modes_.length == edge(motion);

@@ -197,6 +197,10 @@ int compensate_command(const Arguments& arguments) {
       "resolution", text()->value_name("\"1 um\""),
       "other dialects: least step of a position, bare numbers in um; default: 1 um (IS-B), "
       "siemens 10 nm");
+  options.add()("smoothing", text()->value_name("\"10 um\""),
+                "other dialects: switches the control's smoothing on for feeds (G5.1 Q1, CYCLE832, "
+                "cycle 32) with this tolerance; short blocks run faster, and the path leaves the "
+                "corrected one by as much");
   options.add()("preset", text()->value_name("N"),
                 "heidenhain: activates this row of the preset table (cycle 247) as G54; default: "
                 "the active preset is G54");

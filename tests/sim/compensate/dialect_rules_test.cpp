@@ -288,5 +288,49 @@ TEST(DialectRules, RotaryAxesBesideLinearOnesFeedByTime) {
   EXPECT_NE(trial.run().program.find("PLANE RESET STAY"), std::string::npos);
 }
 
+TEST(DialectRules, SmoothingHoldsForFeedsOnly) {
+  const auto smoothed = [](Dialect dialect) {
+    Trial trial = dialect_trial(dialect, kStart +
+                                             "G0 X1 Y1\nZ5\nG1 Z-1 F100\nX2\nG0 Z40\nG53 G0 Z0\n"
+                                             "G0 X5\nZ5\nG1 X9\nM2\n");
+    trial.request.smoothing = 10e-6;
+    const Compensated done = trial.run();
+    EXPECT_EQ(done.report[2],
+              "smoothing: the control may leave the corrected path by 10 um at corners of short "
+              "blocks");
+    const std::string text = body(trial);
+    return text.substr(text.find("G54") == std::string::npos ? 0 : text.find("Z5"));
+  };
+  EXPECT_EQ(smoothed(Dialect::fanuc),
+            "Z5.\n"
+            "G5.1 Q1\n"
+            "G1 Z-1. F100.\n"
+            "X2.\n"
+            "G0 Z40.\n"
+            "G5.1 Q0\n"
+            "G90 G49 G53 G0 Z0.\n"
+            "X5.\n"
+            "G43 H1 Z5.\n"
+            "G5.1 Q1\n"
+            "G1 X9.\n"
+            "G5.1 Q0\n");
+  EXPECT_EQ(smoothed(Dialect::siemens),
+            "Z5\n"
+            "CYCLE832(0.01,1,1)\n"
+            "G1 Z-1 F100\n"
+            "X2\n"
+            "G0 Z40\n"
+            "CYCLE832(0,0,1)\n"
+            "SUPA G0 Z0 D0\n"
+            "X5\n"
+            "D1 Z5\n"
+            "CYCLE832(0.01,1,1)\n"
+            "G1 X9\n"
+            "CYCLE832(0,0,1)\n");
+  EXPECT_NE(smoothed(Dialect::heidenhain)
+                .find("CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.01\nL Z-1 F100\n"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace servomill::sim
