@@ -51,7 +51,10 @@ void FanucMachine::run_dwell() {
   const FanucWord* P = word('P');
   const int at = column(Group::one_shot);
   if ((X == nullptr) == (P == nullptr)) fail(at, "G4 takes either X or P");
-  if (block_->words.size() > 2) fail(at, "G4 with other words");
+  for (const FanucWord& one : block_->words) {
+    const bool is_own = one.letter == 'G' || one.letter == 'X' || one.letter == 'P';
+    if (!is_own) fail(one.column, fmt::format("{} in a block with G4", one.letter));
+  }
   if (!modes_.feed_mode || *modes_.feed_mode == FeedMode::units_per_revolution) {
     fail(at, "G4 while neither G93 nor G94 is in force depends on No. 3405#1 (DWL)");
   }

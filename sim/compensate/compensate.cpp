@@ -24,6 +24,7 @@
 #include "sim/read_machine.h"
 #include "sim/scenario.h"
 #include "sim/sweep/design.h"
+#include "sim/verification/verification.h"
 
 namespace servomill::sim {
 namespace {
@@ -184,6 +185,10 @@ DialectSettings dialect_settings(const CompensateRequest& request,
                      "file gives none");
   }
   const JointLayout& layout = described.machine.chain.layout;
+  settings.axes.clear();
+  for (const Axis axis : kAllAxes) {
+    if (layout.joint_of(axis)) settings.axes.push_back(axis);
+  }
   settings.has_rotary_axes = layout.has(kLinearJoints) || layout.has(kLinearJoints + 1);
   return settings;
 }
@@ -206,6 +211,40 @@ std::string path_line(const CompensateRequest& request) {
       fmt::format("path within {:g} um of the corrected one", request.tolerance / um);
   if (request.dialect == Dialect::linuxcnc) return line;
   return fmt::format("{}, positions rounded to {:g} um", line, resolution_of(request) / um);
+}
+
+// Reads the written program back and compares it with the original.
+VerificationReport verify(const CompensateRequest& request, const MachineDescription& described,
+                          const WorkKnowledge& known, const WalkOptions& options,
+                          const std::string& written, Correction& correction) {
+  constexpr double kTurnDecimals = 1e-6 * deg;
+  VerificationRequest out;
+  out.original_file = request.program_file;
+  out.setup = known.setup;
+  out.dialect = request.dialect;
+  out.layout = described.machine.chain.layout;
+  out.is_start_known = options.is_start_known;
+  const bool is_linuxcnc = request.dialect == Dialect::linuxcnc;
+  std::array<bool, controllers::kWorkSystems> is_known{};
+  is_known.fill(!known.depends_on_place);
+  for (const int system : known.work_systems) is_known[static_cast<std::size_t>(system - 1)] = true;
+  out.control = control_setup(known.setup, is_known, options.is_start_known);
+  if (request.dialect == Dialect::heidenhain && request.preset && *request.preset >= 1 &&
+      *request.preset <= controllers::kWorkSystems) {
+    const auto G54 = out.control.work_offset.front();
+    out.control.work_offset.fill(std::nullopt);
+    out.control.work_offset[static_cast<std::size_t>(*request.preset - 1)] = G54;
+  }
+  ComparisonLimits& limits = out.limits;
+  limits.tolerance = options.fit.tolerance;
+  limits.tolerance_turn = options.fit.tolerance_turn;
+  limits.grid =
+      is_linuxcnc ? std::pow(10.0, -decimals_for(request.tolerance)) * mm : resolution_of(request);
+  limits.grid_turn = is_linuxcnc ? kTurnDecimals : resolution_of(request) / mm * deg;
+  limits.corrects_rapids = options.splits_rapids;
+  limits.is_linuxcnc = is_linuxcnc;
+  limits.retract = request.retract_Z ? request.retract_Z : described.retract_Z;
+  return verify_program(written, out, correction);
 }
 
 }  // namespace
@@ -262,7 +301,11 @@ Compensated compensate(const CompensateRequest& request) {
   for (const std::string& one : writer->warnings()) header.push_back("warning: " + one);
   out.program = writer->finish(header);
 
+  const VerificationReport verified =
+      verify(request, described, known, options, out.program, correction);
+
   out.report = summary.report(layout);
+  out.report.push_back(verified.text());
   for (const std::string& one : unrolled(summary)) out.report.push_back(one);
   for (const std::string& one : summary.assumed) out.report.push_back("assumed: " + one);
   out.warnings.insert(out.warnings.end(), interpreter.warnings().begin(),

@@ -29,13 +29,14 @@ inline constexpr std::array<std::string_view, 4> kDialects = {"linuxcnc", "heide
 /// What a program for another control needs beside its moves.
 struct DialectSettings {
   Dialect dialect = Dialect::fanuc;
-  std::string name;              // of the program, as its file is called
-  int program_number = 0;        // Fanuc: O
-  double resolution = 1e-6;      // m; a power of ten
-  double retract_Z = 0.0;        // m, machine coordinate
-  bool has_rotary_axes = false;  // of the machine
-  std::optional<int> preset;     // Heidenhain: number in the preset table that is activated
-  double smoothing = 0.0;        // m, tolerance of the control's smoothing; 0: not set
+  std::string name;                                      // of the program, as its file is called
+  int program_number = 0;                                // Fanuc: O
+  double resolution = 1e-6;                              // m; a power of ten
+  double retract_Z = 0.0;                                // m, machine coordinate
+  bool has_rotary_axes = false;                          // of the machine
+  std::vector<Axis> axes = {Axis::X, Axis::Y, Axis::Z};  // of the machine
+  std::optional<int> preset;  // Heidenhain: number in the preset table that is activated
+  double smoothing = 0.0;     // m, tolerance of the control's smoothing; 0: not set
 };
 
 /// An arc in the XY plane, or a helix.

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kShortestShare = 1e-3;     // of a move, for the time of blocks that lead to it
 constexpr double kLeastSweep = 1e-3 * deg;  // of an arc, and of what it lacks of a full circle
+constexpr double kSamePlace = 1e-9;         // m: the same digits
 constexpr double kMostRadiusError = 5e-6;   // m, between begin and end of an arc
 constexpr double kMostTurnOff = 0.25 * std::numbers::pi;  // rad: farther off, an arc goes round
 
@@ -176,7 +177,8 @@ std::optional<DialectArc> DialectWriter::arc_of(const Step& step, const FittedBl
   const double full = 2.0 * std::numbers::pi, sign = wanted > 0.0 ? 1.0 : -1.0;
   double sweep = sign * std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
   if (sweep < 0.0) sweep += full;
-  const bool is_closed = (end - begin).cwiseAbs().maxCoeff() < 0.5 * grid * unit;
+  // a helix of Heidenhain's ends beside the grid: a circle after it would not be closed
+  const bool is_closed = (end - begin).cwiseAbs().maxCoeff() < kSamePlace;
   if (is_closed) sweep = full;
   if (!is_closed && (sweep < kLeastSweep || sweep > full - kLeastSweep)) return std::nullopt;
   if (std::abs(sweep - std::abs(wanted)) > kMostTurnOff) return std::nullopt;
@@ -204,7 +206,12 @@ bool DialectWriter::takes_arcs(const DialectMotion& motion, const Step& step,
       one.arc = arc_of(step, fitted, origin, at, target);
       if (!one.arc || !printer_->takes_arc(one, one.names(Axis::Z))) return false;
     }
-    at = target;
+    if (fitted.arc) name_end(one, target);
+    const AxisWords begin = at;
+    for (const auto& [axis, value] : one.words) at[index_of(axis)] = target[index_of(axis)];
+    if (!fitted.arc) continue;
+    printer_->turn_by_angle(one, begin, at);
+    if ((at - target).head<2>().norm() > settings_.resolution) return false;
   }
   return true;
 }

@@ -3,6 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <string>
 
 #include "controllers/gcode/number_text.h"
@@ -25,16 +27,22 @@ class Heidenhain final : public DialectPrinter {
   void begin(const std::vector<std::string>& header) override {
     put(fmt::format("BEGIN PGM {} MM", settings_.name));
     for (const std::string& line : header) comment(line);
+    put("CYCL DEF 7.0 DATUM SHIFT");
+    for (std::size_t i = 0; i < settings_.axes.size(); ++i) {
+      put(fmt::format("CYCL DEF 7.{} {}+0", i + 1, letter(settings_.axes[i])));
+    }
     for (const char* line :
-         {"CYCL DEF 7.0 DATUM SHIFT", "CYCL DEF 7.1 X+0", "CYCL DEF 7.2 Y+0", "CYCL DEF 7.3 Z+0",
-          "CYCL DEF 8.0 MIRROR IMAGE", "CYCL DEF 8.1", "CYCL DEF 10.0 ROTATION",
+         {"CYCL DEF 8.0 MIRROR IMAGE", "CYCL DEF 8.1", "CYCL DEF 10.0 ROTATION",
           "CYCL DEF 10.1 ROT+0", "CYCL DEF 11.0 SCALING", "CYCL DEF 11.1 SCL 1"}) {
       put(line);
     }
     if (settings_.has_rotary_axes) {
       put("PLANE RESET STAY");
       put("M129");
+      put("M127");  // rotary axes as programmed, not on the shorter path
+      put("M117");  // F of rotary axes in deg/min: TNC 410, 426, 430 ISO manual p. 164
     }
+    put("M137");  // feeds per minute: TNC 410, 426, 430 ISO manual p. 159
     if (settings_.preset) {
       put("CYCL DEF 247 DATUM SETTING");
       put(fmt::format("Q339=+{} ; DATUM NUMBER", *settings_.preset));
@@ -62,6 +70,7 @@ class Heidenhain final : public DialectPrinter {
   void motion(const DialectMotion& motion) override {
     check_positions(motion, kMostPosition);
     if (!motion.is_place) check_frame(motion);
+    check_rotation(motion);
     if (motion.arc) put("CC" + words({{Axis::X, motion.arc->x}, {Axis::Y, motion.arc->y}}));
     std::string text = motion.arc ? arc_text(motion) : "L" + words(motion.words);
     if (motion.arc) add_word(text, motion.arc->is_counter_clockwise ? "DR+" : "DR-");
@@ -97,6 +106,7 @@ class Heidenhain final : public DialectPrinter {
     has_R0_ = false;
     F_.reset();
     tool_ = number;
+    rotary_.clear();
     direction_ = 0;
   }
   void spindle(int direction, double rpm, bool is_named) override {
@@ -192,6 +202,22 @@ class Heidenhain final : public DialectPrinter {
     }
   }
 
+  // From a half turn on, some controls take the shorter path (MP7682, iTNC 530 manual p. 520).
+  void check_rotation(const DialectMotion& motion) {
+    constexpr double kHalfTurn = 180.0;
+    for (const auto& [axis, value] : motion.words) {
+      if (is_linear(axis)) continue;
+      const auto before = rotary_.find(axis);
+      if (before != rotary_.end() && std::abs(value - before->second) >= kHalfTurn) {
+        throw Unsayable{
+            fmt::format("rotates {} by {:g} deg in one block, for which some controls take the "
+                        "shorter path; divide it",
+                        letter(axis), std::abs(value - before->second))};
+      }
+      rotary_[axis] = value;
+    }
+  }
+
   std::string feed_word(const DialectMotion& motion) {
     if (motion.is_rapid) return "FMAX";
     if (motion.feed_mode == FeedMode::inverse_time) {
@@ -199,9 +225,11 @@ class Heidenhain final : public DialectPrinter {
       F_.reset();
       return "FT" + rate(60.0 / motion.feed, kDecimals, "FT");
     }
-    const bool is_per_revolution = motion.feed_mode == FeedMode::units_per_revolution;
-    const std::string F = (is_per_revolution ? "FU" : "F") +
-                          rate(motion.feed, kDecimals, is_per_revolution ? "FU" : "F");
+    if (motion.feed_mode == FeedMode::units_per_revolution) {
+      F_.reset();  // how long FU holds was not found in a manual
+      return "FU" + rate(motion.feed, kDecimals, "FU");
+    }
+    const std::string F = "F" + rate(motion.feed, kDecimals, "F");
     if (F_ == F) return "";
     F_ = F;
     return F;
@@ -210,6 +238,7 @@ class Heidenhain final : public DialectPrinter {
   bool has_R0_ = true;
   std::optional<std::string> F_, S_;
   std::optional<int> direction_ = 0, tool_;
+  std::map<Axis, double> rotary_;  // deg, as written last
 };
 
 }  // namespace

@@ -11,6 +11,13 @@ using Eigen::Vector3d;
 constexpr double kStill = 1e-12;  // m, rad: what rounding leaves of positions
 constexpr double kFlat = 1e-8;    // m: an arc with a smaller radius has no angle
 
+// Rotations as the displacement of a point at a lever.
+AxisWords weighted(AxisWords v) {
+  constexpr double kLever = 0.1;  // m/rad, as tolerances of rotary axes
+  v.tail<3>() *= kLever;
+  return v;
+}
+
 double angle_between(const ArcSweep& arc, const AxisWords& from, const AxisWords& end) {
   const double ax = from[arc.a] - arc.centre_a, ay = from[arc.b] - arc.centre_b;
   const double bx = end[arc.a] - arc.centre_a, by = end[arc.b] - arc.centre_b;
@@ -48,13 +55,9 @@ Vector3d CorrectedCurve::derivative(double t) const {
 
 double CorrectedCurve::first_guess(const AxisWords& from, const AxisWords& end,
                                    const controllers::MachineAction& action) const {
-  if (length_ == 0.0) {
-    const Vector3d e = (end_ - begin_).tail<3>();
-    return (end - from).tail<3>().dot(e) / e.squaredNorm();
-  }
   if (!arc_) {
-    const Vector3d e = (end_ - begin_).head<3>();
-    return (end - from).head<3>().dot(e) / e.squaredNorm();
+    const AxisWords along = weighted(end_ - begin_);
+    return weighted(end - from).dot(along) / along.squaredNorm();
   }
   const bool is_arc = action.kind == controllers::ActionKind::arc && action.normal_axis == arc_->c;
   if (!is_arc) return angle_between(*arc_, from, end) / arc_->sweep;
@@ -66,12 +69,13 @@ double CorrectedCurve::share(const AxisWords& from, const AxisWords& end, double
                              const controllers::MachineAction& action) const {
   constexpr int kIterations = 2;  // the derivative is that of the programmed path
   double out = t + first_guess(from, end, action);
-  for (int i = 0; i < kIterations && length_ > 0.0; ++i) {
-    const Vector3d along = derivative(std::clamp(out, 0.0, 1.0));
-    const AxisWords c = at(std::clamp(out, 0.0, 1.0));
-    const double correction =
-        (end - c).head<3>().dot(along) / along.squaredNorm() + std::clamp(out, 0.0, 1.0) - out;
-    out += std::clamp(correction, -0.25, 0.25);
+  for (int i = 0; i < kIterations && !is_still(); ++i) {
+    const double inside = std::clamp(out, 0.0, 1.0);
+    AxisWords along = end_ - begin_;
+    if (arc_) along.head<3>() = arc_->derivative(inside);
+    along = weighted(along);
+    const double step = weighted(end - at(inside)).dot(along) / along.squaredNorm();
+    out += std::clamp(step + inside - out, -0.25, 0.25);
   }
   return out;
 }

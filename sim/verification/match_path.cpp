@@ -13,10 +13,11 @@ namespace {
 
 using controllers::ActionKind;
 
-constexpr double kRounding = 0.87;      // of the grid: half of it in X, Y and Z
-constexpr double kFeedTol = 1e-4;       // relative, of digits
-constexpr double kFeedDigit = 1e-3;     // mm/min
-constexpr double kSampleLength = 2e-3;  // m, between two samples
+constexpr double kRounding = 0.87;            // of the grid: half of it in X, Y and Z
+constexpr double kFeedTol = 1e-4;             // relative, of digits
+constexpr double kFeedDigit = 1e-3;           // mm/min
+constexpr double kRevolutionDigit = 0.51e-6;  // m, three decimals of mm
+constexpr double kSampleLength = 2e-3;        // m, between two samples
 constexpr double kSampleTurn = 1.0 * deg;
 constexpr int kMaxSamples = 500;
 
@@ -55,11 +56,16 @@ bool ReplayComparison::admits(const OriginalAction& action, const Action* one) c
   return one->kind == ActionKind::feed || one->kind == ActionKind::arc;
 }
 
+// With what rounding adds: of an arc, the centre is rounded, too.
+double ReplayComparison::path_tolerance(bool is_arc) const {
+  return limits_.tolerance + (kRounding + (is_arc ? 1.0 : 0.0)) * limits_.grid;
+}
+
 void ReplayComparison::match_path(const OriginalAction& action) {
   AxisWords at = known_position();
   const CorrectedCurve curve(action, correction_);
   const AxisWords last = curve.at(1.0);
-  const double tolerance = limits_.tolerance + kRounding * limits_.grid;
+  double tolerance = path_tolerance(false);
   const double tolerance_turn = limits_.tolerance_turn + limits_.grid_turn;
   const auto off = [&](const AxisWords& p) {
     return std::max((p - last).head<3>().norm() / tolerance,
@@ -71,6 +77,7 @@ void ReplayComparison::match_path(const OriginalAction& action) {
   bool is_compared = false;
   while (true) {
     const Action* one = peek();
+    tolerance = path_tolerance(was_arc_);
     const bool is_there = off(at) <= 1.0 && (is_small || (1.0 - t) * size <= 2.0);
     AxisWords end = at;
     if (admits(action, one)) {
@@ -79,7 +86,10 @@ void ReplayComparison::match_path(const OriginalAction& action) {
         if (known) end[i] = *known;
       }
     }
-    if (is_there && (!admits(action, one) || off(end) > 1.0 || off(end) >= off(at))) break;
+    // a short block may follow to where the rounding was better
+    const bool improves = admits(action, one) && off(end) <= 1.0 && off(end) < off(at) &&
+                          Piece(*one, at, end).length() <= 4.0 * tolerance;
+    if (is_there && !improves) break;
     if (one == nullptr) fail("a feed is missing; the written program has ended");
     if (!admits(action, one)) {
       fail(fmt::format("a feed to {} must come here, and another action comes", place(last)));
@@ -94,6 +104,7 @@ void ReplayComparison::match_path(const OriginalAction& action) {
     check_piece(action, curve, *one, at, t, std::clamp(t_end, t, 1.0));
     t = std::clamp(t_end, t, 1.0);
     at = end;
+    was_arc_ = one->kind == ActionKind::arc;
     arrive(*one);
   }
 }
@@ -108,7 +119,7 @@ void ReplayComparison::check_piece(const OriginalAction& action, const Corrected
     if (known) end[i] = *known;
   }
   const Piece piece(one, from, end);
-  const double tolerance = limits_.tolerance + kRounding * limits_.grid;
+  const double tolerance = path_tolerance(one.kind == ActionKind::arc || was_arc_);
   // a block may lead from where a rapid has ended to the begin of the corrected path
   const double begin_off = (from - curve.at(0.0)).head<3>().norm();
   const bool is_approach = t_begin == 0.0 && t_end * curve.length() <= 2.0 * tolerance &&
@@ -139,14 +150,14 @@ void ReplayComparison::check_piece(const OriginalAction& action, const Corrected
 void ReplayComparison::check_feed(const OriginalAction& action, const CorrectedCurve& curve,
                                   const Action& one, const AxisWords& from, double share) const {
   const Move& move = action.move;
-  const double tolerance = limits_.tolerance + kRounding * limits_.grid;
+  const double tolerance = path_tolerance(false);
   const double size =
       curve.length() > 0.0 ? curve.length() / tolerance : curve.angle() / limits_.grid_turn;
   if (share * size <= 4.0) return;  // too short for a feed to be told from rounding
   const bool is_per_revolution = move.feed_mode == FeedMode::units_per_revolution;
   if (is_per_revolution || one.feed_mode == FeedMode::units_per_revolution) {
     if (one.feed_mode != move.feed_mode) fail("a feed per revolution and one per minute");
-    if (std::abs(one.feed - move.value) > kFeedTol * move.value + 1e-9) {
+    if (std::abs(one.feed - move.value) > kFeedTol * move.value + kRevolutionDigit) {
       fail(fmt::format("the feed must be {:g} mm per revolution, and is {:g}", move.value / mm,
                        one.feed / mm));
     }
@@ -158,7 +169,8 @@ void ReplayComparison::check_feed(const OriginalAction& action, const CorrectedC
   }
   const Piece piece(one, from, end);
   const bool is_by_time = one.feed_mode == FeedMode::inverse_time;
-  if (!is_by_time && !curve.rotates()) {
+  const bool keeps_time = is_by_time || move.feed_mode == FeedMode::inverse_time;
+  if (!keeps_time && !curve.rotates()) {
     if (std::abs(one.feed - move.feed) > kFeedTol * move.feed + kFeedDigit * mm_per_min) {
       fail(fmt::format("the feed must be {:g} mm/min, and is {:g} mm/min", move.feed / mm_per_min,
                        one.feed / mm_per_min));

@@ -40,7 +40,8 @@ ReplayComparison::Targets ReplayComparison::targets_of(const OriginalAction& act
   for (std::size_t i = 0; i < at_.size(); ++i) {
     if (!correction_.layout().joint_of(kAllAxes[i])) continue;
     is_all_known &= action.is_known[i];
-    out.is_required[i] = changed[i] || (action.is_named[i] && !at_[i]);
+    const bool is_open = !at_[i] || !action.was_known[i] || action.is_machine_position;
+    out.is_required[i] = changed[i] || (action.is_named[i] && is_open);
     out.is_allowed[i] = changed[i] || action.is_named[i] || !at_[i];
   }
   out.programmed = out.corrected = action.move.end_machine;
@@ -90,11 +91,13 @@ void ReplayComparison::check_rapid_block(const OriginalAction& action, const Tar
 
 void ReplayComparison::match_rapid(const OriginalAction& action) {
   const Targets targets = targets_of(action);
-  std::optional<double> z_begin = at_[kZ];
+  std::optional<double> z_begin;
   bool began_with_Z = false, began_without_Z = false;
   for (int blocks = 0; !is_reached(targets); ++blocks) {
+    if (!at_[kZ] && !limits_.is_linuxcnc && !action.is_machine_position) skip_retracts(&action);
     const Action& one = need("a rapid");
     if (blocks == kMaxBlocks) fail("the rapid does not end where it must");
+    if (blocks == 0 && action.was_known[kZ]) z_begin = at_[kZ];
     check_rapid_block(action, targets, one);
     const bool is_Z = one.is_commanded[kZ];
     bool is_other = false;

@@ -26,11 +26,11 @@ struct AuxiliaryState {
 /// A motion, dwell, tool change, stop or end of the program.
 struct OriginalAction {
   Move move;
-  bool is_machine_position = false;   // G53, G28, G30: not corrected
-  bool is_reference_return = false;   // G28, G30
-  bool is_to_reference = false;       // the last move of those
-  AxisFlags6 is_named{}, is_known{};  // named by its block; positions named so far, these included
-  AxisFlags6 was_known{};                          // positions named before it
+  bool is_machine_position = false;                // G53, G28, G30: not corrected
+  bool is_reference_return = false;                // G28, G30
+  bool is_to_reference = false;                    // the last move of those
+  AxisFlags6 is_named{};                           // by its block
+  AxisFlags6 is_known{}, was_known{};              // positions named so far, and before this action
   AxisWords begin = AxisWords::Zero();             // machine coordinates; m, rad
   Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();  // tip of the tool that works (m)
   AuxiliaryState auxiliary;                        // in force

@@ -49,7 +49,22 @@ std::vector<Reading> heidenhain_readings(const std::string& text,
   return out;
 }
 
+// A block of its own, as the control requires: "N3 G20" or "G20".
+bool has_inches(const std::string& text) {
+  for (std::size_t at = text.find("G20\n"); at != std::string::npos;
+       at = text.find("G20\n", at + 1)) {
+    const std::size_t begin = text.rfind('\n', at) + 1;  // npos + 1 is 0
+    if (text.find_first_not_of("N0123456789 ", begin) == at) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+double written_grid(const std::string& text, Dialect dialect, double resolution) {
+  constexpr double kInchGrid = 2.54;  // 0.0001 inch in 0.001 mm
+  return dialect == Dialect::fanuc && has_inches(text) ? kInchGrid * resolution : resolution;
+}
 
 std::vector<Reading> readings_of(const std::string& text, Dialect dialect,
                                  const controllers::ControlSetup& setup, double resolution,

@@ -15,6 +15,10 @@ struct Reading {
   std::function<std::vector<controllers::MachineAction>()> read;
 };
 
+/// Resolution of positions in the written program, m: Fanuc resolves 0.0001 inch where it
+/// resolves 0.001 mm.
+double written_grid(const std::string& text, Dialect dialect, double resolution);
+
 /// @param text, setup  must outlive the readings
 /// @param resolution   m; Fanuc: below 1 um only controls with IS-C come into question
 /// @pre dialect is not linuxcnc

@@ -96,6 +96,7 @@ const controllers::MachineAction& ReplayComparison::need(const std::string& what
 }
 
 void ReplayComparison::arrive(const Action& action) {
+  check_retract(action);
   at_ = action.end;
   ++next_;
   ++blocks_;
@@ -117,6 +118,8 @@ AxisWords ReplayComparison::known_position() const {
 void ReplayComparison::take_auxiliary() {
   for (; next_ < replay_.size() && is_auxiliary(replay_[next_].kind); ++next_) {
     const Action& one = replay_[next_];
+    if (one.line != auxiliary_line_) auxiliary_before_line_ = auxiliary_;
+    auxiliary_line_ = one.line;
     if (one.kind == ActionKind::spindle) {
       auxiliary_.direction = one.direction;
       auxiliary_.speed = one.value;
@@ -179,6 +182,30 @@ void ReplayComparison::skip_retracts(const OriginalAction* before) {
   }
 }
 
+// Some controls switch the spindle off in the block of the stop.
+void ReplayComparison::compare_stop(const OriginalAction& action, const Action& one) {
+  const bool is_pallet = action.move.number == kPalletStop && !limits_.is_linuxcnc;
+  const int number = is_pallet ? 0 : action.move.number;
+  if (one.number != number)
+    fail(fmt::format("M{} must come here, and M{} comes", number, one.number));
+  const AuxiliaryState after = auxiliary_;
+  if (auxiliary_line_ == one.line && !limits_.is_linuxcnc) auxiliary_ = auxiliary_before_line_;
+  if (has_moved_since_stop_) compare_auxiliary(action, true);
+  auxiliary_ = after;
+  has_moved_since_stop_ = false;
+}
+
+// The frame of a program for another control: Z is retracted first and last.
+void ReplayComparison::check_retract(const Action& action) {
+  const bool is_retract =
+      action.kind == ActionKind::rapid && action.is_machine_position && commands_only_Z(action);
+  if (action.is_commanded[2]) is_retracted_ = is_retract;
+  if (!has_motion_ && !is_retract && !limits_.is_linuxcnc) {
+    fail("the first motion is no retract of Z in machine coordinates");
+  }
+  has_motion_ = has_moved_since_stop_ = true;
+}
+
 void ReplayComparison::match_other(const OriginalAction& action) {
   const ActionKind kind = kind_of(action.move);
   const bool has_frame = kind == ActionKind::tool || kind == ActionKind::end;
@@ -193,13 +220,7 @@ void ReplayComparison::match_other(const OriginalAction& action) {
   if (kind == ActionKind::dwell && std::abs(one.value - action.move.value) > kDwellTol) {
     fail(fmt::format("the dwell must last {:g} s, and lasts {:g} s", action.move.value, one.value));
   }
-  if (kind == ActionKind::stop) {
-    const int number =
-        action.move.number == kPalletStop && !limits_.is_linuxcnc ? 0 : action.move.number;
-    if (one.number != number)
-      fail(fmt::format("M{} must come here, and M{} comes", number, one.number));
-    compare_auxiliary(action, true);
-  }
+  if (kind == ActionKind::stop) compare_stop(action, one);
   if (kind == ActionKind::dwell) compare_auxiliary(action, false);
   const bool ends_coolant = action.auxiliary.coolant == 0 && auxiliary_.coolant.value_or(0) != 0;
   if (kind != ActionKind::stop && kind != ActionKind::dwell && ends_coolant) {
@@ -208,6 +229,8 @@ void ReplayComparison::match_other(const OriginalAction& action) {
   const bool ends_spindle = kind == ActionKind::end && action.auxiliary.direction == 0 &&
                             auxiliary_.direction.value_or(0) != 0;
   if (ends_spindle) fail("the spindle must be off, and is on");
+  const bool needs_retract = kind == ActionKind::end && has_motion_ && !limits_.is_linuxcnc;
+  if (needs_retract && !is_retracted_) fail("ends without a retract of Z in machine coordinates");
   const bool is_dwell = kind == ActionKind::dwell;
   if (!is_dwell) at_ = one.end;
   if (kind == ActionKind::tool) {

@@ -67,6 +67,8 @@ class ReplayComparison {
   void skip_retracts(const OriginalAction* before);
   void compare_auxiliary(const OriginalAction& action, bool is_strict) const;
   void match_motion(const OriginalAction& action);
+  void compare_stop(const OriginalAction& action, const Action& one);
+  void check_retract(const Action& action);
   void match_other(const OriginalAction& action);
 
   void match_place(const OriginalAction& action);
@@ -77,6 +79,7 @@ class ReplayComparison {
   bool is_reached(const Targets& targets) const;
   bool is_at(std::size_t axis, double target) const;
 
+  double path_tolerance(bool is_arc) const;
   void match_path(const OriginalAction& action);
   bool admits(const OriginalAction& action, const Action* one) const;
   void check_piece(const OriginalAction& action, const CorrectedCurve& curve, const Action& one,
@@ -90,8 +93,11 @@ class ReplayComparison {
   Correction& correction_;
   std::size_t next_ = 0;
   controllers::KnownPosition at_;
-  AuxiliaryState auxiliary_;
   Directions directions_{};  // of travel, as the original has them
+  AuxiliaryState auxiliary_, auxiliary_before_line_;  // before the line of the last change
+  int auxiliary_line_ = 0;
+  bool has_motion_ = false, is_retracted_ = false;  // the last motion of Z was a retract
+  bool has_moved_since_stop_ = false, was_arc_ = false;
   bool has_moved_ = false, has_ended_ = false;
   double largest_ = 0.0;
   std::size_t blocks_ = 0;

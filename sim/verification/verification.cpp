@@ -108,7 +108,9 @@ class Verifier {
 
   void compare(const std::vector<MachineAction>& actions, const controllers::ProgramSetup& setup) {
     Original original(text(), setup, options_);
-    ReplayComparison comparison(actions, request_.limits, correction_);
+    ComparisonLimits limits = request_.limits;
+    limits.grid = written_grid(written_, request_.dialect, limits.grid);
+    ReplayComparison comparison(actions, limits, correction_);
     const OriginalAction* action = nullptr;
     try {
       while ((action = original.next()) != nullptr) comparison.match(*action);
