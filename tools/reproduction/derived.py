@@ -306,7 +306,7 @@ def peak_over_segments(results, run, case, lowest=False):
 
 
 FUNCTIONS = {one.__name__: one for one in (
-    scenario_key, largest_of, effectiveness, height_of_pass, sweep_spread, sweep_departure_from_proportional, slope_correlation, volumetric_error, points_of_segment,
-    probed_residual, part_minus_trajectory, largest_after_best_fit, difference_after_best_fit, cutting_minus_air, stiffness_needed,
-    wear_needed, chord,
+    scenario_key, largest_of, effectiveness, height_of_pass, sweep_spread, sweep_departure_from_proportional,
+    slope_correlation, volumetric_error, points_of_segment, probed_residual, part_minus_trajectory,
+    largest_after_best_fit, difference_after_best_fit, cutting_minus_air, stiffness_needed, wear_needed, chord,
     error_at_point, error_of_length, left_of_table31, peak_over_segments)}
