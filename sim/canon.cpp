@@ -8,6 +8,7 @@
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/parameter_file.h"
 #include "sim/config/document.h"
+#include "sim/implausible.h"
 #include "sim/read_file.h"
 #include "sim/run.h"
 #include "sim/scenario.h"
@@ -19,13 +20,22 @@ namespace {
 
 constexpr std::size_t kWrittenAtOnce = 1U << 16;  // bytes
 
-void check_toml(const std::string& path, const std::vector<std::string>& changes) {
+void warn_of(const MachineSettings& machine, std::vector<std::string>* warnings) {
+  if (warnings == nullptr) return;
+  for (std::string& value : implausible_values(machine)) warnings->push_back(std::move(value));
+}
+
+void check_toml(const std::string& path, const std::vector<std::string>& changes,
+                std::vector<std::string>* warnings) {
   const Document document = Document::from_file(path);
   if (document.root().find("structure") != nullptr) {
-    check_machine(read_machine_file(path));
+    const MachineSettings machine = read_machine_file(path);
+    warn_of(machine, warnings);
+    check_machine(machine);
     return;
   }
   const Scenario scenario = read_scenario(path, changes);
+  warn_of(scenario.machine, warnings);
   check_scenario(scenario);
   if (!scenario.sweep.empty()) Sweep(path, changes).check();
 }
@@ -95,10 +105,10 @@ std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& i
 }
 
 std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,
-                              const ProgramInputs& inputs) {
+                              const ProgramInputs& inputs, std::vector<std::string>* warnings) {
   try {
     if (path.ends_with(".toml")) {
-      check_toml(path, changes);
+      check_toml(path, changes, warnings);
       return {};
     }
     if (holds_cutter_locations(path)) {

@@ -38,7 +38,9 @@ std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& i
 /// program (anything else).
 /// @param changes     what --set says, for scenarios
 /// @param inputs   for programs
+/// @param warnings    receives values that no machine has; may be nullptr
 std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,
-                              const ProgramInputs& inputs);
+                              const ProgramInputs& inputs,
+                              std::vector<std::string>* warnings = nullptr);
 
 }  // namespace servomill::sim

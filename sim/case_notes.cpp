@@ -7,6 +7,7 @@
 #include "controllers/path/slowed_motion.h"
 #include "plant/kinematics/inverse.h"
 #include "plant/vocabulary/units.h"
+#include "sim/implausible.h"
 #include "sim/nominal_part.h"
 #include "sim/probed_part.h"
 #include "sim/uncorrected.h"
@@ -95,6 +96,9 @@ std::vector<std::string> notes_of_run(const NotedCase& one,
   for (const auto& slowed : one.motion.slowed) {
     out.push_back(note_of(
         {{one.scenario.program.file, slowed.line}, to_string(slowed, chain_of(one).layout)}));
+  }
+  for (const std::string& value : implausible_values(one.scenario.machine_of(one.spec))) {
+    out.push_back("warning: " + value);
   }
   if (auto uneven = uneven_hardware(one.scenario)) out.push_back(std::move(*uneven));
   for (const strategies::Saturation& saturation : held) out.push_back(note_of(one, saturation));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/frequency/frequency_response.h"
+#include "sim/implausible.h"
 #include "sim/preparation_cache.h"
 #include "sim/stability.h"
 
@@ -57,7 +58,11 @@ void check_stability(const MachineSettings& machine, Tick reading_delay, Prepara
       add_linear_axis(key, linear, j);
       radius = *cache->spectral_radii.get(key, compute);
     }
-    if (radius >= kMarginal) faults.push_back(instability(machine, j, radius));
+    if (radius < kMarginal) continue;
+    faults.push_back(instability(machine, j, radius));
+    for (const std::string& value : implausible_values(machine, j)) {
+      faults.back().message += "; " + value;
+    }
   }
   if (!faults.empty()) throw InputError(std::move(faults));
 }

@@ -451,6 +451,14 @@ SERVO = [
           STEP + " -o nowhere/out.h5"),
 ]
 
+SOFT = "drive = \"two_mass\"\nstiffness = 180\ndamping = 1000"
+UNITS = [
+    {"title": "a stiffness in N/um without its unit", "commands": ["servomill check machine.toml"],
+     "edit": [("machine.toml", 'drive = "rigid"', SOFT)]},
+    {"title": "bare numbers that no machine has, of a machine that is stable", "commands": ["servomill check machine.toml", "servomill run scenario.toml -q -o out.h5"],
+     "edit": [("machine.toml", 'v_max = "40 m/min"', "v_max = 40000")]},
+]
+
 POST_IT = "servomill post part.cls --machine machine.toml -o out.ngc"
 RIGHT = "FEDRAT/600\nRAPID\nGOTO/0,0,10\nGOTO/0,0,0\n"
 
@@ -563,5 +571,5 @@ PROBES = [
     probed("a quantity of another kind of probe", probe(LINE), 'name = "flatness"\nprobe = "flank"'),
 ]
 
-WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO + POST + TABLES
+WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO + UNITS + POST + TABLES
                 + COMPENSATE + CUTTING + PART + PROBES)
