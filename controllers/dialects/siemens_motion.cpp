@@ -127,10 +127,24 @@ class Motion {
       const SiemensNumber& word = *block_.axes[at(a)];
       const double value = word.value * unit_of(a, word.column);
       is_used_[at(a)] = true;
-      target_[a] =
-          is_incremental(word, name_of(a)) ? start_of_increment(a, word.column) + value : value;
+      target_[a] = is_incremental(word, name_of(a)) ? start_of_increment(a, word.column) + value
+                                                    : angle_of(a, word.form, value);
     }
     out_.is_commanded = is_used_;
+  }
+
+  // Absolute position of an axis; that of a modulo axis in the turn in which it arrives.
+  double angle_of(int a, SiemensForm form, double value) const {
+    constexpr double kTurn = 2.0 * std::numbers::pi, kRounding = 1e-9;  // rad
+    if (is_linear_axis(a) || !context_.settings.is_modulo[at(a - 3)]) return value;
+    const double angle = value - std::floor(value / kTurn) * kTurn;
+    const std::optional<double> start = frame_.program(state_.position, a);
+    if (!start) return angle;
+    const bool is_AC = form == SiemensForm::absolute && context_.rules.AC_is_not_shortest;
+    if (context_.settings.G90_is_shortest && !is_AC) {
+      return *start + std::remainder(angle - *start, kTurn);
+    }
+    return std::floor((*start + kRounding) / kTurn) * kTurn + angle;
   }
 
   bool is_incremental(const SiemensNumber& word, char name) const {

@@ -315,24 +315,38 @@ class Reader {
 }  // namespace
 
 std::string to_string(const SiemensSettings& settings) {
-  return fmt::format("MD20270={} MD10760={:d} MD22550={:d} SD42940={} {}", settings.default_D,
-                     settings.SUPA_drops_length, !settings.T_changes_tool,
-                     settings.length_follows_plane ? 0 : 17,
-                     settings.M6_is_macro ? "M6 a macro" : "plain M6");
+  std::string text = fmt::format("MD20270={} MD10760={:d} MD22550={:d} SD42940={} {}",
+                                 settings.default_D, settings.SUPA_drops_length,
+                                 !settings.T_changes_tool, settings.length_follows_plane ? 0 : 17,
+                                 settings.M6_is_macro ? "M6 a macro" : "plain M6");
+  for (std::size_t i = 0; i < settings.is_modulo.size(); ++i) {
+    if (settings.is_modulo[i]) text += fmt::format(" {} MD30310=1", "ABC"[i]);
+  }
+  if (settings.G90_is_shortest) text += " MD30455.2=1";
+  return text;
 }
 
-std::vector<SiemensSettings> all_siemens_settings() {
+std::vector<SiemensSettings> all_siemens_settings(std::array<bool, 3> may_be_modulo) {
   std::vector<SiemensSettings> out;
   for (const bool SUPA_drops_length : {true, false}) {
     for (const bool T_changes_tool : {false, true}) {
       for (const bool length_follows_plane : {true, false}) {
         // A macro may leave any D behind, whatever MD20270 says.
-        out.push_back({1, SUPA_drops_length, true, T_changes_tool, length_follows_plane});
+        SiemensSettings one{.SUPA_drops_length = SUPA_drops_length,
+                            .T_changes_tool = T_changes_tool,
+                            .length_follows_plane = length_follows_plane};
+        out.push_back(one);
+        one.M6_is_macro = false;
         for (const int default_D : {0, 1, -1}) {
-          out.push_back(
-              {default_D, SUPA_drops_length, false, T_changes_tool, length_follows_plane});
+          one.default_D = default_D;
+          out.push_back(one);
         }
       }
+    }
+  }
+  if (may_be_modulo != std::array<bool, 3>{}) {
+    for (const bool G90_is_shortest : {false, true}) {
+      out.push_back({.is_modulo = may_be_modulo, .G90_is_shortest = G90_is_shortest});
     }
   }
   return out;

@@ -7,6 +7,7 @@
 /// [V1] Feeds, Function Manual 08/2005, 6FC5397-0BP10-0BA0 (V)
 /// [D]  802D sl Operation and Programming 06/2006, 6FC5398-3CP10-0BA0 (V)
 /// [IS] ISO Dialects Milling 04.07 (V)
+/// [R2] Axes and spindles, Function Manual 06/2019, A5E47437747B AA (V)
 /// "M" marks what is from memory and was not found in a manual.
 ///
 /// A mode that the program has not set is unknown, and so is every position; a block whose meaning
@@ -16,10 +17,11 @@
 /// a program does not restate them. After M0 and M1 the positions are unknown.
 ///
 /// Assumptions about the machine: a milling machine without a diameter axis (DIAMON is refused),
-/// rotary axes that count on beyond 360 deg (MD30310 = 0), no transformation unless rotary axes
-/// are programmed, geometry axes as the path axes of F (MD22420 = 0; M).
+/// no transformation unless rotary axes are programmed, geometry axes as the path axes of F
+/// (MD22420 = 0; M).
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,13 +41,19 @@ struct SiemensSettings {
   /// SD42940 = 0: length 1 acts along the normal of the plane: Z, Y, X with G17, G18, G19.
   /// false: along Z in every plane. [P] p. 750
   bool length_follows_plane = true;
+  /// MD30310 = 1 for A, B, C: positions are angles from 0 to 360 deg, not counts of them. Others
+  /// are taken as the angle that they are (MD30455 bit 0 = 1), where they are no alarm.
+  std::array<bool, 3> is_modulo{};
+  bool G90_is_shortest = false;  // MD30455 bit 2, where AC(...) is not written. [R2] p. 225
 };
 
 /// Name of the settings for messages, such as "MD20270=1 MD10760=0 MD22550=1 SD42940=0 plain M6".
 std::string to_string(const SiemensSettings& settings);
 
-/// Every combination whose members differ in meaning: 32.
-std::vector<SiemensSettings> all_siemens_settings();
+/// Every combination of the first five whose members differ in meaning: 32. Where there are modulo
+/// axes two more, with them, since they do not meet the others.
+/// @param may_be_modulo  of A, B, C: those that turn without end
+std::vector<SiemensSettings> all_siemens_settings(std::array<bool, 3> may_be_modulo = {});
 
 /// Rules of the reader that a test can set wrong, one at a time, to see that the worked examples
 /// find it. Each is true as the control has it.
@@ -73,6 +81,7 @@ struct SiemensRules {
   bool stop_forgets_positions = true;       // the operator may have jogged
   bool macro_forgets_state = true;          // M6
   bool offset_rotates = true;               // a settable frame with a rotation about Z
+  bool AC_is_not_shortest = true;           // towards the angle without passing 0 deg [R2] p. 225
 };
 
 /// The actions of a program. An axis that no block has named has an unknown position.

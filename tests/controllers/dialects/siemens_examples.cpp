@@ -23,6 +23,9 @@ bool changes_at_T(const SiemensSettings& s) { return s.T_changes_tool; }
 bool changes_at_M6(const SiemensSettings& s) { return !s.T_changes_tool; }
 bool follows_plane(const SiemensSettings& s) { return s.length_follows_plane; }
 bool stays_in_Z(const SiemensSettings& s) { return !s.length_follows_plane; }
+bool counts_turns(const SiemensSettings& s) { return !s.is_modulo[2]; }
+bool is_modulo(const SiemensSettings& s) { return s.is_modulo[2] && !s.G90_is_shortest; }
+bool is_shortest(const SiemensSettings& s) { return s.is_modulo[2] && s.G90_is_shortest; }
 
 // What has to be said again after a tool change.
 #define TOOL_1 "T1 M6\nG17 G40 G90 G94 G54\n"
@@ -62,6 +65,33 @@ std::vector<SiemensExample> offsets() {
       {"RotaryAxesHaveOffsets",
        "TRAFOOF\nG0 A30\nG1 B10 F360",
        {"4 rapid A35", "5 feed (A35) B10 F360"}},
+  };
+}
+
+// Positions in degrees and turns: from 350 to 10 deg by -340 or by +20.
+std::vector<SiemensExample> rotary_axes() {
+  const std::string turn = "TRAFOOF\nG0 C350\nC10\nC=AC(300)";
+  const std::string negative = "TRAFOOF\nG0 C20\nC-40";
+  return {
+      {"RotaryAxesCountTurns", turn, {"4 rapid C350", "5 rapid C10", "6 rapid C300"}, counts_turns},
+      // [R2] p. 225: to a larger angle in positive direction, to a smaller one in negative.
+      {"AModuloAxisDoesNotPassZero",
+       turn,
+       {"4 rapid C350", "5 rapid C10", "6 rapid C300"},
+       is_modulo},
+      {"G90MayBeTheShortestWay",
+       turn,
+       {"4 rapid C350", "5 rapid C370", "6 rapid C660"},
+       is_shortest},
+      {"NegativeAnglesAreCounted", negative, {"4 rapid C20", "5 rapid C-40"}, counts_turns},
+      {"AModuloAxisTakesNegativeAnglesAsTheirRest",
+       negative,
+       {"4 rapid C20", "5 rapid C320"},
+       is_modulo},
+      {"IncrementsDoNotDependOnIt",
+       "TRAFOOF\nG0 C20\nC=IC(-60)\nC=IC(400)",
+       {"4 rapid C20", "5 rapid C-40", "6 rapid C360"}},
+      {"AngleOfAnAxisWithAnOffset", "TRAFOOF\nG0 A350\nA=AC(10)", {"4 rapid A355", "5 rapid A15"}},
   };
 }
 
@@ -276,10 +306,15 @@ ControlSetup siemens_example_setup() {
   return setup;
 }
 
+std::vector<SiemensSettings> siemens_example_settings() {
+  return all_siemens_settings({true, true, true});
+}
+
 const std::vector<SiemensExample>& siemens_examples() {
   static const std::vector<SiemensExample> all = [] {
     std::vector<SiemensExample> out;
-    for (const auto& group : {offsets(), lengths(), arcs(), feeds(), corners(), switches()}) {
+    for (const auto& group :
+         {offsets(), rotary_axes(), lengths(), arcs(), feeds(), corners(), switches()}) {
       out.insert(out.end(), group.begin(), group.end());
     }
     return out;

@@ -23,6 +23,9 @@ inline constexpr const char* kSiemensHead = "G710 G17 G40 G90 G94 G54\nTRANS\n";
 
 const std::vector<SiemensExample>& siemens_examples();
 
+/// All settings, of a machine whose rotary axes turn without end.
+std::vector<SiemensSettings> siemens_example_settings();
+
 /// G54 at X100 Y200 Z300 A5, G55 at X10 Y20 Z30, G56 at X50 Y60 Z70 rotated by 90 deg, G505 at
 /// X1 Y2 Z3; tool 1 is 50 long, tool 2 80.
 ControlSetup siemens_example_setup();
