@@ -1,5 +1,6 @@
 #include "strategies/gcode.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -141,7 +142,8 @@ class Rewriter {
         all_(belief, params.iterations, params.sigma_0),
         out_(out),
         Q_(belief.reference),
-        out_at_(belief.layout.words(belief.reference)) {}
+        out_at_(belief.layout.words(belief.reference)),
+        directions_(belief.model.plays().size(), 0.0) {}
 
   void rewrite(const Move& move) {
     const ProgrammedWay way(inverse_, belief_.p_ST, Q_, move);
@@ -153,10 +155,12 @@ class Rewriter {
       cut();
     } else if (move.kind == MoveKind::rapid) {
       // displaced at its end only: nothing is cut on the way
+      change_directions(Q_, way.end());
       emit(place(1.0, Q_));
     } else if (way.length() == 0.0 && way.turn().any()) {
       // Rotary axes alone keep their angular feed: X, Y and Z wait where they are, and the next
       // move takes them to where they belong.
+      change_directions(Q_, way.end());
       Place target = place(1.0, Q_);
       if (!displaces_all()) target.words = move.end_machine;
       target.words.head<3>() = out_at_.head<3>();
@@ -188,10 +192,44 @@ class Rewriter {
     Place a = place(0.0, Q_);
     for (std::int64_t i = 0; i < pieces; ++i) {
       throw_if_interrupted();
-      const Place b = place(i + 1 == pieces ? 1.0 : static_cast<double>(i + 1) * dt, a.Q);
+      Place b = place(i + 1 == pieces ? 1.0 : static_cast<double>(i + 1) * dt, a.Q);
+      if (const double develops = change_directions(a.Q, b.Q); develops > 0.0) {
+        b = place(b.t, a.Q);
+        a = place(a.t, a.Q);
+        if (develops < 1.0) {  // a block in which the error goes over to the new direction
+          a = place(a.t + develops * (b.t - a.t), a.Q);
+          emit(a);
+        }
+      }
       split(a, b, kMostSplits);
       a = b;
     }
+  }
+
+  // Directions of travel from a to b.
+  // @return share of the way that the slowest change of direction takes; 0: no axis has turned
+  double change_directions(const Joints& a, const Joints& b) {
+    constexpr double kStill = 1e-12;  // m, rad
+    const std::vector<plant::Play>& plays = belief_.model.plays();
+    double share = 0.0;
+    for (std::size_t i = 0; i < plays.size(); ++i) {
+      const double way = b[plays[i].joint] - a[plays[i].joint];
+      const double direction = way > 0.0 ? 1.0 : -1.0;
+      if (std::abs(way) <= kStill || direction == directions_[i]) continue;
+      directions_[i] = direction;
+      share = std::max(share, plays[i].distance / std::abs(way));
+    }
+    return share;
+  }
+
+  // What the direction of travel adds to the mean, to first order in the errors.
+  Eigen::Vector3d reversal(const Joints& Q) const {
+    const plant::VolumetricModel& model = belief_.model;
+    const Eigen::Vector3d e =
+        model.error(Q, belief_.p_ST, directions_).dp_W - model.error(Q, belief_.p_ST).dp_W;
+    const Eigen::Matrix3d J = plant::linear_jacobian(model.chain(), Q);
+    const Eigen::Vector3d d = J.completeOrthogonalDecomposition().solve(e);
+    return params_.sign == Sign::generate ? d : Eigen::Vector3d(-d);
   }
 
   Place place(double t, const Joints& Q_near) const {
@@ -204,6 +242,7 @@ class Rewriter {
       out.words.head<3>() +=
           set_point_displacement(belief_, params_.sign, params_.iterations, Q_then);
     }
+    if (!directions_.empty()) out.words.head<3>() += reversal(Q_then);
     return out;
   }
 
@@ -273,7 +312,8 @@ class Rewriter {
   Joints Q_;  // as programmed, where the move begins
   const Move* move_ = nullptr;
   const ProgrammedWay* way_ = nullptr;
-  AxisWords out_at_;  // displaced end of the block before
+  AxisWords out_at_;                // displaced end of the block before
+  std::vector<double> directions_;  // of travel, of each play of the belief; 0: not yet
   double s_ = 0.0, t_ = 0.0;
 };
 

@@ -1,0 +1,54 @@
+// Programs rewritten for believed errors that depend on the direction of travel.
+#include "strategies/gcode.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/strategies/beliefs.h"
+
+namespace servomill::strategies {
+namespace {
+
+using plant::operator""_err;
+
+constexpr double kWidth = 10e-6, kDistance = 0.1 * mm;
+
+std::vector<Move> there_and_back() {
+  Move out;
+  out.kind = MoveKind::feed;
+  out.feed = 10.0 * mm;
+  out.end_machine << 5.0 * mm, 0.0, 0.0, 0.0, 0.0, 0.0;
+  out.end = out.end_machine;
+  out.s_end = 5.0 * mm;
+  Move back = out;
+  back.end_machine[0] = back.end[0] = 0.0;
+  back.s_begin = out.s_end;
+  back.s_end = 10.0 * mm;
+  return {out, back};
+}
+
+std::vector<Move> rewritten(Sign sign) {
+  plant::ErrorModel errors;
+  errors.component("EXX"_err) = plant::reversal({kWidth}, kDistance);
+  Belief belief = belief_in(errors, "[w b X Y Z (C1) t]");
+  belief.reference.setZero();
+  const Entry entry = gcode_entry();
+  return entry.make(default_parameters(entry), sign, belief)->rewrite(there_and_back());
+}
+
+// Up, the axis goes 5 um too far; down, 5 um too little; in between as long as the change takes.
+TEST(Gcode, CorrectsReversalForTheDirectionOfTravel) {
+  for (const Sign sign : {Sign::correct, Sign::generate}) {
+    const double up = (sign == Sign::correct ? -0.5 : 0.5) * kWidth;
+    const std::vector<Move> moves = rewritten(sign);
+    ASSERT_EQ(moves.size(), 12U);  // five blocks of 1 mm each way, and two changes
+    EXPECT_NEAR(moves[0].end_machine[0], kDistance + up, 1e-12);
+    EXPECT_NEAR(moves[1].end_machine[0], 1.0 * mm + up, 1e-12);
+    EXPECT_NEAR(moves[5].end_machine[0], 5.0 * mm + up, 1e-12);
+    EXPECT_NEAR(moves[6].end_machine[0], 5.0 * mm - kDistance - up, 1e-12);
+    EXPECT_NEAR(moves[7].end_machine[0], 4.0 * mm - up, 1e-12);
+    EXPECT_NEAR(moves[11].end_machine[0], -up, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace servomill::strategies
