@@ -43,7 +43,7 @@ std::vector<Reading> heidenhain_readings(const std::string& text,
   std::vector<Reading> out;
   for (const controllers::HeidenhainSettings& one :
        controllers::all_heidenhain_settings(has_rotary_axes)) {
-    out.push_back({fmt::format("control {}", out.size() + 1),
+    out.push_back({controllers::to_string(one),
                    [&text, &setup, one] { return read_heidenhain(text, kFile, setup, one); }});
   }
   return out;
