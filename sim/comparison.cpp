@@ -373,6 +373,17 @@ std::string unlike(const CaseData& one, const CaseData& base) {
                      *one.signal_delay / us, base.name, *base.signal_delay / us);
 }
 
+// What a quantity is of one case, and what there is to say about it.
+Noted answer(const QuantitySpec& spec, Compared& one, const CaseData* base) {
+  const QuantityInfo& info = quantity_info(spec.name);
+  if (info.needs_base && one.data.name == spec.base) return {kNone, "is compared with itself"};
+  Noted found = info.is_of_ball ? evaluate_ball(spec, one)
+                : spec.part     ? evaluate_probe(spec, one.data, base)
+                                : Noted{evaluate(spec, one, base)};
+  if (found.note.empty() && base != nullptr) found.note = unlike(one.data, *base);
+  return found;
+}
+
 Compared* find(std::deque<Compared>& cases, std::string_view name) {
   for (Compared& one : cases) {
     if (one.data.name == name) return &one;
@@ -449,16 +460,9 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
       row.reference = spec.reference;
       row.kind = spec.kind;
       const bool missing = one == nullptr || (!spec.base.empty() && base == nullptr);
-      const Noted found =
-          missing                               ? Noted{}
-          : quantity_info(spec.name).is_of_ball ? evaluate_ball(spec, *one)
-          : spec.part ? evaluate_probe(spec, one->data, base != nullptr ? &base->data : nullptr)
-                      : Noted{evaluate(spec, *one, base != nullptr ? &base->data : nullptr)};
+      Noted found = missing ? Noted{} : answer(spec, *one, base != nullptr ? &base->data : nullptr);
       row.value = found.value;
-      row.note = found.note;
-      if (row.note.empty() && !missing && base != nullptr) {
-        row.note = unlike(one->data, base->data);
-      }
+      row.note = std::move(found.note);
       rows.push_back(std::move(row));
     }
   }

@@ -144,8 +144,14 @@ TEST(FeedbackHardware, ThatSomeCasesLackIsTold) {
 }
 
 TEST(Comparison, HasNoRowOfTheBaseItself) {
-  const Scenario all = scenario("feedback");
+  Scenario all = scenario("feedback");
   EXPECT_EQ(all.quantities.at(0).cases, std::vector<std::string>{"one"});
+  all.quantities[0].name = "response_time";
+  all.quantities[0].cases = {"nominal", "one"};  // as if asked for
+  const auto rows = run(all).comparison;
+  EXPECT_TRUE(std::isnan(rows.at(0).value)) << rows[0].value << " ms: of nothing";
+  EXPECT_EQ(rows[0].note, "is compared with itself");
+  EXPECT_TRUE(std::isfinite(rows.at(1).value));
 }
 
 }  // namespace
