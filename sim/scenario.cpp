@@ -85,6 +85,7 @@ class ScenarioReader {
     out_.probes = read_probes(root, !out_.program.cutters.empty());
     check_periods(root);
     read_cut(root);
+    refuse_unused(root);
     const std::size_t before = root.faults();
     std::vector<Reader> cases = root.tables("case");
     cases_are_known_ = root.faults() == before;
@@ -331,9 +332,6 @@ class ScenarioReader {
     if (root.has("part")) {
       Reader part = root.table("part");
       out_.part = read_nominal_part(part, files_);
-      if (out_.part && !root.has("probe")) {
-        part.fault("stl", "is what probed points are laid on: it needs a [[probe]]");
-      }
       out_.stock = read_stock(part);
     }
     if (!root.has("cutting")) return;
@@ -342,6 +340,19 @@ class ScenarioReader {
     out_.cutting->place = root.place("cutting");
     if (out_.stock.empty() && cutting.faults() == 0) {
       cutting.fault("needs the raw part: [[part.stock]] with a box or a cylinder");
+    }
+  }
+
+  // What nothing would look at, and the user would believe in.
+  void refuse_unused(Reader& root) {
+    if (root.faults() > 0 || root.has("probe")) return;
+    if (out_.part) {
+      root.table("part").fault("stl", "is what probed points are laid on: it needs a [[probe]]");
+    }
+    if (root.has("cmm")) root.table("cmm").fault("measures nothing: there is no [[probe]]");
+    if (!out_.stock.empty() && !out_.cutting) {
+      root.table("part").fault(
+          "stock is neither cut nor probed: it needs [cutting] or a [[probe]]");
     }
   }
 
