@@ -9,7 +9,10 @@ What a file holds is drawn; why a figure is not is said of those in `--figures`,
 import argparse
 import dataclasses
 import difflib
+import mmap
+import os
 import pathlib
+import signal
 import sys
 
 import numpy as np
@@ -86,11 +89,20 @@ def failure(fault):
     return f"drawing it failed ({type(fault).__name__}: {' '.join(str(fault).split())})"
 
 
+reading = mmap.mmap(-1, mmap.PAGESIZE)   # name of the file that is being read; shared with the process that waits
+
+
+def begin_reading(file):
+    name = os.fsencode(str(file))[:len(reading) - 1]
+    reading[:len(name) + 1] = name + b"\0"
+
+
 def pages_of(files, named, why, names):
     """All figures of all files as (stem of the file name, figure), and whether a file could not be read. What is not
     drawn is told, unless another kind of file was meant. InputError: nothing can be drawn."""
     pages, found, missing, unread = [], set(), [], []
     for file in files:
+        begin_reading(file)
         try:
             with open_result(file) as result:
                 result.names = names
@@ -219,5 +231,26 @@ def main(arguments):
     return 2 if unread else 0
 
 
+CRASHES = (signal.SIGSEGV, signal.SIGBUS, signal.SIGABRT, signal.SIGFPE, signal.SIGILL)
+
+
+def run_apart(arguments):
+    """Exit status of main in a process of its own: the HDF5 library crashes on some damaged files."""
+    child = os.fork()
+    if child == 0:
+        sys.exit(run(main, arguments))
+    for passed_on in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(passed_on, lambda number, _: os.kill(child, number))
+    _, status = os.waitpid(child, 0)
+    if not os.WIFSIGNALED(status):
+        return os.waitstatus_to_exitcode(status)
+    number = os.WTERMSIG(status)
+    if number not in CRASHES:
+        return 128 + number
+    file = os.fsdecode(reading[:].split(b"\0", 1)[0])
+    print(f"{file}: error: is damaged (reading it ended with {signal.Signals(number).name})", file=sys.stderr)
+    return 2
+
+
 if __name__ == "__main__":
-    sys.exit(run(main, sys.argv[1:]))
+    sys.exit(run_apart(sys.argv[1:]))

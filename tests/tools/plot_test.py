@@ -840,6 +840,16 @@ class Mistakes(WithFiles):
             del file["cases/table/servo/s"]
         self.fails(f"{hollow}: error: figure9: case table holds no s", hollow, "--figures", "figure9")
 
+    def test_a_file_on_which_the_library_crashes(self):
+        crash = ("import os, signal, sys; sys.path.insert(0, sys.argv.pop(1)); import plot; "
+                 "plot.open_result = lambda file: os.kill(os.getpid(), signal.SIGSEGV); sys.exit(plot.run_apart(sys.argv[1:]))")
+        done = subprocess.run([sys.executable, "-B", "-c", crash, PLOT.parent, self.side, "-o", self.out],
+                              capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout, done.stderr),
+                         (2, "", f"{self.side}: error: is damaged (reading it ended with SIGSEGV)\n"))
+        done = subprocess.run([PLOT, self.side, "-o", self.out, "--figures", "figure6"], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, f"{self.out}/side-figure6.png\n", ""))
+
     def test_files_that_lack_what_every_one_holds(self):
         def damaged(source, change):
             path = self.root / "damaged.h5"
