@@ -33,7 +33,7 @@ std::vector<JointSection> sections_of(const TableText& ini) {
       if (!is_joint) continue;
       const auto joint = line.substr(kSection.size(), line.size() - kSection.size() - 1);
       out.push_back(
-          {.line = number, .joint = static_cast<std::size_t>(number_at(joint, ini.name, number))});
+          {.line = number, .joint = static_cast<std::size_t>(index_at(joint, ini.name, number))});
       continue;
     }
     const std::size_t equals = line.find('=');

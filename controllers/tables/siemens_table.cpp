@@ -95,13 +95,12 @@ class SiemensFile {
     // $AA_ENC_COMP[encoder,k,axis], $AA_ENC_COMP_STEP[encoder,axis]; $AN_CEC[t,k], $AN_CEC_STEP[t]
     const std::size_t expected = (is_encoder ? 2U : 1U) + (rest.empty() ? 1U : 0U);
     if (a.index.size() != expected) fault(number, fmt::format("{} indices", a.index.size()));
-    Variables& table =
-        is_encoder ? encoder_[std::string(a.index.back())]
-                   : cross_[static_cast<int>(number_at(a.index.front(), file_.name, number))];
+    Variables& table = is_encoder ? encoder_[std::string(a.index.back())]
+                                  : cross_[index_at(a.index.front(), file_.name, number)];
     if (table.line == 0) table.line = number;
     const Value value{std::string(a.value), number};
     if (rest.empty()) {
-      table.points[static_cast<int>(number_at(a.index[1], file_.name, number))] = value;
+      table.points[index_at(a.index[1], file_.name, number)] = value;
     } else {
       table.named[std::string(rest.substr(1))] = value;
     }
@@ -138,6 +137,9 @@ class SiemensFile {
     const double min = number(v, "MIN"), max = number(v, "MAX"), step = number(v, "STEP");
     if (!(step > 0.0 && max > min)) fault(named(v, "STEP").line, "STEP and MAX - MIN must be > 0");
     const double intervals = (max - min) / step;
+    if (intervals > static_cast<double>(max_points_)) {
+      fault(named(v, "STEP").line, fmt::format("more than {} points", max_points_));
+    }
     if (std::abs(intervals - std::round(intervals)) > kSlack * intervals) {
       fault(named(v, "MAX").line, "MAX - MIN is no multiple of STEP");
     }

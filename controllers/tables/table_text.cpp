@@ -54,6 +54,15 @@ double number_at(std::string_view word, const std::string& file, int line) {
   refuse(file, line, fmt::format("'{}' must be a number", word));
 }
 
+int index_at(std::string_view word, const std::string& file, int line) {
+  constexpr int kMax = 9999;
+  int value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const bool is_whole = error == std::errc() && end == word.data() + word.size();
+  if (is_whole && value >= 0 && value <= kMax) return value;
+  refuse(file, line, fmt::format("'{}' must be a number from 0 to {}", word, kMax));
+}
+
 void refuse(const std::string& file, int line, std::string message) {
   throw InputError({file, line, 0}, std::move(message));
 }

@@ -29,6 +29,9 @@ std::optional<double> number_in(std::string_view word);
 /// The same. @throws InputError at the line if it is none
 double number_at(std::string_view word, const std::string& file, int line);
 
+/// The whole number from 0 to 9999 that a word is. @throws InputError at the line if it is none
+int index_at(std::string_view word, const std::string& file, int line);
+
 [[noreturn]] void refuse(const std::string& file, int line, std::string message);
 
 /// The file of a name. @throws InputError at `from`, which names it, if it is missing

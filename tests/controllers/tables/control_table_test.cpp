@@ -378,6 +378,54 @@ TEST(ControlTable, SiemensRefusesWhatItWouldTakeOtherwise) {
   EXPECT_EQ(siemens_fault("$MN_X[0]=1\nM17\n"), "A.INI:1: error: unknown variable $MN_X");
 }
 
+// Texts with bytes changed, dropped and doubled are read or refused; nothing else happens.
+TEST(ControlTable, DamagedFilesAreReadOrRefused) {
+  const std::string pieces = "0123456789.-+eE[](),=;$%#*\n XYZC_AMN";
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"mill.ini", "[JOINT_0]\nCOMP_FILE = x.comp\nCOMP_FILE_TYPE = 0\n"},
+      {"x.comp", "0 0 0\n10 10.003 10.001\n30 29.999 29.998\n"},
+      {"CONFIG.CMA.txt", "ACTIVE X C\n* X.COM C.COM\n"},
+      {"X.COM.txt", "AXISPOS BACKLASH X\n0 0.1 0\n1 0.2 0.1\n"},
+      {"C.COM.txt", "AXISPOS C\n0 0\n360 0\n"},
+      {"A.INI",
+       "%_N_NC_CEC_INI\n$AN_CEC[0,0]=0\n$AN_CEC[0,1]=0.01\n$AN_CEC_INPUT_AXIS[0]=(Y1)\n"
+       "$AN_CEC_OUTPUT_AXIS[0]=(Z1)\n$AN_CEC_STEP[0]=8\n$AN_CEC_MIN[0]=-400\n"
+       "$AN_CEC_MAX[0]=-392\n$AN_CEC_DIRECTION[0]=0\n$AN_CEC_MULT_BY_TABLE[0]=0\n"
+       "$AN_CEC_IS_MODULO[0]=0\nM17\n"},
+      {"x.csv", "X_mm,EXX_up_um,EXX_down_um\n0,1,2\n5,1,2\n"},
+      {"locations.csv", "error,value,unit\nEC0Y,1,urad\n"}};
+  std::size_t refused = 0, seed = 1;
+  const auto random = [&seed](std::size_t n) {
+    seed = seed * 6364136223846793005ULL + 1442695040888963407ULL;
+    return (seed >> 33) % n;
+  };
+  constexpr int kTexts = 4000;
+  for (int n = 0; n < kTexts; ++n) {
+    std::vector<TableText> texts;
+    for (const auto& [name, text] : files) texts.push_back({name, text});
+    std::string& text = texts[random(texts.size())].text;
+    for (std::size_t edits = 1 + random(3); edits > 0 && !text.empty(); --edits) {
+      const std::size_t at = random(text.size());
+      const std::size_t kind = random(4);
+      if (kind == 0) text.erase(at, 1 + random(4));
+      if (kind == 1) text.insert(at, text.substr(at, 1 + random(20)));
+      if (kind >= 2) text[at] = pieces[random(pieces.size())];
+    }
+    const auto reads = [&](auto&& read) {
+      try {
+        read();
+      } catch (const InputError&) {
+        ++refused;
+      }
+    };
+    reads([&] { read_linuxcnc_tables(texts, kJointAxes); });
+    reads([&] { read_heidenhain_tables(texts); });
+    reads([&] { read_siemens_tables(texts, 200); });
+    reads([&] { read_csv_tables(texts); });
+  }
+  EXPECT_GT(refused, 1000U);
+}
+
 TEST(ControlTable, HeidenhainRefusesRowsAndColumnsThatDoNotFit) {
   const auto fault = [](const std::string& text) {
     return fault_of([&] {
