@@ -9,6 +9,7 @@
 
 #include "controllers/gcode/interpreter.h"
 #include "plant/kinematics/straight_tool_path.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 #include "sim/prepared_case.h"
 
@@ -181,6 +182,7 @@ class PostReplay {
   // The next motion; what is not motion before it has been done. nullptr: the program has ended.
   const Move* next_motion() {
     while (next_ < moves_.size()) {
+      throw_if_interrupted();
       const Move& move = moves_[next_++];
       line_ = move.line;
       if (is_motion(move.kind)) return &move;

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "controllers/gcode/free_axis.h"
 #include "controllers/gcode/printer.h"
 #include "controllers/path/slowed_motion.h"
 #include "plant/kinematics/branches.h"
@@ -19,15 +20,24 @@ namespace {
 
 constexpr double kStandingTip = 1e-9;    // m; a shorter way of the tip is none
 constexpr std::size_t kMostFaults = 20;  // a machine that is too small has one a location
-constexpr double kJustOff = 1e-7;        // rad; so near to a singular direction axes begin to tilt
-constexpr double kSameAxis = 1e-9;       // rad; tool axes nearer to each other are one
-constexpr double kSameAngle = 1e-6;      // rad; a free axis so near to its place need not turn
-constexpr int kMostHalvings = 20;
 constexpr std::string_view kRemedies =
     "lead the tool axis past at a distance, retract there, or let the axes begin elsewhere "
     "(--start)";
 
 using Eigen::Vector3d;
+
+// Share of the tolerance of the tip for the chords between inserted points (m).
+double chord_of(const PostOptions& options) {
+  switch (options.mode) {
+    case PostMode::joints:
+      return kChordTolerance * options.tolerance.tip;
+    case PostMode::locations:  // no chord, but for the choice of solutions
+      return options.tolerance.tip;
+    case PostMode::tip:  // the NC keeps the tip where it belongs
+      break;
+  }
+  return std::numeric_limits<double>::infinity();
+}
 
 class Post {
  public:
@@ -38,21 +48,10 @@ class Post {
         inverse_(inverse),
         options_(options),
         safe_(inverse, options.safe, options.part_zero, options.work_system),
+        free_axis_(inverse, {chord_of(options), options.tolerance.axis}),
+        rounding_(options.tolerance.tip),
         Q_(options.start) {
-    const double T = options.tolerance.tip;
-    switch (options.mode) {
-      case PostMode::joints:
-        chord_ = kChordTolerance * T;
-        rounding_ = T - chord_;
-        break;
-      case PostMode::locations:
-        chord_ = rounding_ = T;  // no chord, but for the choice of solutions
-        break;
-      case PostMode::tip:  // the NC keeps the tip where it belongs
-        chord_ = std::numeric_limits<double>::infinity();
-        rounding_ = T;
-        break;
-    }
+    if (options.mode == PostMode::joints) rounding_ -= chord_of(options);
   }
 
   Posted run(std::vector<Warning>* of_refused) {
@@ -132,6 +131,7 @@ class Post {
     tool_ = tool;
     tool_offset_ = entry != nullptr ? entry->offset : AxisWords::Zero();
     p_ST_ = -tool_offset_.head<3>();
+    free_axis_.set_tool(p_ST_);
     add(MoveKind::tool, line).number = tool;
     if (is_safe()) retract();  // machines move in M6
   }
@@ -222,7 +222,7 @@ class Post {
       constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
       home[j] += kTurn * std::round((Q_[j] - home[j]) / kTurn);
     }
-    if (turn_of(home) > 0.0) program_line(safe_.rotary_line(home));
+    if (rotation_between(Q_, home) > 0.0) program_line(safe_.rotary_line(home));
   }
 
   void pass_on(const ClRecord& record) {
@@ -270,7 +270,7 @@ class Post {
     if (!next.is_reached()) return fault(record.line, reason(next, inverse_));
     note_singular(next, record.line);
     if (next.is_singular) next.Q = looking_ahead(i, P, next.Q);
-    const bool crosses = is_retracted_ || turn_of(next.Q) > kSameAngle;
+    const bool crosses = is_retracted_ || rotation_between(Q_, next.Q) > kSameAngle;
     if (is_safe() && crosses) {
       approach(record, P, next.Q);
     } else {
@@ -297,79 +297,9 @@ class Post {
         upright.push_back(next);
         continue;
       }
-      const plant::StraightToolPath way(upright.back(), next);
-      for (const Joints& branch : branches(way, Q)) {
-        const auto Q_here = on_branch(P, branch);
-        if (Q_here && stays_free(upright, *Q_here) && arrives(way, branch)) return *Q_here;
-      }
-      return Q;
+      return free_axis_.before_leaving(upright, next, Q).value_or(Q);
     }
     return Q;
-  }
-
-  static ToolPose just_off(const plant::StraightToolPath& way) {
-    return way.at(std::min(1.0, kJustOff / way.angle()));
-  }
-
-  std::vector<Joints> branches(const plant::StraightToolPath& way, const Joints& Q_near) const {
-    return plant::departures(inverse_, just_off(way), p_ST_, Q_near);
-  }
-
-  // The joints of a branch, where the direction is still singular.
-  std::optional<Joints> on_branch(const ToolPose& P, const Joints& branch) const {
-    const plant::JointSolution found = inverse_.nearest(P, p_ST_, branch);
-    return found.is_reached() ? std::optional(found.Q) : std::nullopt;
-  }
-
-  bool stays_free(const std::vector<ToolPose>& upright, const Joints& Q) const {
-    return std::all_of(upright.begin(), upright.end(),
-                       [&](const ToolPose& P) { return on_branch(P, Q).has_value(); });
-  }
-
-  // Whether a branch arrives, without changing to another in the singular direction.
-  bool arrives(const plant::StraightToolPath& way, const Joints& branch) const {
-    return linearised({just_off(way), way.at(1.0)}, branch).is_complete;
-  }
-
-  plant::LinearisedPath linearised(const plant::StraightToolPath& way, const Joints& Q) const {
-    return plant::linearise(inverse_, p_ST_, way, Q, {chord_, options_.tolerance.axis});
-  }
-
-  // Turns the free axis with the tip in place, if that lets the tool axis go the way. The blocks
-  // that it takes, or nullopt.
-  struct Departure {
-    std::vector<Joints> turn;
-    plant::LinearisedPath way;
-  };
-  std::optional<Departure> departure(const plant::StraightToolPath& way) const {
-    if (way.angle() < kSameAxis || !inverse_.nearest(here_, p_ST_, Q_).is_singular) return {};
-    for (const Joints& branch : branches(way, Q_)) {
-      const auto Q = on_branch(here_, branch);
-      if (!Q || !arrives(way, branch)) continue;
-      Departure out;
-      if (turn_of(*Q) > kSameAngle && !turn_in_place(Q_, *Q, kMostHalvings, out.turn)) continue;
-      out.way = linearised(way, *Q);
-      if (out.way.is_complete) return out;
-    }
-    return {};
-  }
-
-  double turn_of(const Joints& Q) const {
-    return (Q - Q_).tail<kJoints - kLinearJoints>().cwiseAbs().maxCoeff();
-  }
-
-  // Chords from Q_0 to Q_1 on which the tip stays here.
-  bool turn_in_place(const Joints& Q_0, const Joints& Q_1, int halvings_left,
-                     std::vector<Joints>& out) const {
-    const Joints middle = 0.5 * (Q_0 + Q_1);
-    const Vector3d tip = plant::forward(inverse_.chain(), middle, p_ST_).p_WT;
-    if ((tip - here_.p_WT).norm() <= chord_ || halvings_left == 0) {
-      out.push_back(Q_1);
-      return true;
-    }
-    const auto between = on_branch(here_, middle);
-    return between && turn_in_place(Q_0, *between, halvings_left - 1, out) &&
-           turn_in_place(*between, Q_1, halvings_left - 1, out);
   }
 
   void turn_here(const std::vector<Joints>& turn, int line) {
@@ -382,7 +312,7 @@ class Post {
                      "a singular direction; a retract there would avoid it",
                      inverse_.chain().layout.letter_of(kLinearJoints + joint), angle / deg));
     for (const Joints& Q : turn) {
-      block(MoveKind::feed, line, here_, Q, 0.0, turn_of(Q) / options_.turn_rate);
+      block(MoveKind::feed, line, here_, Q, 0.0, rotation_between(Q_, Q) / options_.turn_rate);
     }
     out_.inserted += turn.size();
   }
@@ -401,11 +331,11 @@ class Post {
     if (options_.mode == PostMode::locations) {
       note_bend(path, end.Q, line);
       way.points = {{1.0, end.Q}};
-    } else if (auto leaving = departure(path)) {
-      turn_here(leaving->turn, line);
-      way = std::move(leaving->way);
+    } else if (auto leaving = free_axis_.departure(path, here_, Q_)) {
+      turn_here(leaving->rotation, line);
+      way = std::move(leaving->path);
     } else {
-      way = linearised(path, Q_);
+      way = free_axis_.linearised(path, Q_);
     }
     if (!way.is_complete) {
       fault(line, fmt::format("at {:.1f} % of the way here {}", 100.0 * way.t, why_not(way, path)));
@@ -516,6 +446,7 @@ class Post {
   const plant::InverseKinematics& inverse_;
   const PostOptions& options_;
   SafeApproach safe_;
+  FreeAxis free_axis_;
   bool is_retracted_ = false;
   int last_line_ = 0;                          // of a location
   std::vector<ClRecord> held_;                 // while retracted, for switch_on()
@@ -523,8 +454,8 @@ class Post {
   struct Runs {
     int direction = 0, coolant = 0;
   };
-  Runs runs_;                            // as last programmed
-  double chord_ = 0.0, rounding_ = 0.0;  // m, shares of the tolerance of the tip
+  Runs runs_;        // as last programmed
+  double rounding_;  // m, share of the tolerance of the tip
   Posted out_;
   std::vector<Fault> faults_;
   Joints Q_;

@@ -13,6 +13,7 @@
 #include "controllers/tables/siemens_table.h"
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::sim {
@@ -137,6 +138,7 @@ class Verification {
     for (const int direction : {1, -1}) {
       const auto chord = chords(line, c, direction);
       for (int n = 0; n < kPositions; ++n) {
+        throw_if_interrupted();
         const double q = line.from + (line.to - line.from) * n / (kPositions - 1);
         const double read = c.read(q, direction);
         const double wanted = chord(line.entry_of(q));
