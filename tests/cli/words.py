@@ -164,6 +164,20 @@ class Words(unittest.TestCase):
         chord = curvature * length**2 / 8.0 * 1000.0      # um
         self.assertAlmostEqual(residual[3.2, 0.45], chord, delta=0.01)
 
+    def test_only_a_change_of_the_command_shifts_Z_at_the_scale(self):
+        done = self.servomill("run", os.path.join(SCENARIOS, "guevel2025", "z_hypotheses.toml"), "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = {(row["case"], row["axis"] or "top"): row["value"] for row in map(json.loads, done.stdout.splitlines())}
+        for case, scale, top in (("compensated", 0.14, 0.0), ("datum", 5.14, 0.0), ("temperature", 5.14, 0.0),
+                                 ("growth", 0.14, -5.0), ("force", 0.14, 0.0), ("force_p", 0.22, 0.0),
+                                 ("force_p_72N", 4.3, -4.1)):
+            with self.subTest(case):
+                self.assertAlmostEqual(found[case, "Z"], scale, delta=0.03)
+                self.assertAlmostEqual(found[case, "top"], top, delta=0.05)
+                self.assertAlmostEqual(found[case, "X"], 0.37, delta=0.02)
+                self.assertAlmostEqual(found[case, "Y"], 0.42, delta=0.02)
+        self.assertAlmostEqual(found["air", "Z"], 0.12, delta=0.01)
+
 
 if __name__ == "__main__":
     unittest.main()
