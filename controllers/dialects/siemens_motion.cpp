@@ -139,7 +139,7 @@ class Motion {
     if (is_linear_axis(a) || !context_.settings.is_modulo[at(a - 3)]) return value;
     const double angle = value - std::floor(value / kTurn) * kTurn;
     const std::optional<double> start = frame_.program(state_.position, a);
-    if (!start) return angle;
+    if (!start) return value;  // the count of turns begins here
     const bool is_AC = form == SiemensForm::absolute && context_.rules.AC_is_not_shortest;
     if (context_.settings.G90_is_shortest && !is_AC) {
       return *start + std::remainder(angle - *start, kTurn);

@@ -159,6 +159,17 @@ double resolution_of(const CompensateRequest& request) {
   return request.dialect == Dialect::siemens ? 10e-9 : 1e-6;
 }
 
+std::array<bool, 3> endless_axes(const MachineDescription& described) {
+  const JointLayout& layout = described.machine.chain.layout;
+  std::array<bool, 3> out{};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::optional<int> j = layout.joint_of(kAllAxes[kLinearJoints + i]);
+    const NcSettings& nc = described.machine.nc;
+    out[i] = j && (std::isinf(nc.lower[*j]) || std::isinf(nc.upper[*j]));
+  }
+  return out;
+}
+
 DialectSettings dialect_settings(const CompensateRequest& request,
                                  const MachineDescription& described) {
   if (request.splits_rapids) {
@@ -190,6 +201,7 @@ DialectSettings dialect_settings(const CompensateRequest& request,
     if (layout.joint_of(axis)) settings.axes.push_back(axis);
   }
   settings.has_rotary_axes = layout.has(kLinearJoints) || layout.has(kLinearJoints + 1);
+  settings.is_endless = endless_axes(described);
   return settings;
 }
 
@@ -223,6 +235,7 @@ VerificationReport verify(const CompensateRequest& request, const MachineDescrip
   out.setup = known.setup;
   out.dialect = request.dialect;
   out.layout = described.machine.chain.layout;
+  out.is_endless = endless_axes(described);
   out.is_start_known = options.is_start_known;
   const bool is_linuxcnc = request.dialect == Dialect::linuxcnc;
   std::array<bool, controllers::kWorkSystems> is_known{};

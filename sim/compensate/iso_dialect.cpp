@@ -50,6 +50,10 @@ void IsoDialect::add_feed_mode(const DialectMotion& motion, std::string& text) {
   modes_.F.reset();
 }
 
+std::string IsoDialect::position_word(Axis axis, double value) {
+  return letter(axis) + number(fixed_text(value, decimals(axis)));
+}
+
 std::string IsoDialect::motion_text(const DialectMotion& motion, std::string_view prefix) {
   std::string text(prefix);
   add_feed_mode(motion, text);
@@ -60,7 +64,7 @@ std::string IsoDialect::motion_text(const DialectMotion& motion, std::string_vie
   if (modes_.code != code) add_word(text, code);
   modes_.code = code;
   for (const auto& [axis, value] : motion.words) {
-    add_word(text, letter(axis) + number(fixed_text(value, decimals(axis))));
+    add_word(text, position_word(axis, value));
   }
   if (motion.arc) {
     add_word(text, "I" + number(fixed_text(motion.arc->dx, decimals(Axis::X))));

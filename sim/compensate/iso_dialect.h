@@ -35,6 +35,7 @@ class IsoDialect : public DialectPrinter {
   /// Everything that a tool change may have changed. The spindle has been off before.
   void forget_modes();
   virtual std::string number(std::string text) const { return text; }
+  virtual std::string position_word(Axis axis, double value);
   virtual int feed_decimals() const { return 3; }
   virtual std::string speed(double rpm) const = 0;
 

@@ -73,9 +73,14 @@ class Siemens final : public IsoDialect {
     put("M6");
     assume("T selects the tool and M6 changes it");
     forget_modes();
+    count_.fill(std::nullopt);
     modes_.feed_mode = FeedMode::units_per_minute;
     modes_.work_system = system;
     put(fmt::format("G17 G40 G90 G94 {}", system_code(system)));
+  }
+  void stop(int code) override {
+    IsoDialect::stop(code);
+    count_.fill(std::nullopt);
   }
   void dwell(double seconds) override { put("G4 F" + rate(seconds, 4, "dwell")); }
 
@@ -103,13 +108,35 @@ class Siemens final : public IsoDialect {
   void place(const DialectMotion& motion) {
     assume("machine coordinates count from the same zero as in the original");
     modes_.code.reset();
+    is_of_machine_ = true;
     std::string text = motion_text(motion, "SUPA");
+    is_of_machine_ = false;
     if (motion.names(Axis::Z)) {
       if (motion.arc) throw Unsayable{"goes along an arc in machine coordinates"};
       add_word(text, "D0");
       modes_.length = 0;
     }
     put(text);
+  }
+
+  // An axis without ends may be a modulo axis: MD30455 then decides the way to a plain angle, and
+  // angles outside 0 ... 360 are others (Axes and spindles 06/2019, p. 225). AC keeps to the turn,
+  // IC to the count.
+  std::string position_word(Axis axis, double value) override {
+    const int i = index_of(axis) - kLinearJoints;
+    if (i < 0 || !settings_.is_endless[static_cast<std::size_t>(i)]) {
+      return IsoDialect::position_word(axis, value);
+    }
+    const auto is_angle = [](double count) { return count >= 0.0 && count < 360.0; };
+    const std::string text = fixed_text(value, decimals(axis));
+    const double count = std::stod(text);
+    std::optional<double>& known = count_[static_cast<std::size_t>(i)];
+    const std::optional<double> before = is_of_machine_ ? std::nullopt : known;
+    known = is_of_machine_ ? std::nullopt : std::optional<double>(count);
+    if (before && !(is_angle(*before) && is_angle(count))) {
+      return fmt::format("{}=IC({})", letter(axis), fixed_text(count - *before, decimals(axis)));
+    }
+    return is_angle(count) ? fmt::format("{}=AC({})", letter(axis), text) : letter(axis) + text;
   }
 
   static int edge(const DialectMotion& motion) {
@@ -127,7 +154,12 @@ class Siemens final : public IsoDialect {
   void work_system(int system) {
     put(system_code(system));
     modes_.work_system = system;
+    count_.fill(std::nullopt);
   }
+  // Rotary axes as written last, deg; nullopt: not known in the work system in force.
+  std::array<std::optional<double>, 3> count_{};
+  bool is_of_machine_ = false;
+
   int feed_decimals() const override { return 4; }
   std::string speed(double rpm) const override { return fixed_text(rpm, 3); }
 };

@@ -25,14 +25,12 @@ std::vector<Reading> fanuc_readings(const std::string& text, const controllers::
 }
 
 std::vector<Reading> siemens_readings(const std::string& text,
-                                      const controllers::ControlSetup& setup) {
+                                      const controllers::ControlSetup& setup,
+                                      std::array<bool, 3> is_endless) {
   std::vector<Reading> out;
-  for (const controllers::SiemensSettings& one : controllers::all_siemens_settings()) {
-    out.push_back(
-        {fmt::format("MD20270={} MD10760={:d} M6 {} MD22550={:d} SD42940={:d}", one.default_D,
-                     one.SUPA_drops_length, one.M6_is_macro ? "a macro" : "no macro",
-                     !one.T_changes_tool, !one.length_follows_plane),
-         [&text, &setup, one] { return read_siemens(text, kFile, setup, one); }});
+  for (const controllers::SiemensSettings& one : controllers::all_siemens_settings(is_endless)) {
+    out.push_back({controllers::to_string(one),
+                   [&text, &setup, one] { return read_siemens(text, kFile, setup, one); }});
   }
   return out;
 }
@@ -68,9 +66,9 @@ double written_grid(const std::string& text, Dialect dialect, double resolution)
 
 std::vector<Reading> readings_of(const std::string& text, Dialect dialect,
                                  const controllers::ControlSetup& setup, double resolution,
-                                 bool has_rotary_axes) {
+                                 bool has_rotary_axes, std::array<bool, 3> is_endless) {
   if (dialect == Dialect::fanuc) return fanuc_readings(text, setup, resolution);
-  if (dialect == Dialect::siemens) return siemens_readings(text, setup);
+  if (dialect == Dialect::siemens) return siemens_readings(text, setup, is_endless);
   return heidenhain_readings(text, setup, has_rotary_axes);
 }
 

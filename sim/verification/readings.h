@@ -1,6 +1,7 @@
 /// A written program under every setting of its control that could change its effect.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -21,9 +22,10 @@ double written_grid(const std::string& text, Dialect dialect, double resolution)
 
 /// @param text, setup  must outlive the readings
 /// @param resolution   m; Fanuc: below 1 um only controls with IS-C come into question
+/// @param is_endless   A, B, C: axes that may be modulo axes
 /// @pre dialect is not linuxcnc
 std::vector<Reading> readings_of(const std::string& text, Dialect dialect,
                                  const controllers::ControlSetup& setup, double resolution,
-                                 bool has_rotary_axes);
+                                 bool has_rotary_axes, std::array<bool, 3> is_endless);
 
 }  // namespace servomill::sim

@@ -59,8 +59,9 @@ class Verifier {
     if (request_.dialect == Dialect::linuxcnc) return run_linuxcnc(setup);
     controllers::ControlSetup control = request_.control;
     control.skips_blocks = skips_blocks;
-    const auto readings = readings_of(written_, request_.dialect, control, request_.limits.grid,
-                                      request_.layout.has(3) || request_.layout.has(4));
+    const auto readings =
+        readings_of(written_, request_.dialect, control, request_.limits.grid,
+                    request_.layout.has(3) || request_.layout.has(4), request_.is_endless);
     std::vector<std::vector<MachineAction>> done;
     for (const Reading& reading : readings) {
       settings_ = reading.settings;

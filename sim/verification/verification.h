@@ -23,6 +23,7 @@ struct VerificationRequest {
   controllers::ControlSetup control;         // entered by the operator of the other control
   Dialect dialect = Dialect::linuxcnc;
   JointLayout layout;
+  std::array<bool, 3> is_endless{};  // A, B, C: without ends of travel
   AxisFlags6 is_start_known{};
   ComparisonLimits limits;
 };

@@ -332,5 +332,27 @@ TEST(DialectRules, SmoothingHoldsForFeedsOnly) {
             std::string::npos);
 }
 
+// Axes without ends may be modulo axes: a plain angle leaves the way to the builder, and one
+// outside 0 ... 360 is another angle. B of this machine has ends, C has none.
+TEST(DialectRules, EndlessAxesOfSiemensSayTheirWay) {
+  Trial trial = dialect_trial(Dialect::siemens,
+                              "G21 G90 G17 G54\nT1 M6\nG0 X1 Y1 B-30 C350\nC10\nC-40\nC400\nC20\n"
+                              "G55 C30\nM0\nC-10\nM2\n");
+  trial.request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml";
+  EXPECT_EQ(body(trial),
+            "T1\n"
+            "M6\n"
+            "G17 G40 G90 G94 G54\n"
+            "G0 X1 Y1 B-30 C=AC(350)\n"
+            "C=AC(10)\n"
+            "C=IC(-50)\n"
+            "C=IC(440)\n"
+            "C=IC(-380)\n"
+            "G55\n"
+            "C=AC(30)\n"
+            "M0\n"
+            "C-10\n");
+}
+
 }  // namespace
 }  // namespace servomill::sim
