@@ -81,9 +81,9 @@ class PostReplay {
  private:
   // A start that no program can have meant.
   AxisWords elsewhere() const {
-    AxisWords words = AxisWords::Zero();
-    words << -0.0123, 0.0234, -0.0345, 0.0, 0.0, 0.0;
-    return words;
+    AxisWords words;
+    words << -0.0123, 0.0234, -0.0345, 0.0456, -0.0567, 0.0678;
+    return chain_.layout.words(chain_.layout.joints(words));  // 0 for axes that it lacks
   }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -263,6 +263,7 @@ class PostReplay {
       if (move->tool_offset != now_.tool) {
         fail(fmt::format("length {} is in force with tool {}", move->tool_offset, now_.tool));
       }
+      check_rounding(*move);
       const Block block = block_of(*move);
       const double t_next = result_.only_locations ? 1.0 : share_at(path, P, block.to.P);
       if (t_next < t - kTime) fail("the tool goes back on its path");
@@ -273,6 +274,13 @@ class PostReplay {
       arrive(block);
       t = t_next;
     } while (!near(now_.P, P));
+  }
+
+  void check_rounding(const Move& move) const {
+    if (move.path_mode != PathMode::continuous) return;
+    const bool is_bounded =
+        move.path_tolerance > 0.0 && move.path_tolerance <= options_.tolerance.tip * (1.0 + kTime);
+    if (!is_bounded) fail("nothing keeps corners within the tolerance (G64 P)");
   }
 
   void check_time(const Block& block, const ClRecord& record, const plant::StraightToolPath& path,

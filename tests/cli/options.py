@@ -84,6 +84,16 @@ class CommandLine(unittest.TestCase):
                 self.assertEqual(self.outcome(*command, option, with_unit), first)
                 self.assertNotEqual(self.outcome(*command, option, other), first)
 
+    def test_errors_of_a_machine_file(self):
+        with open(os.path.join(self.folder, "router.toml"), "w", encoding="utf-8") as file:
+            file.write('structure = "[w b X Y Z t]"\naxis.X.travel_mm = [0.0, 900.0]\n[errors.e]\nEC0Y = "0.2 mm/m"\n')
+        own = ["compensate", "cut.ngc", "-m", "router.toml", "--work-offset", "X=0,Y=0,Z=0", "-o", "-"]
+        said, _ = self.outcome(*own)
+        self.assertEqual(self.outcome(*own, "--errors", "router.toml")[0], said)
+        self.assertIn("X300.04", said)  # 0.2 mm/m of 200 mm
+        status, _, faults = self.servomill(*own, "--errors", "trunnion.toml")
+        self.assertEqual((status, faults), (2, "trunnion.toml: error: holds the errors of a machine with other axes\n"))
+
     def test_a_loop_that_its_own_gain_does_not_stabilise(self):
         bode = ["bode", SCENARIO, "--axis", "Y", "--method", "none", "--points", "2", "--set",
                 "machine_override.nc.check_stability=false", "--set"]

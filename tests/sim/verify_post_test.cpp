@@ -232,6 +232,36 @@ TEST(VerifyPost, DangerousWaysToTheSamePlacesAreFound) {
             "verified");
 }
 
+// G64 without P would let LinuxCNC round corners as far as its speed asks for.
+TEST(VerifyPost, CornersWithoutATolerance) {
+  for (const PostMode mode : {PostMode::joints, PostMode::locations, PostMode::tip}) {
+    const Work w = work(kTable, Approach::safe, mode);
+    std::string without;
+    for (const std::string& line : lines_of(w.program)) {
+      if (!line.starts_with("G64")) without += line + "\n";
+    }
+    EXPECT_NE(fault_of(w, without).find("nothing keeps corners within the tolerance (G64 P)"),
+              std::string::npos);
+  }
+}
+
+// Rotary axes that happen to be needed at zero are named, too: they may be anywhere.
+TEST(VerifyPost, RotaryAxesAtZeroAreNotAssumed) {
+  Work w = work(kTable, Approach::safe, PostMode::joints);
+  w.data = controllers::read_cl_data("FEDRAT/600\nRAPID\nGOTO/0,0,20\nGOTO/0,0,10\n", "p.cls");
+  w.options.tool = 1;
+  const std::string program =
+      "G21 G90 G94 G17 G40 G80\nG49 G53 G0 Z500\nT1 M6\nG49 G53 G0 Z500\nG54 G0 A0 C0\n"
+      "G54 G0 X0 Y0\nG43 H1\nG64 P0.001\nG0 X0 Y0 Z30 A0 C0\nG0 Z20\nG93\nG1 Z10 F60\nG94\nG0 Z20\n"
+      "G49 G53 G0 Z500\nM30\n";
+  EXPECT_EQ(fault_of(w, program), "verified");
+  std::string mutant = program;
+  mutant.erase(mutant.find("G54 G0 A0 C0\n"), 13);
+  EXPECT_EQ(fault_of(w, mutant),
+            "p.cls:3: error: not as verified: line 8 of the program: a rotary axis moves below the "
+            "height to retract to");
+}
+
 TEST(VerifyPost, SaysWhatWasCompared) {
   const Work w = work(kTable, Approach::safe, PostMode::locations);
   EXPECT_EQ(to_string(verify_post(w.program, w.data, w.machine, w.options, "p.cls")),
