@@ -140,7 +140,7 @@ class Ends(unittest.TestCase):
         self.assertTrue(os.path.exists(self.out))
 
     def test_friction_that_the_step_does_not_resolve_is_no_response(self):
-        stiff = ('machine_override.axis.X.friction={model="set_valued", coulomb=0, breakaway=450, '
+        stiff = ('machine_override.axis.X.friction={model="set_valued", coulomb=0, breakaway=600, '
                  'stribeck_velocity=1e-9}')
         why = 'friction too stiff for the exact step; use integrator = "cvode"'
         stepped = servomill("step", MACHINE, "--axis", "X", "--kind", "position", "--set", stiff)
