@@ -17,6 +17,7 @@
 #include "sim/canon.h"
 #include "sim/compensate/dialect_writer.h"
 #include "sim/compensate/linuxcnc_writer.h"
+#include "sim/compensate/smoothed_feeds.h"
 #include "sim/compensate/walk.h"
 #include "sim/compensate/work_knowledge.h"
 #include "sim/read_errors.h"
@@ -281,8 +282,10 @@ Compensated compensate(const CompensateRequest& request) {
   }
 
   Compensated out;
+  std::optional<SmoothedFeeds> smoothed;
+  if (request.smoothing > 0.0) smoothed.emplace(machine, request.smoothing, request.tolerance);
   Walk walk(options, known.setup.tools, correction, out.summary,
-            request.records ? &out.record : nullptr);
+            request.records ? &out.record : nullptr, smoothed ? &*smoothed : nullptr);
   const auto writer = writer_of(request, described, walk, out.summary);
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
                                        known.setup);
@@ -298,7 +301,10 @@ Compensated compensate(const CompensateRequest& request) {
 
   Summary& summary = out.summary;
   summary.reversal_distance = correction.longest_reversal();
-  summary.smoothing = request.smoothing;
+  if (smoothed) {
+    smoothed->end_run();
+    summary.smoothing = smoothed->text();
+  }
   summary.assumed = assumptions(request, known, summary, layout);
   for (std::string& clause : writer->assumptions()) {
     out.warnings.push_back({{request.program_file}, "assumes that " + clause});

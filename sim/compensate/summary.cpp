@@ -54,11 +54,7 @@ std::vector<std::string> Summary::report(const JointLayout& layout) const {
         "of both is taken there, up to {:.1f} um stay",
         undirected->line, undirected_width / um));
   }
-  if (smoothing > 0.0) {
-    out.push_back(fmt::format(
-        "smoothing: the control may leave the corrected path by {:g} um at corners of short blocks",
-        smoothing / um));
-  }
+  if (!smoothing.empty()) out.push_back(smoothing);
   if (largest_turn > 0.0) {
     out.push_back(fmt::format("largest turn of a rotary axis {:.1f} urad", largest_turn / urad));
   }

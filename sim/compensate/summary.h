@@ -34,7 +34,7 @@ struct Summary {
   double reversal_distance = 0.0;  // m, travel that one takes at most
   std::optional<At> undirected;    // first feed with an axis that has not travelled yet
   double undirected_width = 0.0;   // m, by which the tip may be off there
-  double smoothing = 0.0;          // m, by which the control may leave the path; 0: not set
+  std::string smoothing;           // what the control's leaves; empty: not set
   bool unrolled = false;           // loops, subroutines
   bool has_expressions = false;    // became numbers
   bool has_cycles = false, has_cutter_compensation = false;

@@ -48,12 +48,13 @@ bool is_place_of_machine(const ExecutedBlock& block) {
 }
 
 Walk::Walk(const WalkOptions& options, const controllers::ToolTable& tools, Correction& correction,
-           Summary& summary, PathRecord* record)
+           Summary& summary, PathRecord* record, SmoothedFeeds* feeds)
     : options_(options),
       tools_(tools),
       correction_(correction),
       summary_(summary),
       record_(record),
+      feeds_(feeds),
       programmed_(options.start),
       out_(options.start),
       known_(options.is_start_known) {

@@ -28,6 +28,8 @@ struct Step {
   std::vector<FittedBlock> blocks;      // at least one
 };
 
+class SmoothedFeeds;
+
 struct WalkOptions {
   FitOptions fit;
   bool splits_rapids = false;
@@ -47,9 +49,9 @@ struct WalkOptions {
 class Walk {
  public:
   /// @param tools, correction, summary  must outlive this
-  /// @param record  receives the path, or nullptr
+  /// @param record, feeds  receive the path, or nullptr
   Walk(const WalkOptions& options, const controllers::ToolTable& tools, Correction& correction,
-       Summary& summary, PathRecord* record = nullptr);
+       Summary& summary, PathRecord* record = nullptr, SmoothedFeeds* feeds = nullptr);
 
   /// Corrects the next motion. The writer then tells where its text leaves the machine.
   /// @throws InputError for a move that cannot be corrected
@@ -92,6 +94,7 @@ class Walk {
   Correction& correction_;
   Summary& summary_;
   PathRecord* record_;
+  SmoothedFeeds* feeds_;
   AxisWords programmed_, out_;  // machine coordinates
   AxisFlags known_{};
   Directions directions_{};  // of travel, as programmed

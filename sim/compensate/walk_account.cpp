@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/compensate/smoothed_feeds.h"
 #include "sim/compensate/walk.h"
 
 namespace servomill::sim {
@@ -97,6 +98,11 @@ void Walk::arrive(const Step& step, const AxisWords& machine) {
   } else {
     ++summary_.blocks_before;
     ++summary_.blocks_after;
+  }
+  if (feeds_ != nullptr) {
+    const bool is_feed = step.is_corrected && step.move->kind != MoveKind::rapid;
+    if (is_feed) feeds_->add(step);
+    if (!is_feed) feeds_->end_run();
   }
   warn_of_travel(step);
   programmed_ = step.move->end_machine;
