@@ -1,4 +1,4 @@
-/// Which program computed a result.
+/// Identity of the program that computed a result.
 #pragma once
 
 #include <string_view>

@@ -364,7 +364,7 @@ Noted evaluate_probe(const QuantitySpec& spec, const CaseData& one, const CaseDa
   return {found.value, found.note};
 }
 
-// What distinguishes a case from its base beside what they are compared for: readings that are late
+// Difference of a case and its base that is not what they are compared for: readings that are late
 // displace an axis by its speed times that.
 std::string unlike(const CaseData& one, const CaseData& base) {
   if (!one.signal_delay || !base.signal_delay) return {};
@@ -373,7 +373,7 @@ std::string unlike(const CaseData& one, const CaseData& base) {
                      *one.signal_delay / us, base.name, *base.signal_delay / us);
 }
 
-// What a quantity is of one case, and what there is to say about it.
+// Value of a quantity of one case, with a note on it.
 Noted answer(const QuantitySpec& spec, Compared& one, const CaseData* base) {
   const QuantityInfo& info = quantity_info(spec.name);
   if (info.needs_base && one.data.name == spec.base) return {kNone, "is compared with itself"};

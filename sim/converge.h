@@ -1,4 +1,4 @@
-/// How far the numbers of a comparison depend on what a computation chooses: the same scenario with
+/// Dependence of the numbers of a comparison on what a computation chooses: the same scenario with
 /// one step halved at a time.
 #pragma once
 
@@ -34,7 +34,7 @@ const RefinementInfo& info_of(Refinement refinement);
 
 /// One line of the comparison and what becomes of it.
 struct ConvergedRow {
-  ComparisonRow row;                          // as the scenario stands
+  ComparisonRow row;                          // of the scenario unchanged
   std::array<double, kRefinements> change{};  // with the step halved, minus `row`; NaN: not known
 
   /// Bound of the error that the steps leave. An error of first order is as large as twice what
@@ -51,7 +51,7 @@ inline constexpr int kAllDigits = 9;
 
 struct Convergence {
   std::vector<ConvergedRow> rows;
-  /// Why a step was not halved; empty: it was, or the scenario has no such step and nothing
+  /// Reason why a step was not halved; empty: it was, or the scenario has no such step and nothing
   /// changes.
   std::array<std::string, kRefinements> why_not;
   std::vector<std::string> stopped;  // "case one: axis Y: following error ..."
@@ -66,7 +66,7 @@ struct ConvergeControl {
 /// The keys of a scenario, as --set takes them, that halve one of its steps; empty: it has none.
 std::vector<std::string> halved(Refinement refinement, const Scenario& scenario);
 
-/// Runs a scenario as it stands and once with each of these steps halved.
+/// Runs a scenario unchanged and once with each of these steps halved.
 /// @return nullopt if it was stopped
 /// @throws InputError before anything is simulated
 std::optional<Convergence> find_convergence(const ScenarioSource& source,

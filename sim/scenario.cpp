@@ -343,7 +343,7 @@ class ScenarioReader {
     }
   }
 
-  // What nothing would look at, and the user would believe in.
+  // Refuses keys that nothing would look at, though the user counts on them.
   void refuse_unused(Reader& root) {
     if (root.faults() > 0 || root.has("probe")) return;
     if (out_.part) {

@@ -61,7 +61,7 @@ struct CaseSpec {
   CuttingWear wear;                        // then
   std::optional<MachineSettings> machine;  // where the case overrides keys of the machine
 
-  /// Whether a strategy of its passes its signals through the feedback hardware.
+  /// Tells if one of its strategies passes its signals through the feedback hardware.
   bool needs_feedback_hardware() const;
 };
 
@@ -139,7 +139,7 @@ struct Scenario {
   const MachineSettings& machine_of(const CaseSpec& one) const {
     return one.machine ? *one.machine : machine;
   }
-  /// By which the feedback hardware delays the readings of a case (s); none of an ideal servo,
+  /// Delay (s) of the readings of a case by the feedback hardware; none of an ideal servo,
   /// which has no loops to read them.
   std::optional<double> signal_delay_of(const CaseSpec& one) const;
 };

@@ -35,7 +35,7 @@ bool comes_before_machine(std::string_view change);
 /// the folder in which the user is.
 std::string beside(const Place& place, const std::string& path);
 
-/// Whether a table holds the contents of another file than the one it names: --set has changed the
+/// Tells if a table holds the contents of another file than the one it names: --set has changed the
 /// name in a document that is complete by itself.
 bool is_outdated_copy(Reader& table, std::string_view name, std::string_view contents);
 

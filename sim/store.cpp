@@ -118,7 +118,7 @@ plant::MachineChain chain_of(const Scenario& scenario, const std::string& name) 
   return (one != nullptr ? scenario.machine_of(*one) : scenario.machine).chain;
 }
 
-// Of the feedback hardware of a case.
+// Delay by the feedback hardware of a case.
 std::optional<double> signal_delay_of(const Scenario& scenario, const std::string& name) {
   const CaseSpec* one = scenario.find_case(name);
   return one != nullptr ? scenario.signal_delay_of(*one) : std::nullopt;

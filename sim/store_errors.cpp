@@ -15,7 +15,7 @@ constexpr double kApart = 2.5 * mm;    // places on a longer axis; of a rotary o
 constexpr double kEndless = 500 * mm;  // of a linear axis without travel, to either side of zero
 constexpr double kTurn = 360 * deg;
 
-// Where the errors of an axis are written down.
+// Places at which the errors of an axis are written.
 struct Range {
   double lower = 0.0, upper = 0.0;  // m, rad
 };

@@ -21,10 +21,10 @@ struct Entry {
   bool reads_gains = false;  ///< false: Belief::Kv is NaN, so that nothing depends on it
   bool reads_errors = true;  ///< false: knows no geometric errors, and takes neither model nor sign
   bool acts = true;          ///< false: leaves everything as it is
-  /// Whether its signals pass through the feedback hardware: a case has one, and so one such
+  /// Use of the feedback hardware by its signals: a case has one, and so one such
   /// strategy.
   bool uses_feedback_hardware = false;
-  /// Whether it adds the error where the machine starts, which two strategies of a case that know
+  /// Tells if it adds the error where the machine starts, which two strategies of a case that know
   /// the same model must not both do; nullptr: no parameter decides that.
   bool (*holds_error_at_reference)(const Parameters&) = nullptr;
 };

@@ -15,7 +15,7 @@ namespace po = boost::program_options;
 
 std::string summary() {
   std::string out =
-      "Runs a scenario as it stands and once with each of these steps halved, and prints how\n"
+      "Runs a scenario unchanged and once with each of these steps halved, and prints how\n"
       "each line of its comparison changes:\n";
   for (std::size_t n = 0; n < sim::kRefinements; ++n) {
     const sim::RefinementInfo& info = sim::info_of(static_cast<sim::Refinement>(n));
