@@ -77,7 +77,8 @@ void run(std::string_view text) {
     return read_fanuc(text, file, setup, selected(controllers::all_fanuc_settings(), text));
   });
   check(text, [&] {
-    return read_siemens(text, file, setup, selected(controllers::all_siemens_settings(), text));
+    return read_siemens(text, file, setup,
+                        selected(controllers::all_siemens_settings({true, true, true}), text));
   });
   check(text, [&] {
     const bool has_tilting = text.size() % 2 == 0;
