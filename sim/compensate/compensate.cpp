@@ -219,11 +219,11 @@ std::unique_ptr<ProgramWriter> writer_of(const CompensateRequest& request,
   return std::make_unique<LinuxCncWriter>(walk, summary, decimals_for(request.tolerance));
 }
 
-std::string path_line(const CompensateRequest& request) {
+std::string path_line(const CompensateRequest& request, const ProgramWriter& writer) {
   const std::string line =
       fmt::format("path within {:g} um of the corrected one", request.tolerance / um);
-  if (request.dialect == Dialect::linuxcnc) return line;
-  return fmt::format("{}, positions rounded to {:g} um", line, resolution_of(request) / um);
+  const std::string rounding = writer.rounding();
+  return rounding.empty() ? line : fmt::format("{}, positions rounded to {}", line, rounding);
 }
 
 // Reads the written program back and compares it with the original.
@@ -314,7 +314,7 @@ Compensated compensate(const CompensateRequest& request) {
     out.warnings.push_back({{request.program_file}, std::move(sentence)});
   }
   std::vector<std::string> header = {header_line(request, machine.name, model)};
-  header.push_back(path_line(request));
+  header.push_back(path_line(request, *writer));
   for (const std::string& one : unrolled(summary)) header.push_back(one);
   for (const std::string& one : summary.assumed) header.push_back("assumed: " + one);
   for (const std::string& one : writer->warnings()) header.push_back("warning: " + one);

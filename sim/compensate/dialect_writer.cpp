@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "controllers/gcode/canned_cycles.h"
 #include "controllers/gcode/modal_state.h"
@@ -252,6 +253,12 @@ void DialectWriter::restate_spindle_and_coolant() {
   if ((coolant_ & controllers::kMist) != 0) printer_->coolant(7);
   if ((coolant_ & controllers::kFlood) != 0) printer_->coolant(8);
   known_coolant_ = coolant_;
+}
+
+std::string DialectWriter::rounding() const {
+  const bool is_inch = printer_->unit(Axis::X) != mm;
+  return is_inch ? fmt::format("{:g} inch", std::pow(10.0, -printer_->decimals(Axis::X)))
+                 : fmt::format("{:g} um", settings_.resolution / um);
 }
 
 std::string DialectWriter::finish(const std::vector<std::string>& header) {

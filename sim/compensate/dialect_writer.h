@@ -32,6 +32,7 @@ class DialectWriter final : public ProgramWriter {
   std::string finish(const std::vector<std::string>& header) override;
   std::vector<std::string> assumptions() const override { return printer_->assumptions(); }
   std::vector<std::string> warnings() const override { return printer_->warnings(); }
+  std::string rounding() const override;
 
  private:
   using Block = controllers::ExecutedBlock;

@@ -19,6 +19,8 @@ class ProgramWriter {
   virtual std::string finish(const std::vector<std::string>& header) = 0;
   /// What the operator has to make sure of at the control, one clause each.
   virtual std::vector<std::string> assumptions() const { return {}; }
+  /// How positions are rounded, where that is coarser than the tolerance asks for; or empty.
+  virtual std::string rounding() const { return {}; }
   /// What was left out or written from memory.
   virtual std::vector<std::string> warnings() const { return {}; }
 };

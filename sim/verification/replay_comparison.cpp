@@ -83,6 +83,7 @@ bool ReplayComparison::is_still(const Action& action) const {
 const controllers::MachineAction* ReplayComparison::peek() {
   take_auxiliary();
   while (next_ < replay_.size() && is_still(replay_[next_])) {
+    check_retract(replay_[next_]);
     ++next_;
     take_auxiliary();
   }

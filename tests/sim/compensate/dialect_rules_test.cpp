@@ -164,6 +164,7 @@ TEST(DialectRules, FanucProgramsInInchesStayInInches) {
   const Trial trial = dialect_trial(
       Dialect::fanuc, "G20 G90 G54\nT1 M6\nG43 H1\nS1000 M3\nG0 X1 Y.5\nZ.2\nG1 Z-.1 F4\nM2\n");
   EXPECT_NE(trial.run().program.find("\nN1 G20\n"), std::string::npos);
+  EXPECT_NE(trial.run().program.find("POSITIONS ROUNDED TO 0.0001 INCH)\n"), std::string::npos);
   EXPECT_EQ(body(trial),
             "T1 M6\n"
             "G90 G54 G17 G94 G40 G80\n"
@@ -394,6 +395,11 @@ TEST(DialectRules, BlocksThatChangeTheToolLengthAreLines) {
     const std::string text = body(dialect, program);
     EXPECT_EQ(text.find("G3 "), std::string::npos) << text;
   }
+}
+
+// G54 and tool 1 have Z48 at the machine's Z-2.
+TEST(DialectRules, RetractsFromTheirOwnHeightAreWrittenAndVerified) {
+  EXPECT_EQ(refusal(Dialect::fanuc, kStart + "G0 X1 Y1\nZ5\nZ48\nM2\n"), "taken");
 }
 
 }  // namespace
