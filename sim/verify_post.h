@@ -21,8 +21,9 @@ struct PostVerification {
 /// Reads the program as LinuxCNC does (controllers/gcode/interpreter.h), from a machine that is
 /// somewhere else, and compares it with the cutter locations through the forward kinematics:
 ///   - every location is reached in its order, tip and tool axis to the digits of the program
-///   - between locations tip and tool axis stay within the tolerance, corners are rounded by no more
-///     (G64 P), and the blocks take the time that the feed of the tip asks for; a rapid is one where the locations say so
+///   - between locations tip and tool axis stay within the tolerance, corners are rounded by no
+///     more (G64 P), and the blocks take the time that the feed of the tip asks for; a rapid is
+///     one where the locations say so
 ///   - tool, spindle and coolant are the wanted ones at every location; dwells, stops and messages
 ///     come between the same locations
 ///   - with Approach::safe rotary axes move at the retract height only; below it the tool moves

@@ -28,10 +28,10 @@ struct BodeResult {
   std::vector<BodeCurve> curves;
   bool stable = true;
   bool has_stable_velocity_loop = true;  // without the position loop
-  double time_constant = 0.0;  // s, slowest; infinite if unstable
-  double nyquist = 0.0;        // Hz, half the rate of the loop
-  Margins margins;             // of position and velocity
-  ClosedLoop closed;           // of position and velocity; of compliance peak in m/N
+  double time_constant = 0.0;            // s, slowest; infinite if unstable
+  double nyquist = 0.0;                  // Hz, half the rate of the loop
+  Margins margins;                       // of position and velocity
+  ClosedLoop closed;                     // of position and velocity; of compliance peak in m/N
   // of the measurement
   bool measured = false;
   Method method = Method::sine;

@@ -93,7 +93,7 @@ class ReplayComparison {
   Correction& correction_;
   std::size_t next_ = 0;
   controllers::KnownPosition at_;
-  Directions directions_{};  // of travel, as the original has them
+  Directions directions_{};                           // of travel, as the original has them
   AuxiliaryState auxiliary_, auxiliary_before_line_;  // before the line of the last change
   int auxiliary_line_ = 0;
   bool has_motion_ = false, is_retracted_ = false;  // the last motion of Z was a retract
