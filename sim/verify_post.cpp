@@ -234,8 +234,7 @@ class PostReplay {
 
   void to_location(const ClRecord& record) {
     const ToolPose P{record.P.p_WT + options_.part_zero, record.P.k_W};
-    const bool jumps = is_safe() && changes_tool_;
-    if (record.kind == MoveKind::feed && has_location_ && !jumps) {
+    if (record.kind == MoveKind::feed && has_location_ && !changes_tool_) {
       feed_to(record, P);
     } else {
       jump_to(record, P);

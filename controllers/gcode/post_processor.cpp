@@ -133,7 +133,13 @@ class Post {
     p_ST_ = -tool_offset_.head<3>();
     free_axis_.set_tool(p_ST_);
     add(MoveKind::tool, line).number = tool;
-    if (is_safe()) retract();  // machines move in M6
+    if (is_safe()) {
+      retract();  // machines move in M6
+    } else {      // and stop spindle and coolant; the new tip is elsewhere
+      has_location_ = false;
+      if (runs_.direction != 0) emit(*spindle_);
+      if (runs_.coolant != 0) emit(*coolant_);
+    }
   }
 
   // ---- to and from the workpiece

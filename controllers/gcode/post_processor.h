@@ -55,8 +55,8 @@ struct Posted {
 
 /// Posts every location to the joints nearest to those before, so that endless axes go on turning.
 ///
-/// Rapids, and with Approach::direct the first location whatever it is, become rapids of the
-/// joints; points are inserted in feed moves only. With Approach::safe the last stretch to a
+/// Rapids, and with Approach::direct the first location of each tool whatever it is, become rapids
+/// of the joints; points are inserted in feed moves only. With Approach::safe the last stretch to a
 /// location that is no rapid is moved at its feed, spindle and coolant are switched on between the
 /// rotary and the linear axes, off at the retract height, and rotary axes come back to the start at
 /// the end. The feed is that of the tip in the workpiece: without tip control each block says how

@@ -46,6 +46,11 @@ double fitting_spacing(double length, bool linear, std::size_t most, const Forma
 }
 
 // Error over the position of the axis and its direction of travel: 1, -1, 0 for the mean.
+// A whole turn without ends: from 0 to 360 deg.
+bool is_endless(const TableLine& line) {
+  return line.one_turn && line.from == 0.0 && line.to == kTurn;
+}
+
 using Curve = std::function<double(double, int)>;
 
 std::vector<double> rounded_values(const TableLine& line, const Curve& error, int direction,
@@ -55,6 +60,10 @@ std::vector<double> rounded_values(const TableLine& line, const Curve& error, in
     throw_if_interrupted();
     const double exact = error(line.position(line.entry(i)), direction);
     out.push_back(std::round(exact / step) * step + 0.0);
+  }
+  if (line.wraps && is_endless(line)) {
+    constexpr double kHalfDigits = 1.5;  // the same value may round either way
+    if (std::abs(out.back() - out.front()) <= kHalfDigits * step) out.back() = out.front();
   }
   return out;
 }
@@ -94,6 +103,21 @@ bool is_zero_to_first_order(const LineCorrection& small, const CompensationTable
     if (std::abs(d) > 0.5 * step) return false;
   }
   return true;
+}
+
+// A table that repeats cannot hold an error that differs after one turn.
+void refuse_jump(const TableSource& source, const CompensationTable& table) {
+  const TableLine& line = table.line;
+  if (!line.wraps || !is_endless(line)) return;
+  for (const auto* values : {&table.error, &table.error_down}) {
+    if (values->empty() || values->front() == values->back()) continue;
+    const char axis = source.chain.layout.letter_of(line.joint);
+    throw InputError(
+        {}, fmt::format("the error of {0} after one turn differs by {1:.2f} urad from that at the "
+                        "start, and the table repeats; give --travel {0}=FROM:TO, or an error that "
+                        "repeats, too",
+                        axis, (values->back() - values->front()) / urad));
+  }
 }
 
 bool holds_anything(const CompensationTable& table) { return table.largest() > 0.0; }
@@ -197,6 +221,7 @@ std::vector<CompensationTable> tables_of(const TableSource& source,
       if (table.error == table.error_down) table.error_down.clear();
       table.output = output;
       if (!holds_anything(table)) continue;
+      refuse_jump(source, table);
       table.is_second_order = !table.depends_on_direction() && table.largest() <= kSecondOrder &&
                               is_zero_to_first_order(small, table, step);
       out.push_back(std::move(table));

@@ -2,8 +2,11 @@
 // way that matters are refused.
 #include "sim/verify_post.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
 #include <functional>
 #include <limits>
 #include <sstream>
@@ -53,11 +56,12 @@ MachineSettings machine_of(const char* structure) {
   return machine;
 }
 
-Work work(const char* structure, Approach approach, PostMode mode) {
+Work work(const char* structure, Approach approach, PostMode mode, const std::string& text = {}) {
   Work out;
   out.machine = machine_of(structure);
   const bool is_upright = structure == kThreeAxes;
-  out.data = controllers::read_cl_data(is_upright ? kUpright : kLocations, "p.cls");
+  out.data = controllers::read_cl_data(!text.empty() ? text : (is_upright ? kUpright : kLocations),
+                                       "p.cls");
   out.options.approach = approach;
   out.options.mode = mode;
   out.options.safe = {10.0 * mm, 0.5};
@@ -102,6 +106,60 @@ TEST(VerifyPost, EveryModeOnEveryKindOfMachine) {
       }
     }
   }
+}
+
+// Statements in any order: locations near to each other and far away, feeds, rapids, tools,
+// spindle, coolant, dwells and stops.
+std::string random_locations(boost::random::mt19937& engine, bool is_upright) {
+  boost::random::uniform_real_distribution<double> part(-1.0, 1.0);
+  std::string text = "LOADTL/1\nSPINDL/600,CLW\nFEDRAT/600\n";
+  Eigen::Vector3d p(10.0, 5.0, 20.0), k(0.3, 0.2, 0.9);
+  for (int n = 0; n < 12; ++n) {
+    const double kind = 10.0 * std::abs(part(engine));
+    if (kind < 0.7) text += "LOADTL/2\n";
+    if (kind > 1.0 && kind < 1.5) text += "SPINDL/OFF\n";
+    if (kind > 2.0 && kind < 2.5) text += "SPINDL/900,CCLW\n";
+    if (kind > 3.0 && kind < 3.5) text += "COOLNT/ON\n";
+    if (kind > 4.0 && kind < 4.5) text += "COOLNT/OFF\n";
+    if (kind > 5.0 && kind < 5.5) text += "DELAY/0.25\n";
+    if (kind > 6.0 && kind < 6.4) text += "STOP\n";
+    if (kind > 7.0 && kind < 7.5) text += "FEDRAT/250\n";
+    const bool is_rapid = kind > 8.0;
+    if (is_rapid) text += "RAPID\n";
+    const double reach = is_rapid ? 40.0 : 6.0;
+    p += reach * Eigen::Vector3d(part(engine), part(engine), 0.3 * part(engine));
+    if (kind < 6.5) k += 0.15 * Eigen::Vector3d(part(engine), part(engine), part(engine));
+    const Eigen::Vector3d axis = is_upright ? Eigen::Vector3d::UnitZ() : k.normalized();
+    text += fmt::format("GOTO/{:.6f},{:.6f},{:.6f},{:.12f},{:.12f},{:.12f}\n", p[0], p[1], p[2],
+                        axis[0], axis[1], axis[2]);
+  }
+  return text + "FINI\n";
+}
+
+// Whatever is posted is verified. A few random paths cannot be posted: through the vertical, say.
+TEST(VerifyPost, RandomLocationsAreVerified) {
+  boost::random::mt19937 engine(7);
+  constexpr int kFiles = 60;
+  int posted = 0, refused = 0;
+  for (int n = 0; n < kFiles; ++n) {
+    for (const char* structure : {kTable, kMixed, kHead, kThreeAxes}) {
+      const std::string text = random_locations(engine, structure == kThreeAxes);
+      const auto approach = static_cast<Approach>(n % 2);
+      const auto mode = static_cast<PostMode>(structure == kThreeAxes ? n % 2 : n % 3);
+      std::optional<Work> w;
+      try {
+        w = work(structure, approach, mode, text);
+      } catch (const InputError&) {
+        ++refused;
+        continue;
+      }
+      ++posted;
+      ASSERT_EQ(fault_of(*w, w->program), "verified") << structure << " " << n << "\n"
+                                                      << text << w->program;
+    }
+  }
+  EXPECT_EQ(posted + refused, 4 * kFiles);
+  EXPECT_LT(refused, posted / 4);
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
