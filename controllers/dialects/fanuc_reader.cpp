@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "controllers/dialects/fanuc_machine.h"
+#include "plant/vocabulary/interrupt.h"
 
 namespace servomill::controllers {
 
@@ -25,6 +26,7 @@ std::vector<MachineAction> read_fanuc(std::string_view text, const std::string& 
   FanucLexer lexer(text, file);
   FanucMachine machine(file, setup, settings, rules);
   while (const auto block = lexer.next()) {
+    throw_if_interrupted();
     if (block->has_slash && setup.skips_blocks) continue;
     if (!machine.run(*block)) break;
   }

@@ -226,17 +226,45 @@ std::string path_line(const CompensateRequest& request, const ProgramWriter& wri
   return rounding.empty() ? line : fmt::format("{}, positions rounded to {}", line, rounding);
 }
 
+// What a request amounts to before its program is read.
+struct Preparation {
+  explicit Preparation(const CompensateRequest& request)
+      : described(read_machine_description(request.machine_file, request.changes)),
+        layout(described.machine.chain.layout),
+        models(request.error_file.empty() ? described.errors
+                                          : read_error_file(request.error_file, layout)),
+        correction(described.machine.chain, model_of(models, request, model), request.axes),
+        known(read_work_knowledge(request, layout)),
+        options(walk_options(request, described.machine, known.setup)) {
+    const NcSettings& nc = described.machine.nc;
+    known.depends_on_place = depends_on_place(correction, nc.lower, nc.upper);
+    if (request.start.empty()) return;
+    const AxisValues start = axis_values("--start", request.start, layout, false);
+    options.start = known.setup.start = start.words;
+    options.is_start_known = start.given;
+  }
+
+  MachineDescription described;
+  const JointLayout& layout;
+  ErrorModels models;
+  std::string model;
+  Correction correction;
+  WorkKnowledge known;
+  WalkOptions options;
+};
+
 // Reads the written program back and compares it with the original.
-VerificationReport verify(const CompensateRequest& request, const MachineDescription& described,
-                          const WorkKnowledge& known, const WalkOptions& options,
-                          const std::string& written, Correction& correction) {
+VerificationReport verify(const CompensateRequest& request, Preparation& prepared,
+                          const std::string& written) {
+  const WorkKnowledge& known = prepared.known;
+  const WalkOptions& options = prepared.options;
   constexpr double kTurnDecimals = 1e-6 * deg;
   VerificationRequest out;
   out.original_file = request.program_file;
   out.setup = known.setup;
   out.dialect = request.dialect;
-  out.layout = described.machine.chain.layout;
-  out.is_endless = endless_axes(described);
+  out.layout = prepared.layout;
+  out.is_endless = endless_axes(prepared.described);
   out.is_start_known = options.is_start_known;
   const bool is_linuxcnc = request.dialect == Dialect::linuxcnc;
   std::array<bool, controllers::kWorkSystems> is_known{};
@@ -257,36 +285,25 @@ VerificationReport verify(const CompensateRequest& request, const MachineDescrip
   limits.grid_turn = is_linuxcnc ? kTurnDecimals : resolution_of(request) / mm * deg;
   limits.corrects_rapids = options.splits_rapids;
   limits.is_linuxcnc = is_linuxcnc;
-  limits.retract = request.retract_Z ? request.retract_Z : described.retract_Z;
-  return verify_program(written, out, correction);
+  limits.retract = request.retract_Z ? request.retract_Z : prepared.described.retract_Z;
+  return verify_program(written, out, prepared.correction);
 }
 
 }  // namespace
 
 Compensated compensate(const CompensateRequest& request) {
-  const MachineDescription described =
-      read_machine_description(request.machine_file, request.changes);
-  const MachineSettings& machine = described.machine;
-  ErrorModels models = described.errors;
-  const JointLayout& layout = machine.chain.layout;
-  if (!request.error_file.empty()) models = read_error_file(request.error_file, layout);
-  std::string model;
-  Correction correction(machine.chain, model_of(models, request, model), request.axes);
-  WorkKnowledge known = read_work_knowledge(request, layout);
-  known.depends_on_place = depends_on_place(correction, machine.nc.lower, machine.nc.upper);
-  WalkOptions options = walk_options(request, machine, known.setup);
-  if (!request.start.empty()) {
-    const AxisValues start = axis_values("--start", request.start, layout, false);
-    options.start = known.setup.start = start.words;
-    options.is_start_known = start.given;
-  }
+  Preparation prepared(request);
+  const MachineSettings& machine = prepared.described.machine;
+  const JointLayout& layout = prepared.layout;
+  Correction& correction = prepared.correction;
+  WorkKnowledge& known = prepared.known;
 
   Compensated out;
   std::optional<SmoothedFeeds> smoothed;
   if (request.smoothing > 0.0) smoothed.emplace(machine, request.smoothing, request.tolerance);
-  Walk walk(options, known.setup.tools, correction, out.summary,
+  Walk walk(prepared.options, known.setup.tools, correction, out.summary,
             request.records ? &out.record : nullptr, smoothed ? &*smoothed : nullptr);
-  const auto writer = writer_of(request, described, walk, out.summary);
+  const auto writer = writer_of(request, prepared.described, walk, out.summary);
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
                                        known.setup);
   while (const auto block = interpreter.next_block()) {
@@ -313,15 +330,14 @@ Compensated compensate(const CompensateRequest& request) {
   for (std::string& sentence : writer->warnings()) {
     out.warnings.push_back({{request.program_file}, std::move(sentence)});
   }
-  std::vector<std::string> header = {header_line(request, machine.name, model)};
+  std::vector<std::string> header = {header_line(request, machine.name, prepared.model)};
   header.push_back(path_line(request, *writer));
   for (const std::string& one : unrolled(summary)) header.push_back(one);
   for (const std::string& one : summary.assumed) header.push_back("assumed: " + one);
   for (const std::string& one : writer->warnings()) header.push_back("warning: " + one);
   out.program = writer->finish(header);
 
-  const VerificationReport verified =
-      verify(request, described, known, options, out.program, correction);
+  const VerificationReport verified = verify(request, prepared, out.program);
 
   out.report = summary.report(layout);
   out.report.push_back(verified.text());
@@ -334,6 +350,12 @@ Compensated compensate(const CompensateRequest& request) {
   out.json = summary.json(layout);
   out.machine = machine.name;
   return out;
+}
+
+VerificationReport verify_compensated(const CompensateRequest& request,
+                                      const std::string& written) {
+  Preparation prepared(request);
+  return verify(request, prepared, written);
 }
 
 }  // namespace servomill::sim

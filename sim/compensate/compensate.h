@@ -47,7 +47,14 @@ struct Compensated {
   PathRecord record;    // where it was asked for
 };
 
-/// @throws InputError
+/// The program is read back as its control would read it and compared with the original.
+/// @throws InputError, also where they differ
 Compensated compensate(const CompensateRequest& request);
+
+struct VerificationReport;
+
+/// The comparison alone, of any text that is to be the compensated program of a request.
+/// @throws InputError that shows the line of the original and that of the written program
+VerificationReport verify_compensated(const CompensateRequest& request, const std::string& written);
 
 }  // namespace servomill::sim

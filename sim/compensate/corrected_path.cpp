@@ -15,8 +15,9 @@ using Eigen::Vector3d;
 // Shares of the tolerance: what may be missed between two looks, and what is left for blocks when
 // printed digits have theirs, too.
 constexpr double kMissed = 0.1, kForBlocks = 0.85;
-constexpr double kVaries = 0.1;   // of the tolerance: from then on a correction is not constant
-constexpr double kStill = 1e-12;  // m, rad: what rounding leaves of positions
+constexpr double kForArcs = 0.75;  // arcs bend between two looks
+constexpr double kVaries = 0.1;    // of the tolerance: from then on a correction is not constant
+constexpr double kStill = 1e-12;   // m, rad: what rounding leaves of positions
 constexpr int kMostHalvings = 20;
 constexpr double kWidestArc = 3.0;        // rad, where an arc falls into several
 constexpr double kShortestChord = 10e-6;  // m, of an arc: shorter ones are lines
@@ -198,7 +199,7 @@ class Fitter {
                                         std::round((expected - angle) / (2.0 * std::numbers::pi));
       const double along = from[n] + (to[n] - from[n]) * turned / sweep;
       const double off = std::hypot(p.norm() - r, looks_[k].c[n] - along);
-      if (!(off <= kForBlocks * options_.tolerance)) return false;
+      if (!(off <= kForArcs * options_.tolerance)) return false;
     }
     return true;
   }

@@ -92,6 +92,7 @@ DialectMotion DialectWriter::motion_of(const Block& block, const Step& step) con
 void DialectWriter::set_feed(DialectMotion& motion, const Step& step,
                              const FittedBlock& fitted) const {
   const Move& move = *step.move;
+  motion.feed_mode = FeedMode::units_per_minute;
   if (motion.is_rapid) return;
   const double turned = step.programmed.turns_axes()
                             ? (step.programmed.end - step.programmed.begin).tail<3>().norm()

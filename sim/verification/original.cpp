@@ -89,6 +89,7 @@ void Original::take_motion(const Move& move, const ExecutedBlock& block, bool is
   // a canned cycle follows its path exactly, whatever is in force
   const bool is_cycle =
       block.request != nullptr && controllers::is_canned_cycle(block.request->motion_code());
+  action.is_of_cycle = is_cycle;
   action.has_path_mode = has_path_mode_ && !is_cycle;
   const int code = one_shot(block);
   action.is_machine_position = code == 530 || code == 280 || code == 300;

@@ -35,6 +35,7 @@ struct OriginalAction {
   Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();  // tip of the tool that works (m)
   AuxiliaryState auxiliary;                        // in force
   bool has_path_mode = false;                      // the program has chosen one
+  bool is_of_cycle = false;  // of a canned cycle, which stops at corners or does not
 
   AxisFlags6 changed() const;
 };

@@ -7,6 +7,7 @@
 
 #include "controllers/gcode/parameters.h"
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 #include "sim/verification/linuxcnc_replay.h"
 #include "sim/verification/readings.h"
@@ -114,7 +115,10 @@ class Verifier {
     ReplayComparison comparison(actions, limits, correction_);
     const OriginalAction* action = nullptr;
     try {
-      while ((action = original.next()) != nullptr) comparison.match(*action);
+      while ((action = original.next()) != nullptr) {
+        throw_if_interrupted();
+        comparison.match(*action);
+      }
       comparison.finish();
     } catch (const ReplayDifference& difference) {
       const int line = action == nullptr ? original.line() : action->move.line;
