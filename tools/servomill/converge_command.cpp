@@ -77,7 +77,7 @@ int converge_command(const Arguments& arguments) {
   const auto found = sim::find_convergence(source, refinements, control);
   bar.clear();
   if (!found) {
-    fmt::print(stderr, "interrupted\n");
+    print_interrupted("");
     return kInterrupted;
   }
   for (const std::string& stopped : found->stopped) fmt::print(stderr, "stopped: {}\n", stopped);
