@@ -284,10 +284,10 @@ class PostReplay {
 
   void check_time(const Block& block, const ClRecord& record, const plant::StraightToolPath& path,
                   double share) const {
-    const bool stands = path.length() < kStandingTip;
+    const bool is_still = path.length() < kStandingTip;
     const double rate =
-        stands ? options_.turn_rate : (record.feed > 0.0 ? record.feed : options_.feed);
-    const double wanted = share * (stands ? path.angle() : path.length()) / rate;
+        is_still ? options_.turn_rate : (record.feed > 0.0 ? record.feed : options_.feed);
+    const double wanted = share * (is_still ? path.angle() : path.length()) / rate;
     const double time = time_of(block);
     if (std::abs(time - wanted) <= kTime * wanted + kDigits / rate) return;
     fail(fmt::format("the block takes {:.6g} s; at the feed of the locations {:.6g} s", time,

@@ -48,7 +48,7 @@ class Needed {
     model_ = std::make_unique<plant::VolumetricModel>(e.source.chain, linear);
   }
 
-  // Of X, Y and Z: the tip of the machine with errors comes to that of the ideal one.
+  // Displacement of X, Y and Z that brings the tip of the machine with errors to the ideal one.
   Vector3d linear(const Joints& Q) const {
     const Vector3d p_ideal = plant::forward(e_.source.chain, Q, e_.source.p_ST).p_WT;
     const Eigen::Matrix3d J = plant::linear_jacobian(e_.source.chain, Q);
@@ -61,7 +61,7 @@ class Needed {
     return (at - Q).head<kLinearJoints>();
   }
 
-  // Of a rotary axis: a point off it comes to where the ideal axis has it.
+  // Displacement of a rotary axis that brings a point off it to its ideal position.
   double rotary(int joint, double q) const {
     const Axis axis = axis_at(e_, joint);
     plant::ErrorModel own;
@@ -175,7 +175,7 @@ class Verification {
   TableVerification result() const { return result_; }
 
  private:
-  // What linear interpolation between exact values at the requested points gives.
+  // Linear interpolation between exact values at the requested points.
   std::function<double(double)> chords(const TableLine& line, const Comparison& c,
                                        int direction) const {
     std::vector<double> values;

@@ -136,7 +136,8 @@ std::string random_locations(boost::random::mt19937& engine, bool is_upright) {
   return text + "FINI\n";
 }
 
-// Whatever is posted is verified. A few random paths cannot be posted: through the vertical, say.
+// Every program that is written is verified. A few random paths cannot be posted: through the
+// vertical, say.
 TEST(VerifyPost, RandomLocationsAreVerified) {
   boost::random::mt19937 engine(7);
   constexpr int kFiles = 60;

@@ -124,7 +124,7 @@ plant::ErrorModel random_model(boost::random::mt19937& engine, const JointLayout
 
 TEST(VerifyTables, RandomModelsAreVerified) {
   boost::random::mt19937 engine(3);
-  constexpr int kModels = 10;
+  constexpr int kModels = 5;
   for (int n = 0; n < kModels; ++n) {
     for (const char* structure : {"[w X b Y Z t]", "[w C' A' Y b X Z t]", "[w Y b X Z B t]"}) {
       const MachineSettings machine = machine_of(structure);
