@@ -172,7 +172,8 @@ std::array<bool, 3> endless_axes(const MachineDescription& described) {
 }
 
 DialectSettings dialect_settings(const CompensateRequest& request,
-                                 const MachineDescription& described) {
+                                 const MachineDescription& described,
+                                 const controllers::ProgramSetup& setup) {
   if (request.splits_rapids) {
     throw InputError({"--split-rapids"},
                      "is for LinuxCNC; on other controls a rapid need not follow a line");
@@ -183,6 +184,9 @@ DialectSettings dialect_settings(const CompensateRequest& request,
   settings.program_number = request.program_number;
   settings.resolution = resolution_of(request);
   settings.preset = request.preset;
+  for (int system = 1; system <= controllers::kWorkSystems; ++system) {
+    settings.work_offset[static_cast<std::size_t>(system - 1)] = place_of(setup, system).offset;
+  }
   settings.smoothing = request.smoothing;
   const auto retract = request.retract_Z ? request.retract_Z : described.retract_Z;
   if (!retract) {
@@ -207,14 +211,15 @@ DialectSettings dialect_settings(const CompensateRequest& request,
 }
 
 std::unique_ptr<ProgramWriter> writer_of(const CompensateRequest& request,
-                                         const MachineDescription& described, Walk& walk,
+                                         const MachineDescription& described,
+                                         const controllers::ProgramSetup& setup, Walk& walk,
                                          Summary& summary) {
   if (request.dialect == Dialect::linuxcnc && request.smoothing > 0.0) {
     throw InputError({"--smoothing"}, "is for other controls; LinuxCNC takes G64 P in the program");
   }
   if (request.dialect != Dialect::linuxcnc) {
-    return std::make_unique<DialectWriter>(walk, summary, dialect_settings(request, described),
-                                           request.program_file);
+    return std::make_unique<DialectWriter>(
+        walk, summary, dialect_settings(request, described, setup), request.program_file);
   }
   return std::make_unique<LinuxCncWriter>(walk, summary, decimals_for(request.tolerance));
 }
@@ -242,6 +247,8 @@ struct Preparation {
     const AxisValues start = axis_values("--start", request.start, layout, false);
     options.start = known.setup.start = start.words;
     options.is_start_known = start.given;
+    // programs for other controls retract first
+    if (options.is_for_other_control) options.is_start_known[2] = false;
   }
 
   MachineDescription described;
@@ -303,7 +310,7 @@ Compensated compensate(const CompensateRequest& request) {
   if (request.smoothing > 0.0) smoothed.emplace(machine, request.smoothing, request.tolerance);
   Walk walk(prepared.options, known.setup.tools, correction, out.summary,
             request.records ? &out.record : nullptr, smoothed ? &*smoothed : nullptr);
-  const auto writer = writer_of(request, prepared.described, walk, out.summary);
+  const auto writer = writer_of(request, prepared.described, known.setup, walk, out.summary);
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
                                        known.setup);
   while (const auto block = interpreter.next_block()) {

@@ -9,6 +9,7 @@
 /// "M" marks a rule that was not found in a manual.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,12 +30,13 @@ inline constexpr std::array<std::string_view, 4> kDialects = {"linuxcnc", "heide
 /// What a program for another control needs beside its moves.
 struct DialectSettings {
   Dialect dialect = Dialect::fanuc;
-  std::string name;                                      // of the program, as its file is called
-  int program_number = 0;                                // Fanuc: O
-  double resolution = 1e-6;                              // m; a power of ten
-  double retract_Z = 0.0;                                // m, machine coordinate
-  bool has_rotary_axes = false;                          // of the machine
-  std::array<bool, 3> is_endless{};                      // A, B, C: without ends of travel
+  std::string name;                      // of the program, as its file is called
+  int program_number = 0;                // Fanuc: O
+  double resolution = 1e-6;              // m; a power of ten
+  std::array<AxisWords, 9> work_offset;  // m, rad: as the operator has entered them, from G54 on
+  double retract_Z = 0.0;                // m, machine coordinate
+  bool has_rotary_axes = false;          // of the machine
+  std::array<bool, 3> is_endless{};      // A, B, C: without ends of travel
   std::vector<Axis> axes = {Axis::X, Axis::Y, Axis::Z};  // of the machine
   std::optional<int> preset;  // Heidenhain: number in the preset table that is activated
   double smoothing = 0.0;     // m, tolerance of the control's smoothing; 0: not set

@@ -244,7 +244,11 @@ void DialectWriter::write_step(const Block& block, const Step& given) {
   restate_spindle_and_coolant();
   DialectMotion motion = motion_of(block, given);
   AxisWords origin = AxisWords::Zero();  // of work coordinates without rotation and shift
-  if (!motion.is_place) origin = block.state->work_offset + block.state->tool_offset;
+  if (!motion.is_place) {
+    // what the program has made of the offset is in the numbers
+    origin = settings_.work_offset[static_cast<std::size_t>(motion.work_system - 1)] +
+             block.state->tool_offset;
+  }
   if (motion.is_place) printer_->end_smoothing();
   if (!motion.is_place) write_path_mode(block, *given.move);
   const Step step = takes_arcs(motion, given, origin) ? given : walk_.without_arcs(given);

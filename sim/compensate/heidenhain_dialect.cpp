@@ -185,12 +185,12 @@ class Heidenhain final : public DialectPrinter {
       throw Unsayable{"selects a work system other than G54; presets are the control's"};
     }
     if (!settings_.preset) assume("the active preset is G54");
-    if (!motion.names(Axis::Z)) return;
     if (!tool_) {
       throw Unsayable{
-          "moves Z before a tool is called (T, M6); the control takes the length of "
-          "the tool called"};
+          "moves before a tool is called (T, M6); the control takes axis and length of the tool "
+          "called"};
     }
+    if (!motion.names(Axis::Z)) return;
     if (motion.length != motion.tool) {
       throw Unsayable{
           fmt::format("moves with the length of tool {} while tool {} is called; the "

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controllers/gcode/canned_cycles.h"
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/input_error.h"
@@ -58,8 +59,6 @@ Walk::Walk(const WalkOptions& options, const controllers::ToolTable& tools, Corr
       programmed_(options.start),
       out_(options.start),
       known_(options.is_start_known) {
-  // the other control retracts first
-  if (options.is_for_other_control) known_[static_cast<std::size_t>(index_of(Axis::Z))] = false;
   know_missing_axes();
 }
 
@@ -122,6 +121,19 @@ void Walk::refuse_unknown_begin(const Move& move, const ExecutedBlock& block,
   }
 }
 
+// A canned cycle goes back to the height that it comes from.
+void Walk::refuse_unknown_height(const ExecutedBlock& block, const AxisFlags& was_known) const {
+  if (block.request == nullptr || !controllers::is_canned_cycle(block.request->motion_code()))
+    return;
+  const auto k = static_cast<std::size_t>(block.state->normal_axis);
+  if (was_known[k]) return;
+  throw InputError(
+      {options_.file, block.line, block.request->motion.column},
+      fmt::format("a canned cycle from a {0} that is not known, to which it goes back; "
+                  "name {0} in a rapid before",
+                  letter(kAllAxes[k])));
+}
+
 void Walk::refuse(const Move& move, const AxisFlags& was_known) const {
   if (move.tool_control != ToolControl::none) {
     throw InputError({options_.file, move.line},
@@ -169,6 +181,7 @@ Step Walk::next(const Move& move, const ExecutedBlock& block, bool is_place) {
   step.was_known = known_;
   step.is_commanded = learn(move, block);
   refuse_unknown_begin(move, block, step.is_commanded);
+  refuse_unknown_height(block, step.was_known);
   refuse(move, step.was_known);
   WorkFrame& frame = step.programmed.frame;
   frame.cos = block.state->cos_rotation;

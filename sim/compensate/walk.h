@@ -76,6 +76,8 @@ class Walk {
   AxisFlags learn(const Move& move, const controllers::ExecutedBlock& block);
   void refuse_unknown_begin(const Move& move, const controllers::ExecutedBlock& block,
                             const AxisFlags& commanded) const;
+  void refuse_unknown_height(const controllers::ExecutedBlock& block,
+                             const AxisFlags& was_known) const;
   void refuse(const Move& move, const AxisFlags& was_known) const;
   void fit_feed(Step& step, const FitOptions& options);
   void fit_piece(Step& step, double t_begin, double t_end, const FitOptions& options);

@@ -210,7 +210,7 @@ void ReplayComparison::check_retract(const Action& action) {
 void ReplayComparison::match_other(const OriginalAction& action) {
   const ActionKind kind = kind_of(action.move);
   const bool has_frame = kind == ActionKind::tool || kind == ActionKind::end;
-  if (has_frame && !limits_.is_linuxcnc) skip_retracts(nullptr);
+  if ((has_frame || !has_motion_) && !limits_.is_linuxcnc) skip_retracts(nullptr);
   const Action& one = need(std::string(name_of(kind)));
   if (one.kind != kind) {
     fail(fmt::format("{} must come here, and {} comes", name_of(kind), name_of(one.kind)));

@@ -42,6 +42,8 @@ class ReplayComparison {
   ReplayComparison(const std::vector<controllers::MachineAction>& replay,
                    const ComparisonLimits& limits, Correction& correction);
 
+  /// Positions before the program.
+  void start_at(const controllers::KnownPosition& start) { at_ = start; }
   /// @throws ReplayDifference
   void match(const OriginalAction& action);
   void finish();

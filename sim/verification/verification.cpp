@@ -113,6 +113,11 @@ class Verifier {
     ComparisonLimits limits = request_.limits;
     limits.grid = written_grid(written_, request_.dialect, limits.grid);
     ReplayComparison comparison(actions, limits, correction_);
+    controllers::KnownPosition start;
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      if (request_.is_start_known[i]) start[i] = setup.start[static_cast<int>(i)];
+    }
+    comparison.start_at(start);
     const OriginalAction* action = nullptr;
     try {
       while ((action = original.next()) != nullptr) {

@@ -402,5 +402,47 @@ TEST(DialectRules, RetractsFromTheirOwnHeightAreWrittenAndVerified) {
   EXPECT_EQ(refusal(Dialect::fanuc, kStart + "G0 X1 Y1\nZ5\nZ48\nM2\n"), "taken");
 }
 
+// The control has the offset that the operator entered; what the program makes of it is in the
+// numbers.
+TEST(DialectRules, OffsetsThatTheProgramChangesAreInTheNumbers) {
+  EXPECT_EQ(body(Dialect::fanuc, kStart + "G0 X1 Y1\nZ5\n#5221=210\nG56 X0\nG54 X2\nM2\n"),
+            "T1 M6\n"
+            "G90 G54 G17 G94 G40 G80\n"
+            "S1000 M3\n"
+            "G0 X1. Y1.\n"
+            "G43 H1 Z5.\n"
+            "G56\n"
+            "X0.\n"
+            "G54\n"
+            "X12.\n");
+}
+
+TEST(DialectRules, CyclesFromAnUnknownHeightAreRefused) {
+  EXPECT_EQ(refusal(Dialect::fanuc, kStart + "G0 X1 Y1\nG81 Z-1 R1 F100\nM2\n"),
+            "plate.ngc:6:1: error: a canned cycle from a Z that is not known, to which it goes "
+            "back; name Z in a rapid before");
+}
+
+TEST(DialectRules, HeidenhainMovesWithAToolOnly) {
+  EXPECT_EQ(refusal(Dialect::heidenhain, "G21 G90\nG0 X1 Y1\nM2\n"),
+            "plate.ngc:2: error: moves before a tool is called (T, M6); the control takes axis and "
+            "length of the tool called; that cannot be expressed for heidenhain");
+}
+
+TEST(DialectRules, DwellsBeforeTheFirstMoveAreVerified) {
+  EXPECT_EQ(refusal(Dialect::fanuc, "G21 G90\nG4 P1.5\nG0 X1\nM2\n"), "taken");
+}
+
+// A start given for LinuxCNC holds there; for other controls Z retracts first.
+TEST(DialectRules, TheStartOfZIsUnknownBehindTheRetract) {
+  Trial trial = dialect_trial(Dialect::fanuc, "G21 G90\nG1 X1 F100\nM2\n");
+  trial.request.start = "X=0,Y=0,Z=0";
+  EXPECT_EQ(refusal(trial),
+            "plate.ngc:2: error: feeds while the position of Z is not known: no block since the "
+            "start, the last tool change or the last stop names it; name it in a rapid");
+  trial.request.dialect = Dialect::linuxcnc;
+  EXPECT_EQ(refusal(trial), "taken");
+}
+
 }  // namespace
 }  // namespace servomill::sim
