@@ -222,7 +222,7 @@ class Rewriter {
     return share;
   }
 
-  // What the direction of travel adds to the mean, to first order in the errors.
+  // Displacement that the direction of travel adds to the mean, to first order in the errors.
   Eigen::Vector3d reversal(const Joints& Q) const {
     const plant::VolumetricModel& model = belief_.model;
     const Eigen::Vector3d e =

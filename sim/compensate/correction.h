@@ -15,7 +15,7 @@
 
 namespace servomill::sim {
 
-/// Of travel, one for each axis word: 1 up, -1 down, 0 unknown.
+/// Directions of travel, one for each axis word: 1 up, -1 down, 0 unknown.
 using Directions = std::array<int, kAxisWords>;
 
 /// What is believed of a machine's errors, with the tool that works.
@@ -31,7 +31,7 @@ class Correction {
   const Eigen::Vector3d& tool() const { return model_->belief.p_ST; }
   const JointLayout& layout() const { return model_->belief.layout; }
 
-  /// Whether errors depend on the direction of travel.
+  /// True if errors depend on the direction of travel.
   bool has_reversals() const { return longest_reversal_ > 0.0; }
   /// Axes whose errors do.
   const std::array<bool, kAxisWords>& reverses() const { return reverses_; }

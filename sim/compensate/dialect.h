@@ -27,7 +27,7 @@ enum class Dialect : std::uint8_t { linuxcnc, heidenhain, fanuc, siemens };
 inline constexpr std::array<std::string_view, 4> kDialects = {"linuxcnc", "heidenhain", "fanuc",
                                                               "siemens"};
 
-/// What a program for another control needs beside its moves.
+/// Everything but the moves that a program for another control needs.
 struct DialectSettings {
   Dialect dialect = Dialect::fanuc;
   std::string name;                      // of the program, as its file is called
@@ -66,7 +66,7 @@ struct DialectMotion {
   bool names(Axis axis) const;
 };
 
-/// What a dialect cannot express, as a part of a sentence.
+/// A thing that a dialect cannot express, as a part of a sentence.
 struct Unsayable {
   std::string why;
 };
@@ -92,9 +92,9 @@ class DialectPrinter {
   void comment(std::string_view text);
   virtual void message(std::string_view text) { comment(text); }
   virtual void motion(const DialectMotion& motion) = 0;
-  /// Whether the arc can be written as one. False for a block that changes the tool length, too.
+  /// Tells if the arc can be written as one. False for a block that changes the tool length, too.
   virtual bool takes_arc(const DialectMotion& motion, bool is_helix) const = 0;
-  /// Where the arc of `motion` ends, if the control computes that from an angle.
+  /// Sets the end of the arc of `motion`, if the control computes it from an angle.
   virtual void turn_by_angle(const DialectMotion&, const AxisWords&, AxisWords&) const {}
   /// Z to settings.retract_Z, without tool length.
   virtual void retract() = 0;
@@ -111,7 +111,7 @@ class DialectPrinter {
   virtual void tool(int number, double rpm, int work_system) = 0;
   /// @param is_named  the program names the direction (M3, M4, M5): it is written in any case
   virtual void spindle(int direction, double rpm, bool is_named) = 0;
-  /// Whether the control may have stopped the spindle by itself.
+  /// False if the control may have stopped the spindle by itself.
   virtual bool is_spindle_known() const = 0;
   virtual void coolant(int code) = 0;  // 7, 8, 9
   virtual void dwell(double seconds) = 0;
@@ -124,7 +124,7 @@ class DialectPrinter {
 
   /// The whole text, numbered.
   virtual std::string text() const = 0;
-  /// What the operator has to make sure of, one clause each.
+  /// Things that the operator has to make sure of, one clause each.
   const std::vector<std::string>& assumptions() const { return assumptions_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
 

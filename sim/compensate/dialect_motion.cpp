@@ -178,7 +178,7 @@ std::optional<DialectArc> DialectWriter::arc_of(const Step& step, const FittedBl
   const double full = 2.0 * std::numbers::pi, sign = wanted > 0.0 ? 1.0 : -1.0;
   double sweep = sign * std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
   if (sweep < 0.0) sweep += full;
-  // a helix of Heidenhain's ends beside the grid: a circle after it would not be closed
+  // a helix of Heidenhain's ends off the grid: a circle after it would not be closed
   const bool is_closed = (end - begin).cwiseAbs().maxCoeff() < kSamePlace;
   if (is_closed) sweep = full;
   if (!is_closed && (sweep < kLeastSweep || sweep > full - kLeastSweep)) return std::nullopt;
@@ -195,7 +195,7 @@ std::optional<DialectArc> DialectWriter::arc_of(const Step& step, const FittedBl
   return arc;
 }
 
-// Whether every arc of the step can be written as one.
+// True if every arc of the step can be written as one.
 bool DialectWriter::takes_arcs(const DialectMotion& motion, const Step& step,
                                const AxisWords& origin) const {
   AxisWords at = walk_.out() - origin;

@@ -19,7 +19,7 @@ namespace {
 using controllers::Code;
 using controllers::Group;
 
-// Whether moves, or modes that go into their numbers, are all that a code is about.
+// True for codes that are about moves only, or about modes that go into their numbers.
 bool is_in_the_moves(const Code& code) {
   switch (code.group) {
     case Group::g_motion:
@@ -91,7 +91,7 @@ void DialectWriter::check_codes(const Block& block) const {
   }
 }
 
-// What follows is written for the state that the block leaves: the operator's switch must not
+// The blocks behind are written for the state that this one leaves: the operator's switch must not
 // decide about it.
 void DialectWriter::refuse_slash(const Block& block) const {
   if (block.request == nullptr) return;

@@ -1,4 +1,4 @@
-/// What controls with G-codes have in common: codes and modes in force.
+/// Common part of controls with G-codes: codes and modes in force.
 #pragma once
 
 #include <optional>

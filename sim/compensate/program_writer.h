@@ -1,4 +1,4 @@
-/// What writes a corrected program, one executed block after the other.
+/// Writer of a corrected program, one executed block after the other.
 #pragma once
 
 #include <string>
@@ -17,11 +17,11 @@ class ProgramWriter {
   /// The text.
   /// @param header  lines for its first comment
   virtual std::string finish(const std::vector<std::string>& header) = 0;
-  /// What the operator has to make sure of at the control, one clause each.
+  /// Things that the operator has to make sure of at the control, one clause each.
   virtual std::vector<std::string> assumptions() const { return {}; }
   /// How positions are rounded, where that is coarser than the tolerance asks for; or empty.
   virtual std::string rounding() const { return {}; }
-  /// What was left out or written from memory.
+  /// Things left out or written from memory.
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 

@@ -99,7 +99,7 @@ class Siemens final : public IsoDialect {
   }
 
  private:
-  // Whether G53 and SUPA drop the length is MD10760's matter: D0 says it (W1; ISO Dialects p.
+  // MD10760 decides if G53 and SUPA drop the length: D0 drops it (W1; ISO Dialects p.
   // 3-42).
   std::string retract_text() const {
     return fmt::format("SUPA G0 Z{} D0", fixed_text(settings_.retract_Z / mm, decimals(Axis::Z)));

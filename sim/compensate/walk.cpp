@@ -281,7 +281,7 @@ void Walk::turn_directions(const AxisWords& way, const AxisFlags& was_known) {
   correction_.set_directions(directions_);
 }
 
-// What stays behind a change of direction, and where no direction is known.
+// Notes errors that stay behind a change of direction, and where no direction is known.
 void Walk::note_reversals(const Step& step, const Directions& before) {
   if (!correction_.has_reversals()) return;
   for (const Axis axis : kAllAxes) {
@@ -306,7 +306,7 @@ Step Walk::without_arcs(Step step) {
   return step;
 }
 
-// What the original leaves where it is stays.
+// Axes that the original leaves where they are stay.
 void Walk::hold_axes(Step& step) const {
   const WorkFrame& frame = step.programmed.frame;
   AxisFlags holds{};

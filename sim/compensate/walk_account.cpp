@@ -1,4 +1,4 @@
-// What a corrected program changes, move by move.
+// Account of what a corrected program changes, move by move.
 #include <algorithm>
 #include <cmath>
 

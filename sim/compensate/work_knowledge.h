@@ -1,4 +1,4 @@
-/// Where the work lies in the machine and how long the tools are, as far as the user has given it.
+/// Work offsets and tool lengths, as far as the user has given them.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ struct AxisValues {
 AxisValues axis_values(const std::string& option, std::string_view text, const JointLayout& layout,
                        bool takes_rotation);
 
-/// What the control has before the program, and of which work systems the place is known.
+/// State of the control before the program, and the work systems of known place.
 struct WorkKnowledge {
   controllers::ProgramSetup setup;
   std::set<int> work_systems;    // 1 ... 9
@@ -44,7 +44,7 @@ WorkKnowledge read_work_knowledge(const CompensateRequest& request, const JointL
 void refuse_unknown_system(const controllers::ExecutedBlock& block,
                            const CompensateRequest& request, WorkKnowledge& knowledge);
 
-/// Where a work system lies: as the request has it, else as the parameter file. m, rad
+/// Place of a work system: of the request, else of the parameter file. m, rad
 struct WorkSystemPlace {
   AxisWords offset = AxisWords::Zero();
   double rotation = 0.0;
@@ -54,7 +54,7 @@ WorkSystemPlace place_of(const controllers::ProgramSetup& setup, int system);
 /// "X1 Y2", mm and deg, of the axes that the machine has.
 std::string words_text(const AxisWords& words, const JointLayout& layout);
 
-/// Whether the correction differs between places of the travel.
+/// True if the correction differs between places of the travel.
 bool depends_on_place(const Correction& correction, const Joints& lower, const Joints& upper);
 
 }  // namespace servomill::sim

@@ -1,4 +1,4 @@
-// What programs for other controls may never do, whatever the control has in force: one test for
+// Things that programs for other controls may never do, whatever is in force: one test for
 // each way in which a written program once did what the original does not.
 #include "tests/sim/compensate/dialect_trial.h"
 
