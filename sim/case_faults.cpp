@@ -121,6 +121,15 @@ void refuse_tip_moves(const StrategySpec& spec, const strategies::Strategy& stra
 }
 
 void refuse_endless(const Scenario& scenario, double duration) {
+  constexpr double kHour = 3600.0;
+  if (duration > scenario.record.max_duration) {
+    throw InputError(
+        {scenario.program.file},
+        fmt::format("takes {:.3g} h at program.feed_override = {:g}; must be <= "
+                    "record.max_duration_h = {:g}: check feeds and feed_override, or raise it",
+                    duration / kHour, scenario.program.feed_override,
+                    scenario.record.max_duration / kHour));
+  }
   constexpr double kMostSamples = 1e8;  // of some 500 bytes: more than most machines hold
   const double period = scenario.machine.nc.periods.seconds(scenario.record_period);
   const double samples = (duration + scenario.settle_time) / period;

@@ -56,7 +56,7 @@ void refuse_tip_moves(const StrategySpec& spec, const strategies::Strategy& stra
                       const std::string& case_name);
 
 /// A slip of the unit can make a program last for years.
-/// @param duration  of the planned motion, s
+/// @param duration  s; of the planned motion, or less: way over feed, which is known before
 /// @throws InputError at the program
 void refuse_endless(const Scenario& scenario, double duration);
 

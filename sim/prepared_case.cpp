@@ -7,14 +7,17 @@
 
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/printer.h"
+#include "controllers/path/slowed_motion.h"
 #include "controllers/path/travel.h"
 #include "plant/vocabulary/units.h"
 #include "sim/case_faults.h"
 #include "sim/case_notes.h"
+#include "sim/estimate.h"
 #include "sim/plan_cutting.h"
 #include "sim/preparation_cache.h"
 #include "sim/stability_check.h"
 #include "sim/subroutine_files.h"
+#include "strategies/gcode.h"
 
 namespace servomill::sim {
 namespace {
@@ -185,6 +188,12 @@ class Preparation {
       refuse_unnumbered_tools(moves, scenario_.program.file);
       return InterpretedProgram(std::move(moves), std::move(warnings), setup);
     });
+  }
+
+  // Way over feed, s: no plan is faster.
+  double least_time(const InterpretedProgram& program) const {
+    return controllers::least_time(program.moves, machine_.chain.layout.words(start_),
+                                   path_options(scenario_, machine_));
   }
 
   SharedModel model(const std::string& name) const {
@@ -363,6 +372,7 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   refuse_absent_axes(*parts.program, scenario);
   refuse_standing_spindle(*parts.program, scenario);
   refuse_turned_tip(*parts.program, scenario, spec);
+  refuse_endless(scenario, prepare.least_time(*parts.program));
   refuse_start_outside(scenario, parts.machine(), prepare.start());
 
   // the strategies, each of which may rewrite what the one before left
@@ -373,7 +383,12 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
     if (!parts.strategies.back()->rewrites()) continue;
     refuse_tip_moves(strategy, *parts.strategies.back(), *parts.program, scenario.program.file,
                      spec.name);
-    parts.rewritten = prepare.rewritten(moves, parts.strategies.back());
+    try {
+      parts.rewritten = prepare.rewritten(moves, parts.strategies.back());
+    } catch (const strategies::TooManyBlocks& error) {
+      throw InputError(strategy.place, fmt::format("case {}: strategy {}: {}", spec.name,
+                                                   strategy.entry->name, error.what()));
+    }
     moves = {parts.rewritten, &parts.rewritten->moves};
   }
 
@@ -384,6 +399,8 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   if (!scenario.imposed.empty()) parts.imposed = prepare.model(scenario.imposed);
   parts.cutting = prepare.cutting(parts.program);
 }
+
+double PreparedCase::duration() const { return parts_->motion->trajectory.duration(); }
 
 PreparedCase::~PreparedCase() = default;
 PreparedCase::PreparedCase(PreparedCase&&) noexcept = default;
@@ -468,6 +485,7 @@ const std::vector<std::string>& PreparedCase::sections() const {
 
 std::map<std::string, std::vector<Eigen::Vector3d>> PreparedCase::nominal_positions(
     const std::set<std::string>& sections) const {
+  if (sections.empty()) return {};
   const Parts& p = *parts_;
   const MachineSettings& machine = p.machine();
   const controllers::Trajectory& trajectory = p.motion->trajectory;
@@ -568,6 +586,7 @@ std::vector<PreparedCase> prepare_cases(const Scenario& scenario, PreparationCac
     }
   }
   faults.report(scenario.cases.size());
+  refuse_too_large(scenario, estimate(scenario, prepared, 0));
   refuse_absent_sections(scenario, prepared.front().sections());
   auto faults_of_circles = prepared.front().circular_faults(cache);
   if (!faults_of_circles.empty()) throw InputError(std::move(faults_of_circles));

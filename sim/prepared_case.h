@@ -46,6 +46,8 @@ class PreparedCase {
   PreparedCase(PreparedCase&&) noexcept;
 
   const CaseSpec& spec() const;
+  /// Of the planned motion, s.
+  double duration() const;
 
   /// Names of the sections of the original program.
   const std::vector<std::string>& sections() const;

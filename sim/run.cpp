@@ -14,7 +14,9 @@ constexpr auto kProgressPeriod = std::chrono::milliseconds(20);  // an interrupt
 
 }  // namespace
 
-void check_scenario(const Scenario& scenario) { prepare_cases(scenario); }
+RunEstimate check_scenario(const Scenario& scenario) {
+  return estimate(scenario, prepare_cases(scenario), 1);
+}
 
 void check_machine(const MachineSettings& machine) {
   check_stability(machine, machine.scale_delay, nullptr);
@@ -25,7 +27,7 @@ RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
   static const StopFlag kNever = false;
   const StopFlag& stop = control.stop != nullptr ? *control.stop : kNever;
   std::vector<PreparedCase> prepared = prepare_cases(scenario, control.cache);
-  if (control.prepared) control.prepared();
+  if (control.prepared) control.prepared(estimate(scenario, prepared, control.threads));
 
   // cases are independent: which thread runs which makes no difference to the result
   const std::size_t count = prepared.size();

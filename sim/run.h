@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/estimate.h"
 #include "sim/prepared_case.h"
 
 namespace servomill::sim {
@@ -12,8 +13,9 @@ namespace servomill::sim {
 struct RunControl {
   unsigned threads = 0;  // 0: as many as there are cores
   const StopFlag* stop = nullptr;
-  PreparationCache* cache = nullptr;     // shared with other runs, may be null
-  std::function<void()> prepared;        // every fault of the input is found; called once
+  PreparationCache* cache = nullptr;  // shared with other runs, may be null
+  // every fault of the input is found, and what the run takes is known; called once
+  std::function<void(const RunEstimate&)> prepared;
   std::function<void(double)> progress;  // share done, 0 to 1; called from one thread
   std::function<void(const CaseOutput&)>
       case_done;  // called from one thread, in order of the cases
@@ -28,9 +30,9 @@ struct RunOutput {
 /// @throws InputError before anything is simulated
 RunOutput run_scenario(const Scenario& scenario, const RunControl& control);
 
-/// Prepares every case as for a run.
+/// Prepares every case as for a run, and returns what it would take on one thread.
 /// @throws InputError with the faults of all cases
-void check_scenario(const Scenario& scenario);
+RunEstimate check_scenario(const Scenario& scenario);
 
 /// Checks what reading a machine leaves open: whether its loops are stable.
 /// @throws InputError

@@ -307,6 +307,11 @@ class ScenarioReader {
     record.compression = static_cast<int>(table.integer_or(
         "compression", record.compression, {at_least(kNoCompression), at_most(kMostCompression)}));
     record.uncorrectable = table.boolean_or("uncorrectable", false);
+    constexpr double kGigabyte = 1e9, kHour = 3600.0, kMostGigabytes = 1e6, kMostHours = 1e4;
+    record.max_size = kGigabyte * table.real_or("max_size_GB", record.max_size / kGigabyte, kNumber,
+                                                {above(0.0), at_most(kMostGigabytes)});
+    record.max_duration = kHour * table.real_or("max_duration_h", record.max_duration / kHour,
+                                                kNumber, {above(0.0), at_most(kMostHours)});
     out_.settle_time =
         table.real_or("settle_ms", 100 * ms, kTime, {at_least(0.0), at_most(kLongestSettling)});
   }

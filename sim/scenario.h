@@ -98,8 +98,10 @@ struct QuantitySpec {
 /// What becomes of recorded signals.
 struct RecordSpec {
   RecordFormat format = {.resolution = 0.001e-9};
-  int compression = 1;         // of the result file, kNoCompression to kMostCompression
-  bool uncorrectable = false;  // what strategies cannot correct
+  int compression = 1;            // of the result file, kNoCompression to kMostCompression
+  bool uncorrectable = false;     // what strategies cannot correct
+  double max_size = 8e9;          // bytes of the signals of all cases, as estimated before a run
+  double max_duration = 86400.0;  // s, of the motion of a case
 };
 
 /// What cutting costs.

@@ -1,5 +1,7 @@
 #include "strategies/gcode.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
@@ -11,6 +13,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/move_curve.h"
 #include "plant/vocabulary/tool_axis.h"
+#include "plant/vocabulary/units.h"
 #include "strategies/pose_compensation.h"
 #include "strategies/straightening.h"
 
@@ -331,6 +334,7 @@ class RewrittenProgram final : public Strategy {
   }
 
   std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
+    refuse_too_many(moves);
     std::vector<Move> out;
     Rewriter rewriter(belief_, params_, out);
     for (const Move& move : moves) {
@@ -345,6 +349,20 @@ class RewrittenProgram final : public Strategy {
   }
 
  private:
+  // Before the work: a program in blocks of a micrometre is larger than the memory.
+  void refuse_too_many(const std::vector<Move>& moves) const {
+    constexpr double kMostBlocks = 5e6;
+    double blocks = 0.0;
+    for (const Move& move : moves) {
+      if (move.kind != MoveKind::rapid) blocks += (move.s_end - move.s_begin) / params_.max_block;
+    }
+    if (blocks <= kMostBlocks) return;
+    throw TooManyBlocks(
+        fmt::format("max_block_mm = {:g} makes {:.2g} blocks of the program; must "
+                    "be <= {:.2g}",
+                    params_.max_block / mm, blocks, kMostBlocks));
+  }
+
   Belief belief_;
   RewriteParams params_;
 };

@@ -12,9 +12,17 @@
 /// part, linear axes the rest. Moves in a tilted work plane are refused.
 #pragma once
 
+#include <stdexcept>
+
 #include "strategies/registry.h"
 
 namespace servomill::strategies {
+
+/// A rewritten program larger than any memory.
+class TooManyBlocks : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 Entry gcode_entry();
 

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kPiece = 1U << 16;        // read at once, bytes
 constexpr std::size_t kLongestKept = 1U << 15;  // of one line
+constexpr std::size_t kLongestSkipped = 10'000'000;
 
 }  // namespace
 
@@ -77,6 +78,7 @@ bool ProgramText::next(std::string_view& line) {
                ? std::string::npos
                : static_cast<std::size_t>(static_cast<const char*>(found) - buffer_.data());
   };
+  if (std::exchange(in_long_line_, false)) skip_to_line_end();
   std::size_t end = line_end();
   while (end == std::string::npos && !at_end_ && buffer_.size() - at_ <= kLongestKept) {
     if (!refill()) fail();
@@ -87,7 +89,7 @@ bool ProgramText::next(std::string_view& line) {
   if (end == std::string::npos) {
     if (!at_end_) {
       long_line_.assign(buffer_, at_, kLongestKept);
-      skip_to_line_end();
+      in_long_line_ = true;
       line = long_line_;
       return true;
     }
@@ -98,9 +100,9 @@ bool ProgramText::next(std::string_view& line) {
   return true;
 }
 
-// A line without end must not fill the memory.
+// A line without end must neither fill the memory nor be read.
 void ProgramText::skip_to_line_end() {
-  for (;;) {
+  for (const std::uint64_t from = base_ + at_; base_ + at_ - from < kLongestSkipped;) {
     const std::size_t end = buffer_.find('\n', at_);
     if (end != std::string::npos) {
       at_ = end + 1;
@@ -110,6 +112,9 @@ void ProgramText::skip_to_line_end() {
     if (at_end_) return;
     if (!refill()) fail();
   }
+  throw InputError(
+      {file_, number_, 0},
+      fmt::format("line longer than {} characters; this is no program", kLongestSkipped));
 }
 
 // LinuxCNC refuses such a program.

@@ -35,7 +35,7 @@ class ProgramText {
 
   /// The next line without its end; it stays valid until the next call. Of a line longer than
   /// 32 KiB only so much.
-  /// @throws InputError if the file can no longer be read
+  /// @throws InputError if the file can no longer be read, or a line never ends
   bool next(std::string_view& line);
   /// Of the line handed out last, from 1.
   int number() const { return number_; }
@@ -46,6 +46,7 @@ class ProgramText {
   /// From the next call of `next` on; the line handed out last stays valid until then.
   void go_to(const Mark& mark) {
     wanted_ = mark.offset;
+    in_long_line_ = false;
     number_ = mark.line;
   }
   void rewind() { go_to({}); }
@@ -67,6 +68,7 @@ class ProgramText {
   int number_ = 0;
   std::optional<std::uint64_t> wanted_;  // where to read on
   bool at_end_ = false;                  // nothing follows buffer_
+  bool in_long_line_ = false;            // the line handed out last did not fit
   std::string long_line_;                // what is kept of a line that does not fit
   std::unique_ptr<Reader> reader_;
 };

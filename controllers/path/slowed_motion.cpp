@@ -23,6 +23,19 @@ double time_of(const Move& move, const AxisWords& from, const PathOptions& optio
 
 double SlowedMotion::share() const { return std::pow(allowed / needed, 1.0 / order); }
 
+double least_time(std::span<const Move> moves, const AxisWords& start, const PathOptions& options) {
+  double sum = 0.0;
+  AxisWords before = start;
+  for (const Move& move : moves) {
+    if (!is_motion(move.kind)) continue;
+    const AxisWords from = std::exchange(before, move.end_machine);
+    const bool counts = move.kind != MoveKind::rapid && move.tool_control == ToolControl::none &&
+                        move.feed_mode != FeedMode::units_per_revolution;
+    if (counts) sum += time_of(move, from, options);
+  }
+  return sum;
+}
+
 std::optional<SlowedMotion> slowed_inverse_time(std::span<const Move> moves,
                                                 const JointLayout& layout, const Joints& start,
                                                 const JointLimits& limits,

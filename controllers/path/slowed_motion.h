@@ -35,6 +35,11 @@ inline constexpr double kNearSingular = 0.2;  // rad
 /// "the programmed feed needs C at ..."
 std::string to_string(const SlowedMotion& slowed, const JointLayout& layout);
 
+/// Way over feed of all blocks with a feed, s: no plan is faster. Blocks under tool control, whose
+/// ways are not those of the axes, are not counted.
+/// @param start  words of the axes before the first move (m, rad)
+double least_time(std::span<const Move> moves, const AxisWords& start, const PathOptions& options);
+
 /// The block in inverse time (G93), without tool control, that asks most of a joint beyond its
 /// speed, and how many others do; of arcs only their mean speeds are seen. Feeds in units per
 /// minute are what an NC may fall short of without a word.

@@ -296,6 +296,29 @@ VerificationReport verify(const CompensateRequest& request, Preparation& prepare
   return verify_program(written, out, prepared.correction);
 }
 
+// Before the work: a slip of the unit makes blocks without end.
+void refuse_too_many_blocks(const CompensateRequest& request,
+                            const controllers::ProgramSetup& setup) {
+  constexpr double kMostBlocks = 1e7;
+  if (!(request.max_block > 0.0)) return;
+  double way = 0.0;
+  try {
+    controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
+                                         setup);
+    while (const Move* move = interpreter.next()) {
+      if (is_motion(move->kind) && move->kind != MoveKind::rapid)
+        way += move->s_end - move->s_begin;
+    }
+  } catch (const InputError&) {
+    return;  // told when the program is corrected
+  }
+  if (way <= kMostBlocks * request.max_block) return;
+  throw InputError({"--max-block"},
+                   fmt::format("{:g} um makes {:.2g} blocks of {:.4g} m of feed; must be <= {:g} "
+                               "blocks: name a longer one",
+                               request.max_block / um, way / request.max_block, way, kMostBlocks));
+}
+
 }  // namespace
 
 Compensated compensate(const CompensateRequest& request) {
@@ -304,6 +327,8 @@ Compensated compensate(const CompensateRequest& request) {
   const JointLayout& layout = prepared.layout;
   Correction& correction = prepared.correction;
   WorkKnowledge& known = prepared.known;
+
+  refuse_too_many_blocks(request, known.setup);
 
   Compensated out;
   std::optional<SmoothedFeeds> smoothed;

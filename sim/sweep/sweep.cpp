@@ -14,6 +14,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "sim/background.h"
 #include "sim/config/document.h"
+#include "sim/estimate.h"
 #include "sim/preparation_cache.h"
 #include "sim/scenario_document.h"
 
@@ -140,7 +141,7 @@ Scenario Sweep::at(std::uint64_t point) const {
 
 std::vector<ComparisonRow> Sweep::quantities() const { return compare(base_.quantities, {}); }
 
-void Sweep::refuse_hopeless() const {
+std::optional<RunEstimate> Sweep::refuse_hopeless() const {
   const auto probes = spread(design().size(), kProbes);
   std::vector<Fault> common;  // faults of all probes so far
   std::optional<InputError> first;
@@ -149,11 +150,10 @@ void Sweep::refuse_hopeless() const {
     try {
       const Scenario scenario = at(point);
       try {
-        check_scenario(scenario);
+        return check_scenario(scenario);
       } catch (const InputError& error) {
         throw at_the_list(error, values);
       }
-      return;
     } catch (const InputError& error) {
       std::vector<Fault> faults = error.faults();
       for (Fault& fault : faults) {
@@ -171,10 +171,11 @@ void Sweep::refuse_hopeless() const {
     } catch (const Interrupted&) {
       throw;
     } catch (const std::exception&) {
-      return;  // failed, not refused: its row will say why
+      return std::nullopt;  // failed, not refused: its row will say why
     }
   }
   if (!common.empty() || probes.size() == design().size()) throw *first;
+  return std::nullopt;
 }
 
 void Sweep::check() const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/batch.h"
+#include "sim/estimate.h"
 #include "sim/scenario.h"
 #include "sim/scenario_source.h"
 #include "sim/sweep/design.h"
@@ -40,7 +41,8 @@ class Sweep {
   /// prepared, from the first to the last in equal steps, until one is found right. A point at
   /// which the system fails is not wrong.
   /// @throws InputError
-  void refuse_hopeless() const;
+  /// @return what the first right point takes on one thread, where one was found
+  std::optional<RunEstimate> refuse_hopeless() const;
 
   /// Reads and prepares all points, of more than 256 so many in equal steps.
   /// @throws InputError at the first point that is refused

@@ -121,6 +121,11 @@ sim::CompensateRequest request_of(const Options& options) {
   request.model = text_of(options, "model");
   request.changes = options.list("set");
   request.tolerance = *positive_option(options, "tolerance", sim::kLength, "um");
+  constexpr double kLeast = 1e-9;  // m; control and machine know nothing of less
+  if (request.tolerance < kLeast * (1.0 - 1e-9)) {
+    throw InputError({"--tolerance"}, fmt::format("'{}' must be >= 0.001 um",
+                                                  options.get<std::string>("tolerance")));
+  }
   request.max_block = positive_option(options, "max-block", sim::kLength, "mm").value_or(0.0);
   request.splits_rapids = options.has("split-rapids");
   request.axes = static_cast<strategies::DisplacedAxes>(choice_option(options, "axes", kAxes));

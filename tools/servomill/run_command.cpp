@@ -7,6 +7,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
+#include "sim/estimate.h"
 #include "sim/hdf5/system_error.h"
 #include "sim/run.h"
 #include "sim/store.h"
@@ -116,7 +117,8 @@ int run_command(const Arguments& arguments) {
     store->add(one);
     kept.add(one);
   };
-  control.prepared = [&] {
+  control.prepared = [&](const sim::RunEstimate& takes) {
+    if (sim::is_worth_telling(takes)) fmt::print(stderr, "estimate: {}\n", to_string(takes));
     store.emplace(path, options.has("force"), scenario, control.threads);
     kept.in(store->partial_path());
   };

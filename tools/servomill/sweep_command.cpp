@@ -9,6 +9,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/simd.h"
+#include "sim/background.h"
 #include "sim/hdf5/system_error.h"
 #include "sim/output_name.h"
 #include "sim/sweep/point_series.h"
@@ -90,6 +91,18 @@ std::vector<SimdLevel> levels_of(const sim::SweepTable& table, const std::string
   return levels;
 }
 
+// What is left to be done takes, if its points are like the first: on standard error, where it is
+// long or large.
+void tell_estimate(sim::RunEstimate takes, std::uint64_t points, unsigned threads, bool series) {
+  const auto n = static_cast<double>(points);
+  takes.motion *= n;
+  takes.rows *= n;
+  takes.computing *= n / std::min(n, static_cast<double>(sim::thread_count(threads)));
+  takes.size *= series ? n : 0.0;
+  if (points == 0 || !sim::is_worth_telling(takes)) return;
+  fmt::print(stderr, "estimate: {} points like the first: {}\n", points, to_string(takes));
+}
+
 int status_of(const sim::StatusCounts& counts) {
   const auto count = [&](sim::PointStatus status) {
     return counts[static_cast<std::size_t>(status)];
@@ -146,7 +159,7 @@ int sweep_command(const Arguments& arguments) {
   const bool force = options.has("force");
   out = sim::output_target(out, force ? sim::Existing::replaced : sim::Existing::resumed);
   sim::output_target(sim::csv_name(out), sim::Existing::replaced);
-  sweep.refuse_hopeless();
+  const auto of_a_point = sweep.refuse_hopeless();
 
   sim::SweepTable table(out, force, sweep.base(), sim::columns_of(sweep.base()), selection);
   if (options.has("retry-failed")) table.forget(sim::PointStatus::failed);
@@ -165,6 +178,8 @@ int sweep_command(const Arguments& arguments) {
     fmt::print("{}: {} of {} points are there already\n", path, there, selection.size());
     if (without_signals > 0) fmt::print("{} of them lack signals, run again\n", without_signals);
   }
+
+  if (of_a_point) tell_estimate(*of_a_point, left, threads, !signals.empty());
 
   const auto& stop = stop_on_interrupt();
   const auto said = [&] {

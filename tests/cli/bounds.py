@@ -1,0 +1,139 @@
+#!/usr/bin/python3
+"""Every input has a bound that is checked before the work. bounds.py SERVOMILL"""
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SERVOMILL = os.path.abspath(sys.argv.pop(1))
+GALLERY = os.path.join(HERE, "gallery")
+LIMIT = 20  # s; what is bounded ends in far less
+MEMORY = 4_000_000_000  # bytes, address space
+DEVICE = "is a device, not a file of known size"
+PIPE = "is a pipe, not a file of known size"
+LARGE = "holds 3 GB, more than the 2 GB that may be read"
+
+
+def limit_memory():
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+
+
+class Bounds(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = temporary.name
+        for name in ("scenario.toml", "machine.toml", "part.ngc"):
+            shutil.copy(os.path.join(GALLERY, name), self.folder)
+        self.write("cut.ngc", "G21 G90 G17 G54\nG0 X0 Y0 Z5\nG1 Z-1 F200\nG1 X100\nM2\n")
+        self.write("errors.toml", "[errors.measured]\nEC0Y = { um_per_m = 120.0 }\n")
+        self.write("part.cls", "LOADTL/1\nFEDRAT/600\nGOTO/0,0,10\nEND\n")
+        os.mkfifo(self.path("pipe"))
+        self.write("large", "")
+        os.truncate(self.path("large"), 3_000_000_000)  # takes no room on the disk
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def run_here(self, *arguments):
+        """What it says on standard error, and its status; it must end by itself."""
+        begin = time.monotonic()
+        result = subprocess.run([SERVOMILL, *arguments], capture_output=True, text=True, timeout=LIMIT, check=False,
+                                cwd=self.folder, preexec_fn=limit_memory)
+        self.assertLess(time.monotonic() - begin, LIMIT, arguments)
+        return result.returncode, result.stderr
+
+    def test_what_has_no_end_is_no_input(self):
+        machine = ["--machine", "machine.toml"]
+        for name, why in (("/dev/zero", DEVICE), ("/dev/random", DEVICE), ("pipe", PIPE)):
+            read = f"{name}: error: cannot be read: {why}\n"
+            for command in (["canon", name], ["check", name], ["run", name], ["sweep", name], ["compare", name],
+                            ["merge", name, "-o", "out.h5"], ["canon", "cut.ngc", "--tools", name],
+                            ["canon", "cut.ngc", "--parameter-file", name], ["canon", "cut.ngc", "--machine", name],
+                            ["post", name, *machine, "-o", "out.ngc"], ["post", "part.cls", "--machine", name, "-o", "out.ngc"],
+                            ["post", "part.cls", *machine, "--tools", name, "-o", "out.ngc"],
+                            ["compensate", name, *machine, "--errors", "errors.toml", "--work-offset", "X=0,Y=0,Z=0",
+                             "-o", "out.ngc"],
+                            ["compensate", "cut.ngc", "--machine", name, "-o", "out.ngc"],
+                            ["compensate", "cut.ngc", *machine, "--errors", name, "-o", "out.ngc"],
+                            ["table", name, "--format", "csv", "-o", "out"]):
+                self.assertEqual(self.run_here(*command), (2, read), command)
+            self.assertEqual(self.run_here("run", "scenario.toml", "--set", f"program.file={name}"),
+                             (2, f"--set program.file={name}: error: program '{name}' cannot be read: {why}\n"))
+            self.assertEqual(self.run_here("run", "scenario.toml", "--set", f"machine={name}"),
+                             (2, f"--set machine={name}: error: machine '{name}' cannot be read: {why}\n"))
+
+    def test_files_have_a_size(self):
+        self.assertEqual(self.run_here("post", "large", "--machine", "machine.toml", "-o", "out.ngc"),
+                         (2, f"large: error: cannot be read: {LARGE}\n"))
+        self.assertEqual(self.run_here("run", "large"),
+                         (2, "large: error: cannot be read: holds 3 GB, more than the 100 MB that may be read\n"))
+
+    def test_a_line_is_refused_at_its_limit(self):
+        for command in ("canon", "check"):
+            begin = time.monotonic()
+            status, said = self.run_here(command, "large")
+            self.assertEqual(status, 2)
+            self.assertRegex(said, r"^large:1:")
+            self.assertLess(time.monotonic() - begin, 5.0, "3 GB have been read")
+
+    def test_way_over_feed_is_known_at_once(self):
+        for override, hours in (("1e-06", "179"), ("2e-09", "8.97e+04"), ("1e-12", "1.79e+08")):
+            for command in ("run", "check", "budget"):
+                self.assertEqual(self.run_here(command, "scenario.toml", "--set", f"program.feed_override={override}"),
+                                 (2, f"part.ngc: error: takes {hours} h at program.feed_override = {override}; must be <= "
+                                     "record.max_duration_h = 24: check feeds and feed_override, or raise it\n"))
+
+    def test_signals_have_a_size(self):
+        status, said = self.run_here("run", "scenario.toml", "--set", "program.feed_override=1e-5")
+        self.assertEqual((status, said),
+                         (2, "part.ngc: error: takes 35.9 h in 2 cases and 1.3e+08 rows: 59 GB of signals; must be <= "
+                             "record.max_size_GB = 8; raise it, or record fewer rows: record.period_ms = 1\n"))
+        status, said = self.run_here("run", "scenario.toml", "--set", "program.feed_override=1e-5",
+                                     "--set", "record.max_size_GB=100")
+        self.assertEqual(status, 2)
+        self.assertRegex(said, r"59 GB of signals; must be <= the 3\.2 GB of memory that there are for them; run fewer "
+                               r"cases, or record fewer rows: record\.period_ms = 1\n$")
+
+    def test_what_is_long_or_large_is_told_before_it_begins(self):
+        process = subprocess.Popen([SERVOMILL, "run", "scenario.toml", "-o", "out.h5", "--set", "program.feed_override=2e-4"],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, cwd=self.folder)
+        said = process.stderr.readline()
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=LIMIT)
+        self.assertRegex(said, r"^estimate: 108 min of motion, 6\.5e\+06 rows, 2\.9 GB of signals, about \d+ (s|min) of computing\n$")
+
+    def test_blocks_of_corrected_programs_are_counted_first(self):
+        command = ["compensate", "cut.ngc", "--machine", "machine.toml", "--errors", "errors.toml", "--work-offset",
+                   "X=0,Y=0,Z=0", "-o", "out.ngc"]
+        self.assertEqual(self.run_here(*command, "--max-block", "1 nm"),
+                         (2, "--max-block: error: 0.001 um makes 1.1e+08 blocks of 0.106 m of feed; must be <= 1e+07 blocks: "
+                             "name a longer one\n"))
+        self.assertEqual(self.run_here(*command, "--tolerance", "1e-9 um"),
+                         (2, "--tolerance: error: '1e-9 um' must be >= 0.001 um\n"))
+
+    def test_no_number_of_points_is_endless(self):
+        for command in (["bode", "scenario.toml", "--axis", "X", "--points", "1000000000"],
+                        ["bode", "scenario.toml", "--axis", "X", "--from", "1e-9"],
+                        ["step", "scenario.toml", "--axis", "X", "--duration", "1e9 s"],
+                        ["sweep", "scenario.toml", "--set",
+                         'sweep={"program.feed_override"={linear=[0.5,1.0],count=1000000000000}}'],
+                        ["sweep", "scenario.toml", "--set",
+                         'sweep={"program.feed_override"={linear=[0.5,1.0],count=2000000000}}']):
+            status, said = self.run_here(*command)
+            self.assertEqual(status, 2, (command, said))
+            self.assertRegex(said, "must be ", command)
+
+
+if __name__ == "__main__":
+    unittest.main()
