@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "controllers/gcode/modal_state.h"
 #include "plant/vocabulary/units.h"
@@ -96,6 +97,14 @@ void refuse_unread_scale(const StrategySpec& spec, const strategies::Strategy& s
                                  "position loop reads the motor (position_feedback = \"motor\")",
                                  case_name, spec.entry->name, machine.chain.layout.letter_of(j)));
   }
+}
+
+void refuse_undeclared_feedback(const StrategySpec& spec, const strategies::Strategy& strategy) {
+  if (!strategy.displaces_feedback() || spec.entry->uses_feedback_hardware) return;
+  throw std::logic_error(
+      fmt::format("strategy {} displaces the feedback, but its entry in the registry lacks "
+                  "uses_feedback_hardware",
+                  spec.entry->name));
 }
 
 void refuse_tip_moves(const StrategySpec& spec, const strategies::Strategy& strategy,

@@ -46,6 +46,12 @@ void refuse_start_outside(const Scenario& scenario, const MachineSettings& machi
 void refuse_unread_scale(const StrategySpec& spec, const strategies::Strategy& strategy,
                          const MachineSettings& machine, const std::string& case_name);
 
+/// Hardware and delay follow what the registry says of a strategy, its action what the strategy
+/// says: a displacement without hardware would be one without delay.
+/// @param spec  of the strategy
+/// @throws std::logic_error if it displaces the feedback and its entry says nothing of hardware
+void refuse_undeclared_feedback(const StrategySpec& spec, const strategies::Strategy& strategy);
+
 /// Most strategies displace axes; moves under tool control are not of the axes. No strategy knows
 /// more than one tool.
 /// @param spec  of the strategy, which rewrites moves

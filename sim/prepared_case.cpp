@@ -379,6 +379,7 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   SharedMoves moves(parts.program, &parts.program->moves);
   for (const StrategySpec& strategy : spec.strategies) {
     parts.strategies.push_back(prepare.strategy(strategy, parts.program->first_tip));
+    refuse_undeclared_feedback(strategy, *parts.strategies.back());
     refuse_unread_scale(strategy, *parts.strategies.back(), parts.machine(), spec.name);
     if (!parts.strategies.back()->rewrites()) continue;
     refuse_tip_moves(strategy, *parts.strategies.back(), *parts.program, scenario.program.file,

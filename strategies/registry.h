@@ -22,7 +22,7 @@ struct Entry {
   bool reads_errors = true;  ///< false: knows no geometric errors, and takes neither model nor sign
   bool acts = true;          ///< false: leaves everything as it is
   /// Use of the feedback hardware by its signals: a case has one, and so one such
-  /// strategy.
+  /// strategy. True exactly where Strategy::displaces_feedback() is.
   bool uses_feedback_hardware = false;
   /// Tells if it adds the error where the machine starts, which two strategies of a case that know
   /// the same model must not both do; nullptr: no parameter decides that.

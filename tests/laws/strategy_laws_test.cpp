@@ -99,6 +99,18 @@ TEST(EveryStrategy, HasDefaultsThatKeepItsOwnRules) {
   }
 }
 
+// Hardware and delay follow the entry, the action follows the strategy.
+TEST(EveryStrategy, ThatDisplacesTheFeedbackUsesItsHardware) {
+  const Belief belief = random_belief();
+  for (const Entry& entry : entries()) {
+    for (const Sign sign : kBothSigns) {
+      const Acting acting = make_acting(entry, sign, belief);
+      EXPECT_EQ(acting.strategy->displaces_feedback(), entry.uses_feedback_hardware) << entry.name;
+      EXPECT_EQ(acting.feedback != nullptr, entry.uses_feedback_hardware) << entry.name;
+    }
+  }
+}
+
 // Law 1: who believes in no errors changes nothing, bit for bit.
 TEST(EveryStrategy, LeavesPositionsAloneWithoutErrors) {
   const Belief belief = belief_in({});
