@@ -34,23 +34,42 @@ std::string_view displacing_strategy(const NotedCase& one) {
   return {};
 }
 
+// "case 'a'", "cases 'a', 'b'"
+std::string quoted_cases(const std::vector<std::string>& names) {
+  return fmt::format("{} '{}'", names.size() == 1 ? "case" : "cases", fmt::join(names, "', '"));
+}
+
+// The largest feed along the path (m/s) with its override; 0: the program feeds no linear axis.
+double largest_feed(const NotedCase& one) {
+  double largest = 0.0;
+  for (const Move& move : one.program.moves) {
+    const bool moves_xyz = move.kind == MoveKind::arc || move.s_end > move.s_begin;
+    const bool feeds = move.kind == MoveKind::arc || move.kind == MoveKind::feed;
+    if (feeds && moves_xyz) largest = std::max(largest, move.feed);
+  }
+  return largest * one.scenario.program.feed_override;
+}
+
 // Cases that the feedback hardware delays beside others that it does not.
-std::optional<std::string> uneven_hardware(const Scenario& scenario) {
-  std::vector<std::string_view> with, without;
+std::optional<std::string> uneven_hardware(const NotedCase& noted) {
+  std::vector<std::string> with, without;
   double delay = 0.0;
-  for (const CaseSpec& one : scenario.cases) {
-    const auto its = scenario.signal_delay_of(one);
+  for (const CaseSpec& one : noted.scenario.cases) {
+    const auto its = noted.scenario.signal_delay_of(one);
     if (!its) continue;
     delay = std::max(delay, *its);
     (*its > 0.0 ? with : without).push_back(one.name);
   }
   if (with.empty() || without.empty()) return std::nullopt;
-  constexpr double kFeed = 2.4 / 60.0;  // m/s, of the paper's experiments
+  const double feed = largest_feed(noted);
+  const std::string displaced =
+      feed > 0.0 ? fmt::format(", which is {:.2g} um at the largest feed of {:.3g} m/min",
+                               delay * feed / um, feed * 60.0)
+                 : "";
   return fmt::format(
-      "warning: feedback hardware is connected in {}, not in {}: its delay of {:g} us displaces "
-      "those by {:.2g} um at {:g} m/min; feedback_hardware.connected = true puts it in all cases",
-      fmt::join(with, ", "), fmt::join(without, ", "), delay / us, delay * kFeed / um,
-      kFeed * 60.0);
+      "warning: the feedback hardware is connected in {} but not in {}: readings of the latter "
+      "lack its delay of {:g} us{}; feedback_hardware.connected = true connects it in all cases",
+      quoted_cases(with), quoted_cases(without), delay / us, displaced);
 }
 
 // "part.ngc:12: warning: case one: strategy feedback: virtual displacement of Y saturated ..."
@@ -100,7 +119,7 @@ std::vector<std::string> notes_of_run(const NotedCase& one,
   for (const std::string& value : implausible_values(one.scenario.machine_of(one.spec))) {
     out.push_back("warning: " + value);
   }
-  if (auto uneven = uneven_hardware(one.scenario)) out.push_back(std::move(*uneven));
+  if (auto uneven = uneven_hardware(one)) out.push_back(std::move(*uneven));
   for (const strategies::Saturation& saturation : held) out.push_back(note_of(one, saturation));
   return out;
 }

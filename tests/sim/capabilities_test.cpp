@@ -17,11 +17,17 @@ Entry renamed(Entry entry, std::string_view name) {
   return entry;
 }
 
+Entry without_hardware(Entry entry) {
+  entry.uses_feedback_hardware = false;
+  return entry;
+}
+
 }  // namespace
 
 std::span<const Entry> entries() {
-  static const std::array kEntries = {feedback_entry(), none_entry(),
-                                      renamed(feedback_entry(), "stranger"), table_entry()};
+  static const std::array kEntries = {
+      feedback_entry(), without_hardware(renamed(feedback_entry(), "forgetful")), none_entry(),
+      renamed(feedback_entry(), "stranger"), table_entry()};
   return kEntries;
 }
 
@@ -123,6 +129,17 @@ TEST(UnknownFeedbackStrategy, IsCalledByItsNameInMessages) {
       << notes[0];
 }
 
+TEST(UnknownFeedbackStrategy, IsRefusedIfItsEntryForgetsTheHardware) {
+  try {
+    run(scenario("forgetful"));
+    FAIL() << "its signals would have no delay";
+  } catch (const std::logic_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "strategy forgetful displaces the feedback, but its entry in the registry lacks "
+                 "uses_feedback_hardware");
+  }
+}
+
 TEST(FeedbackHardware, IsInAllCasesAsSoonAsOneNeedsIt) {
   EXPECT_TRUE(scenario("stranger").cases[0].feedback_hardware);
   EXPECT_TRUE(scenario("stranger").cases[1].feedback_hardware);
@@ -138,9 +155,32 @@ TEST(FeedbackHardware, ThatSomeCasesLackIsTold) {
             "feedback hardware delays readings by 10 us, those of nominal by 0 us");
   EXPECT_EQ(out.cases[0].notes,
             std::vector<std::string>{
-                "warning: feedback hardware is connected in one, not in nominal: its delay of 10 "
-                "us displaces those by 0.4 um at 2.4 m/min; feedback_hardware.connected = true "
-                "puts it in all cases"});
+                "warning: the feedback hardware is connected in case 'one' but not in case "
+                "'nominal': readings of the latter lack its delay of 10 us, which is 0.4 um at "
+                "the largest feed of 2.4 m/min; feedback_hardware.connected = true connects it in "
+                "all cases"});
+}
+
+TEST(FeedbackHardware, ThatSomeCasesLackCountsAtTheLargestFeedWithItsOverride) {
+  const auto note_of = [](const char* program, double feed_override) {
+    Scenario uneven =
+        small_scenario(program,
+                       "imposed = \"imposed\"\n[errors.imposed]\nEXX = { um_per_m = 100.0 }\n"
+                       "[feedback_hardware]\nconnected = false\n[[case]]\nname = \"nominal\"\n"
+                       "[[case]]\nname = \"one\"\n[[case.strategy]]\ntype = \"feedback\"\n"
+                       "model = \"imposed\"\nsign = \"generate\"\n");
+    uneven.program.feed_override = feed_override;
+    return run(uneven).cases[0].notes.at(0);
+  };
+  const char* faster = "G1 X10 F2400\nG1 X20 F6000\nG1 X0 F1200\nM2\n";
+  EXPECT_NE(note_of(faster, 1.0).find("10 us, which is 1 um at the largest feed of 6 m/min;"),
+            std::string::npos)
+      << note_of(faster, 1.0);
+  EXPECT_NE(note_of(faster, 0.5).find("10 us, which is 0.5 um at the largest feed of 3 m/min;"),
+            std::string::npos)
+      << note_of(faster, 0.5);
+  EXPECT_NE(note_of("G0 X20\nM2\n", 1.0).find("delay of 10 us; feedback"), std::string::npos)
+      << note_of("G0 X20\nM2\n", 1.0);
 }
 
 TEST(Comparison, HasNoRowOfTheBaseItself) {
