@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 // Shares of the tolerance: what may be missed between two looks, and what is left for blocks when
 // printed digits have theirs, too.
 constexpr double kMissed = 0.1, kForBlocks = 0.85;
-constexpr double kForArcs = 0.75;  // arcs bend between two looks
+constexpr double kForArcs = 0.65;  // a correction that turns between two looks is missed there
 constexpr double kVaries = 0.1;    // of the tolerance: from then on a correction is not constant
 constexpr double kStill = 1e-12;   // m, rad: what rounding leaves of positions
 constexpr int kMostHalvings = 20;

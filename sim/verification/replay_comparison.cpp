@@ -200,7 +200,10 @@ void ReplayComparison::compare_stop(const OriginalAction& action, const Action& 
 void ReplayComparison::check_retract(const Action& action) {
   const bool is_retract =
       action.kind == ActionKind::rapid && action.is_machine_position && commands_only_Z(action);
-  if (action.is_commanded[2]) is_retracted_ = is_retract;
+  const bool is_clear =
+      action.is_to_reference || !limits_.retract ||
+      (action.end[2] && std::abs(*action.end[2] - *limits_.retract) < limits_.grid);
+  if (action.is_commanded[2]) is_retracted_ = is_retract && is_clear;
   if (!has_motion_ && !is_retract && !limits_.is_linuxcnc) {
     fail("the first motion is no retract of Z in machine coordinates");
   }

@@ -41,7 +41,9 @@ class Verifier {
 
   VerificationReport run() {
     if (has_slash(written_)) {
-      for (const bool skips : {false, true}) run_with_switch(skips);
+      for (const bool skips : {false, true}) {
+        if (skips == request_.setup.block_delete || original_runs(skips)) run_with_switch(skips);
+      }
     } else {
       run_with_switch(request_.setup.block_delete);
     }
@@ -52,6 +54,19 @@ class Verifier {
   // Whether a block may be skipped by the operator's switch.
   static bool has_slash(std::string_view text) {
     return text.starts_with('/') || text.find("\n/") != std::string_view::npos;
+  }
+
+  // A program that cannot run with the switch in one position has no meaning there.
+  bool original_runs(bool skips_blocks) const {
+    controllers::ProgramSetup setup = request_.setup;
+    setup.block_delete = skips_blocks;
+    try {
+      Original original(text(), setup, options_);
+      while (original.next() != nullptr) throw_if_interrupted();
+    } catch (const InputError&) {
+      return false;
+    }
+    return true;
   }
 
   void run_with_switch(bool skips_blocks) {

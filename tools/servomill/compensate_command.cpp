@@ -168,7 +168,10 @@ int compensate_command(const Arguments& arguments) {
       "Errors depend on machine coordinates: say where the work lies (--work-offset or\n"
       "--parameter-file) and how long the tools are (--tools). Places of the machine (G53, G28, "
       "G30)\n"
-      "are not corrected, rapids at their ends only.",
+      "are not corrected, rapids at their ends only.\n\n"
+      "The result is read back as its control reads it, under every setting of the machine "
+      "builder,\n"
+      "and compared with the original before it gets its name; a difference is refused.",
       "PROGRAM");
   const auto text = [] { return po::value<std::string>(); };
   const auto texts = [] { return po::value<std::vector<std::string>>(); };

@@ -64,7 +64,8 @@ class Observer {
       end += one.end[i] ? fmt::format(" {:.7f}", *one.end[i]) : " ?";
     }
     const Vector3d begin = place();
-    if (moves) put_switches();
+    // frames switch off before or behind their retracts
+    if (moves && !one.is_machine_position) put_switches();
     at_ = one.end;
     if (!moves) return;
     if (one.kind == ActionKind::rapid) {
