@@ -54,8 +54,15 @@ std::set<int> tools_loaded(const controllers::ClData& data, int without) {
   for (const auto& record : data.records) {
     if (record.kind == MoveKind::tool) tools.insert(record.number);
   }
-  if (tools.empty() && without > 0) tools.insert(without);
+  if (without > 0 && data.first_without_tool() != nullptr) tools.insert(without);
   return tools;
+}
+
+std::string no_length_of(int tool) {
+  return fmt::format(
+      "the length of tool {} is not given; add --tool-length \"110 mm\" or --tools "
+      "TABLE (0 is a length, too)",
+      tool);
 }
 
 void take_tools(const PostRequest& request, const controllers::ClData& data,
@@ -74,25 +81,53 @@ void take_tools(const PostRequest& request, const controllers::ClData& data,
   }
 }
 
-// Where rotary axes turn head or workpiece, the axes go with the length of the tool and the place
-// of the part: 0 may be given, but is not assumed.
-void refuse_unknown_places(const PostRequest& request, const plant::MachineChain& chain) {
-  const bool turns = std::any_of(chain.axes.begin(), chain.axes.end(),
-                                 [](const plant::ChainAxis& a) { return !is_linear(a.axis); });
-  if (!turns || request.options.mode == controllers::PostMode::tip) return;
-  std::vector<Fault> faults;
-  if (!request.part_zero) {
-    faults.push_back(
-        {{request.cl_file},
-         "the place of the part is not given, and the rotary axes of this machine turn "
-         "about points of their own; add --part-zero X,Y,Z (0,0,0 is a place, too)"});
+// 0 may be given as length, but is not assumed: under G49 and H0 the spindle nose would go where
+// the tip belongs, and they cancel the length that an operator has set.
+void refuse_unknown_tools(const PostRequest& request, const controllers::ClData& data) {
+  const int wanted = request.options.tool;
+  const bool has_length = request.tool_length || !request.tool_table.empty();
+  if (const controllers::ClRecord* first = data.first_without_tool()) {
+    const bool loads_later =
+        std::any_of(data.records.begin(), data.records.end(),
+                    [](const controllers::ClRecord& r) { return r.kind == MoveKind::tool; });
+    const bool is_known =
+        wanted > 0 || (request.tool_length && (request.has_no_tool || !loads_later));
+    if (!is_known) {
+      throw InputError({request.cl_file, first->line, 0},
+                       "no tool is loaded before this location, and neither its number nor its "
+                       "length is assumed; add LOADTL/N before it or --tool N, and --tool-length "
+                       "or --tools (a spindle without tool: --tool 0 --tool-length 0)");
+    }
+    if (request.has_no_tool && *request.tool_length > 0.0) {
+      throw InputError({"--tool 0"},
+                       "without a tool there is no length; add --tool N, or --tool-length 0");
+    }
+    if (has_length) return;
+    throw InputError({request.cl_file, first->line, 0}, no_length_of(wanted));
   }
-  if (!request.tool_length && request.tool_table.empty()) {
-    faults.push_back({{request.cl_file},
-                      "the length of the tool is not given, and this machine has rotary axes; add "
-                      "--tool-length or --tools"});
+  if (has_length) return;
+  for (const controllers::ClRecord& record : data.records) {
+    if (record.kind != MoveKind::tool) continue;
+    throw InputError({request.cl_file, record.line, 0}, no_length_of(record.number));
   }
-  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+// Where rotary axes turn head or workpiece, the axes go with the place of the part: 0 may be given,
+// but is not assumed. Under tip control X and Y are approached without it, where the table turns.
+void refuse_unknown_place(const PostRequest& request, const plant::MachineChain& chain) {
+  if (request.part_zero) return;
+  const bool is_tip = request.options.mode == controllers::PostMode::tip;
+  if (is_tip && request.options.approach == controllers::Approach::direct) return;
+  const bool turns =
+      std::any_of(chain.axes.begin(), chain.axes.end(), [is_tip](const plant::ChainAxis& a) {
+        return !is_linear(a.axis) && (!is_tip || a.side == plant::Side::workpiece);
+      });
+  if (!turns) return;
+  throw InputError({request.cl_file},
+                   fmt::format("the place of the part is not given, and the rotary axes of this "
+                               "machine turn about points of their own; add --part-zero X,Y,Z "
+                               "(0,0,0 is a place, too){}",
+                               is_tip ? " or --approach direct" : ""));
 }
 
 // Z of the machine from which every way down is free.
@@ -161,7 +196,7 @@ PostedFile post_file(PostRequest request, std::vector<controllers::Warning>* of_
   const controllers::ClData data = controllers::read_cl_data(
       read_file(request.cl_file, {}, "cutter location file"), request.cl_file, &told);
   told = data.warnings;
-  refuse_unknown_places(request, machine.chain);
+  refuse_unknown_place(request, machine.chain);
   controllers::PostOptions& options = request.options;
   options.start = joints_of(request.start, machine.chain.layout);
   for (int j = 0; j < kJoints; ++j) {
@@ -171,6 +206,7 @@ PostedFile post_file(PostRequest request, std::vector<controllers::Warning>* of_
   if (options.approach == controllers::Approach::safe) {
     options.safe.retract_Z = retract_height(request, described);
   }
+  refuse_unknown_tools(request, data);
   take_tools(request, data, options);
 
   plant::InverseSettings settings;

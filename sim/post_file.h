@@ -15,7 +15,7 @@ struct PostRequest {
   std::vector<std::string> changes;          // "KEY=VALUE": of the machine
   std::string tool_table;                    // of LinuxCNC's format; empty: none
   std::optional<double> tool_length;         // m, of every tool; without table
-  bool has_no_tool = false;                  // data without LOADTL: neither tool change nor G43
+  bool has_no_tool = false;                  // before the first LOADTL, with tool_length 0
   std::optional<Eigen::Vector3d> part_zero;  // m: options.part_zero
   std::optional<double> retract_Z;           // m, machine coordinate: options.safe.retract_Z
   std::string start;  // "A=10,C=90" in mm and deg: options.start; empty: all axes at zero

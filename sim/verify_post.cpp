@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "controllers/gcode/interpreter.h"
+#include "plant/kinematics/inverse.h"
 #include "plant/kinematics/straight_tool_path.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
@@ -48,7 +49,7 @@ class PostReplay {
   PostReplay(const std::string& program, const controllers::ClData& data,
              const MachineSettings& machine, const controllers::PostOptions& options,
              const std::string& cl_file)
-      : data_(data), chain_(machine.chain), options_(options), file_(cl_file) {
+      : program_(program), data_(data), chain_(machine.chain), options_(options), file_(cl_file) {
     controllers::ProgramSetup setup;
     setup.tools = options.tools;
     setup.work_offset[static_cast<std::size_t>(options.work_system - 1)].head<3>() =
@@ -58,9 +59,7 @@ class PostReplay {
     now_.Q = chain_.layout.joints(setup.start);
     moves_ = controllers::interpret(program, "program", std::move(setup));
     result_.only_locations = options.mode == controllers::PostMode::locations;
-    if (options_.tool > 0 &&
-        std::none_of(data.records.begin(), data.records.end(),
-                     [](const ClRecord& r) { return r.kind == MoveKind::tool; })) {
+    if (options_.tool > 0 && data.first_without_tool() != nullptr) {
       tools_.push_back(options_.tool);
     }
   }
@@ -88,7 +87,15 @@ class PostReplay {
 
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError({file_, record_ != nullptr ? record_->line : 0, 0},
-                     fmt::format("not as verified: line {} of the program: {}", line_, what));
+                     fmt::format("not as verified: line {} of the program, '{}': {}", line_,
+                                 text_of_line(), what));
+  }
+
+  std::string_view text_of_line() const {
+    std::string_view rest = program_;
+    for (int n = 1; n < line_; ++n)
+      rest.remove_prefix(std::min(rest.find('\n'), rest.size() - 1) + 1);
+    return rest.substr(0, rest.find('\n'));
   }
 
   bool is_safe() const { return options_.approach == controllers::Approach::safe; }
@@ -360,6 +367,21 @@ class PostReplay {
       fail("the program ends with spindle or coolant on");
   }
 
+  // Does a block move neither X nor Y of the machine? Under tip control the end of the block is
+  // that of the tip; after it G53 names Z alone.
+  bool moves_only_Z(const Block& block) const {
+    if (block.from.controls_tip) return true;
+    Joints end = block.to.Q;
+    double tolerance = kJoint;
+    if (block.to.controls_tip) {
+      const auto found = plant::inverse_fixed_rotary(chain_, block.to.P.p_WT, end, p_ST());
+      if (!found) return false;
+      end = *found;
+      tolerance = kTip;
+    }
+    return (end - block.from.Q).head<2>().cwiseAbs().maxCoeff() <= tolerance;
+  }
+
   // A block to or from a location.
   void check_safe(const Block& block, const ToolPose* P) const {
     const bool starts_up = is_retracted(block.from.Q), ends_up = is_retracted(block.to.Q);
@@ -381,13 +403,11 @@ class PostReplay {
     if (along_axis && (leaves || arrives)) return;
     const bool goes_up = ends_up && has_location_ && near(block.from.P, clear_of(last_));
     const bool comes_down = starts_up && P != nullptr && near(block.to.P, clear_of(*P));
-    const Joints dQ = block.to.Q - block.from.Q;
-    const bool only_Z = block.to.controls_tip || block.from.controls_tip ||
-                        (std::abs(dQ[0]) <= kJoint && std::abs(dQ[1]) <= kJoint);
-    if ((goes_up || comes_down) && only_Z) return;
+    if ((goes_up || comes_down) && moves_only_Z(block)) return;
     fail("the tool moves below the height to retract to, but not along its axis");
   }
 
+  std::string_view program_;
   const controllers::ClData& data_;
   const plant::MachineChain& chain_;
   const controllers::PostOptions& options_;

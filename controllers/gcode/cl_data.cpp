@@ -579,6 +579,14 @@ std::size_t ClData::locations() const {
                     [](const ClRecord& record) { return is_motion(record.kind); }));
 }
 
+const ClRecord* ClData::first_without_tool() const {
+  for (const ClRecord& record : records) {
+    if (record.kind == MoveKind::tool) return nullptr;
+    if (is_motion(record.kind)) return &record;
+  }
+  return nullptr;
+}
+
 ClData read_cl_data(std::string_view text, const std::string& file,
                     std::vector<Warning>* of_refused) {
   return in_capitals(file).ends_with(".CSV") ? CsvReader(file, of_refused).read(text)

@@ -59,6 +59,8 @@ struct ClData {
   std::vector<Warning> warnings;  // in order of place
 
   std::size_t locations() const;
+  /// First location before any LOADTL; nullptr if a tool is loaded before all of them.
+  const ClRecord* first_without_tool() const;
 };
 
 /// @param file        name for messages; its ending tells the form

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "controllers/gcode/free_axis.h"
+#include "controllers/gcode/number_text.h"
 #include "controllers/gcode/printer.h"
 #include "controllers/path/slowed_motion.h"
 #include "plant/kinematics/branches.h"
@@ -55,11 +56,8 @@ class Post {
   }
 
   Posted run(std::vector<Warning>* of_refused) {
-    tool_ = options_.tool;
     if (is_safe()) retract();
-    bool loads_tool = false;
-    for (const ClRecord& record : data_.records) loads_tool |= record.kind == MoveKind::tool;
-    if (!loads_tool && tool_ > 0) load(tool_, 0);
+    if (options_.tool > 0 && data_.first_without_tool() != nullptr) load(options_.tool, 0);
     for (std::size_t i = 0; i < data_.records.size() && faults_.size() < kMostFaults; ++i) {
       throw_if_interrupted();
       const ClRecord& record = data_.records[i];
@@ -200,7 +198,7 @@ class Post {
     if (!clear.fault.empty()) return fault(record.line, "on the way here, " + clear.fault);
     program_line(safe_.rotary_line(Q));
     switch_on();
-    if (options_.mode != PostMode::tip) program_line(safe_.plane_line(clear.Q));
+    program_line(safe_.plane_line(clear.Q));
     is_retracted_ = false;
     block(MoveKind::rapid, record.line, safe_.clear_of(P), clear.Q, 0.0, 0.0);
     const double feed = record.feed > 0.0 ? record.feed : options_.feed;
@@ -242,6 +240,10 @@ class Post {
   }
 
   void emit(const ClRecord& record) {
+    // no length, and no tip control above all, before X and Y are there
+    if (record.kind == MoveKind::dwell && is_safe() && is_retracted_) {
+      return program_line("G4 P" + significant_text(record.value));
+    }
     if (record.kind == MoveKind::spindle) runs_.direction = record.direction;
     if (record.kind == MoveKind::coolant) runs_.coolant = record.number;
     Move& move = add(record.kind, record.line);
@@ -276,7 +278,8 @@ class Post {
     if (!next.is_reached()) return fault(record.line, reason(next, inverse_));
     note_singular(next, record.line);
     if (next.is_singular) next.Q = looking_ahead(i, P, next.Q);
-    const bool crosses = is_retracted_ || rotation_between(Q_, next.Q) > kSameAngle;
+    next.Q = held(P, next.Q);
+    const bool crosses = is_retracted_ || rotation_between(Q_, next.Q) > 0.0;
     if (is_safe() && crosses) {
       approach(record, P, next.Q);
     } else {
@@ -284,6 +287,15 @@ class Post {
     }
     here_ = P;
     has_location_ = true;
+  }
+
+  // Q, or the rotary axes as they are where they have this tool axis: next to a singular direction
+  // equal tool axes have solutions that differ by more than the decimals of the program.
+  Joints held(const ToolPose& P, const Joints& Q) const {
+    if (rotation_between(Q_, Q) > kSameAngle) return Q;
+    const Vector3d k = plant::forward(inverse_.chain(), Q_, p_ST_).k_W;
+    if (angle_between(k, P.k_W) > kSameAxis) return Q;
+    return plant::inverse_fixed_rotary(inverse_.chain(), P.p_WT, Q_, p_ST_).value_or(Q);
   }
 
   // ---- the free axis of a singular direction

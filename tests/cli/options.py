@@ -18,7 +18,7 @@ TRUNNION = 'structure = "[w C\' A\' b X Y Z t]"\naxis.Z.travel_mm = [-300.0, 300
 TILTING = "GOTO/0,0,10,0.3,0.1,0.9\nGOTO/5,0,10,0.2,0.3,0.9\nGOTO/5,0,10,0.1,0.3,0.9\n"
 
 # command without the option, option, bare number, the same with its unit, another value that must matter
-POST = ["post", "part.cls", "-m", MACHINE, "-o", "-"]
+POST = ["post", "part.cls", "-m", MACHINE, "-o", "-", "--tool-length", "0"]
 POST_5 = ["post", "tilt.cls", "-m", "trunnion.toml", "-o", "-", "--part-zero", "0,0,0", "--feed", "500", "--turn-feed", "900"]
 COMPENSATE = ["compensate", "cut.ngc", "-m", MACHINE, "--errors", "errors.toml", "--work-offset", "X=0,Y=0,Z=0", "-o", "-"]
 TABLE = ["table", SCENARIO, "--format", "siemens", "-f", "-o", "out"]

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <functional>
@@ -261,7 +262,8 @@ TEST(VerifyPost, DangerousWaysToTheSamePlacesAreFound) {
   EXPECT_EQ(edited([&](auto& lines) {
               lines.erase(lines.begin() + static_cast<long>(index_of(lines, "G54 G0 X")));
             }),
-            "p.cls:6: error: not as verified: line 12 of the program: the tool moves below the "
+            "p.cls:6: error: not as verified: line 12 of the program, 'G0 X32.9588272 "
+            "Y10.9862757 Z34.3696194 A-18.4111219 C-71.5650512': the tool moves below the "
             "height to retract to, but not along its axis");
   // rotary axes after the descent
   EXPECT_NE(edited([&](auto& lines) {
@@ -304,6 +306,20 @@ TEST(VerifyPost, CornersWithoutATolerance) {
   }
 }
 
+// The first rapid under tip control would go down on a diagonal.
+TEST(VerifyPost, DescentUnderTipControlMovesNeitherXNorY) {
+  const Work w = work(kTable, Approach::safe, PostMode::tip);
+  auto lines = lines_of(w.program);
+  const auto at = std::find_if(lines.begin(), lines.end(),
+                               [](const auto& line) { return line.starts_with("G54 G0 X"); });
+  ASSERT_NE(at, lines.end());
+  lines.erase(at);
+  const std::string fault = fault_of(w, joined(lines));
+  EXPECT_TRUE(
+      fault.ends_with("the tool moves below the height to retract to, but not along its axis"))
+      << fault;
+}
+
 // Rotary axes that happen to be needed at zero are named, too: they may be anywhere.
 TEST(VerifyPost, RotaryAxesAtZeroAreNotAssumed) {
   Work w = work(kTable, Approach::safe, PostMode::joints);
@@ -317,8 +333,8 @@ TEST(VerifyPost, RotaryAxesAtZeroAreNotAssumed) {
   std::string mutant = program;
   mutant.erase(mutant.find("G54 G0 A0 C0\n"), 13);
   EXPECT_EQ(fault_of(w, mutant),
-            "p.cls:3: error: not as verified: line 8 of the program: a rotary axis moves below the "
-            "height to retract to");
+            "p.cls:3: error: not as verified: line 8 of the program, 'G0 X0 Y0 Z30 A0 C0': a "
+            "rotary axis moves below the height to retract to");
 }
 
 TEST(VerifyPost, SaysWhatWasCompared) {

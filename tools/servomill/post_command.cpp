@@ -176,9 +176,11 @@ int post_command(const Arguments& arguments) {
                 "by which the tool axis may leave its great circle (urad)");
   options.add()("classical", "one block a location, nothing between them");
   options.add()("tcp", "for an NC with tool-centre-point control: G43.4, X Y Z are the tip");
-  options.add()("part-zero", po::value<std::string>()->value_name("X,Y,Z"),
-                "where the part's zero lies in the machine when the rotary axes are at zero, mm: "
-                "what the NC's work offset holds; needed with rotary axes unless --tcp");
+  options.add()(
+      "part-zero", po::value<std::string>()->value_name("X,Y,Z"),
+      "where the part's zero lies in the machine when the rotary axes are at zero, mm: "
+      "what the NC's work offset holds; needed with rotary axes (with --tcp where the table "
+      "turns, unless --approach direct)");
   options.add()("approach",
                 po::value<std::string>()->default_value("safe")->value_name("safe|direct"),
                 "safe as above; direct: one rapid of all axes to the first location, no retract");
@@ -191,11 +193,11 @@ int post_command(const Arguments& arguments) {
                 "G54 to G59");
   options.add()("tools", po::value<std::string>()->value_name("TABLE"),
                 "tool table in LinuxCNC's format, mm: lengths of the tools");
-  options.add()(
-      "tool-length", po::value<std::string>()->value_name("\"110 mm\""),
-      "length of every tool (mm); this or --tools is needed with rotary axes unless --tcp");
+  options.add()("tool-length", po::value<std::string>()->value_name("\"110 mm\""),
+                "length of every tool (mm); this or --tools is needed (0 is a length, too)");
   options.add()("tool", po::value<int>()->value_name("N"),
-                "tool of a file that loads none (LOADTL); 0: no tool change, no G43");
+                "tool in the spindle before the first LOADTL; T1 where the file has none and "
+                "--tool-length is given; 0: none, G49, with --tool-length 0");
   options.add()("feed", po::value<std::string>()->value_name("\"300 mm/min\""),
                 "feed of the tip where the file gives none (mm/min)");
   options.add()(

@@ -460,6 +460,7 @@ UNITS = [
 ]
 
 POST_IT = "servomill post part.cls --machine machine.toml -o out.ngc"
+POST_T = POST_IT + " --tool-length 0"
 RIGHT = "FEDRAT/600\nRAPID\nGOTO/0,0,10\nGOTO/0,0,0\n"
 
 POST = [
@@ -472,18 +473,20 @@ POST = [
     typed("a CSV table without a column", POST_IT.replace("cls", "csv"), write={"part.csv": "x,y,z,i,j\n"}),
     typed("a CSV table with wrong lines", POST_IT.replace("cls", "csv"),
           write={"part.csv": "x,y,z,i,j,k\n1,2,3,0,0\n1,2,3,0,0,0\n1,2,3,0,0,up\n"}),
-    typed("odd cutter locations, which are posted all the same", POST_IT + " -q --force",
+    typed("odd cutter locations, which are posted all the same", POST_T + " -q --force",
           write={"part.cls": "MACHIN/ANY\nPAINT/PATH\nCOOLNT/THRU\nPAINT/PATH\nGOTO/0,0,10,0,0,1.1\nFINI\nGOTO/1,1,1\n",
                  "out.ngc": "(old)\n"}),
-    typed("more odd tool axes than one wants to read of", POST_IT + " -q",
+    typed("more odd tool axes than one wants to read of", POST_T + " -q",
           write={"part.cls": "FEDRAT/600\n" + "GOTO/0,0,10,0,0,1.1\n" * 23}, about="23 tool axes of length 1.1"),
-    typed("a tool axis and a place that the machine does not have", POST_IT,
+    typed("a tool axis and a place that the machine does not have", POST_T,
           write={"part.cls": RIGHT + "GOTO/0,0,0,0,1,1\nGOTO/9999,0,0,0,0,1\n"}),
-    typed("a place that the machine does not have behind an odd tool axis, of which it is told, too", POST_IT,
+    typed("a place that the machine does not have behind an odd tool axis, of which it is told, too", POST_T,
           write={"part.cls": "FEDRAT/600\nGOTO/0,0,10,0,0,2\nGOTO/9999,0,0\n"}),
-    typed("no feed", POST_IT, write={"part.cls": "GOTO/0,0,10\nGOTO/0,0,0\n"}),
+    typed("no feed", POST_T, write={"part.cls": "GOTO/0,0,10\nGOTO/0,0,0\n"}),
     typed("a tool that the table lacks", POST_IT + " --tools tools.tbl", write={"part.cls": "LOADTL/7\n" + RIGHT,
                                                                               "tools.tbl": "T1 P1 Z100\n"}),
+    typed("a tool without a length, and one that comes late", POST_IT, POST_IT.replace("part", "late") + " --tool-length 100",
+          write={"part.cls": "LOADTL/7\n" + RIGHT, "late.cls": RIGHT + "LOADTL/7\nGOTO/1,0,0\n"}),
     typed("a program that is there already", "servomill post part.cls --machine machine.toml", POST_IT.replace("out.ngc", "''"),
           POST_IT.replace("out.ngc", "."), POST_IT.replace("out.ngc", "nowhere/out.ngc"), write={"part.cls": RIGHT}),
     typed("options of post that cannot be", "servomill post part.cls", "servomill post", POST_IT + " --tcp --classical",
@@ -491,9 +494,10 @@ POST = [
           POST_IT + " --part-zero 1,2", POST_IT + " --part-zero 1,2,x", POST_IT + " --start Q=1", POST_IT + " --start A=10",
           POST_IT + " --start X=ten", POST_IT + " --work-system 60", POST_IT + " --feed -1", POST_IT + " --tool -1",
           POST_IT + " --approach sideways", POST_IT + " --clearance '0 mm'", POST_IT + " --retract up", POST_IT + " --retract Z=9999",
-          POST_IT + " --approach direct --retract Z=10", POST_IT + " --clearance '2 m'", POST_IT + " --retract Z=15",
-          POST_IT + " --tool-length '5 deg'", POST_IT + " --set structure=3", POST_IT + " --set axis.X.lead=3", write={"part.cls": RIGHT}),
-    typed("a part and a tool that are nowhere on a machine with rotary axes", POST_IT, POST_IT + " --part-zero 0,0,0",
+          POST_IT + " --approach direct --retract Z=10", POST_T + " --clearance '2 m'", POST_T + " --retract Z=15",
+          POST_IT + " --tool-length '5 deg'", POST_IT + " --set structure=3", POST_IT + " --set axis.X.lead=3", POST_IT, POST_IT + " --tool 3",
+          POST_IT + " --tool 0 --tool-length 5", write={"part.cls": RIGHT}),
+    typed("a part and a tool that are nowhere on a machine with rotary axes", POST_IT, POST_IT + " --part-zero 0,0,0 --approach direct",
           write={"part.cls": RIGHT, "machine.toml": 'structure = "[w C\' A\' b X Y Z t]"\n'}),
     typed("a height that nobody has named", POST_IT, write={"part.cls": RIGHT, "machine.toml": 'structure = "[w b X Y Z t]"\n'}),
     typed("the machine of post", POST_IT.replace("machine.toml", "machin.toml"), POST_IT.replace("machine.toml", "part.ngc"),
