@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::sim {
@@ -120,6 +121,16 @@ void add_left_over(const TableExport& e, std::vector<std::string>& out) {
   }
 }
 
+// Is there a table that this error over the position of the axis goes into?
+bool has_table(const TableExport& e, const TableLine& line, const plant::ErrorName& name) {
+  const auto joint = e.source.chain.layout.joint_of(name.direction);
+  return std::any_of(e.tables.begin(), e.tables.end(), [&](const CompensationTable& table) {
+    if (table.line.joint != line.joint) return false;
+    if (table.component) return *table.component == name;
+    return !is_linear(name.direction) || (joint && table.output == *joint);
+  });
+}
+
 // The directions of travel that the tables over one axis hold.
 std::string directions_in(const TableExport& e, const TableLine& line) {
   std::string both, mean;
@@ -157,6 +168,10 @@ void add_table_count(const TableExport& e, std::vector<std::string>& out) {
                   count, kTables));
 }
 
+bool does_harm(const TableExport& e) {
+  return e.volume.after > e.volume.before + e.rules().length_step;
+}
+
 void add_notes(const TableExport& e, std::vector<std::string>& out) {
   for (const CompensationTable& table : e.tables) {
     if (!table.line.one_turn || table.line.wraps || table.component) continue;
@@ -174,8 +189,20 @@ void add_notes(const TableExport& e, std::vector<std::string>& out) {
           std::max(std::abs(error.width(line.from)), std::abs(error.width(line.to)));
       out.push_back(fmt::format(
           "note: {} depends on the direction of travel, by {} at the ends of the travel; {}",
-          to_string(name), size_of(!is_linear(direction), most), directions_in(e, line)));
+          to_string(name), size_of(!is_linear(direction), most),
+          has_table(e, line, name)
+              ? directions_in(e, line)
+              : fmt::format("there is no table {} over {}: half of it, {}, stays in each direction",
+                            letter(direction), e.letter(line.joint),
+                            size_of(!is_linear(direction), 0.5 * most))));
     }
+  }
+  for (const std::string& one : e.coarse) out.push_back("note: " + one);
+  if (does_harm(e)) {
+    out.push_back(
+        fmt::format("note: worse at some poses off the lines that the tables hold: tip off by up "
+                    "to {} without them, {} with",
+                    size_of(false, e.volume.before), size_of(false, e.volume.after)));
   }
   add_omitted(e, out);
   add_table_count(e, out);
@@ -194,6 +221,99 @@ void add_notes(const TableExport& e, std::vector<std::string>& out) {
         "note: {}: {:.3f} um/mm; tables of 64 points (code number 105 296) take at most {:g} um/mm",
         title_of(e, table), table.steepest() / (um / mm), 1.0 / kGridSteps / (um / mm)));
   }
+}
+
+// The displacements of every axis over one axis, on a grid that is finer than tables are.
+struct FineLine {
+  static constexpr int kIntervals = 4096;
+  std::vector<Joints> d;
+
+  FineLine(const LineCorrection& correction, const TableLine& line) {
+    for (int i = 0; i <= kIntervals; ++i) {
+      throw_if_interrupted();
+      d.push_back(correction.over(line.joint, position(line, i)));
+    }
+  }
+
+  static double position(const TableLine& line, int i) {
+    return line.from + (line.to - line.from) * i / kIntervals;
+  }
+
+  double half_span(int output) const {
+    double low = d[0][output], high = low;
+    for (const Joints& at : d) {
+      low = std::min(low, at[output]);
+      high = std::max(high, at[output]);
+    }
+    return 0.5 * (high - low);
+  }
+
+  // Largest distance from chords over so many intervals.
+  double off_chords(int output, int stride) const {
+    double most = 0.0;
+    for (int i = 0; i <= kIntervals; ++i) {
+      const int from = std::min(i / stride * stride, kIntervals - stride);
+      const double share = static_cast<double>(i - from) / stride;
+      const auto at = [&](int n) { return d[static_cast<std::size_t>(n)][output]; };
+      most = std::max(most, std::abs(at(i) - (1.0 - share) * at(from) - share * at(from + stride)));
+    }
+    return most;
+  }
+};
+
+// Errors that go elsewhere between the points of a table, or are the same at all of them.
+std::vector<std::string> too_coarse(const TableExport& e) {
+  constexpr double kMissed = 0.5, kWanted = 0.1;  // of half the span of the error
+  const LineCorrection correction(e.source);
+  std::vector<std::string> out;
+  for (const TableLine& line : e.lines) {
+    if (!line.wanted) continue;
+    const FineLine fine(correction, line);
+    for (int output = 0; output < kJoints; ++output) {
+      const bool is_omitted =
+          std::any_of(e.omitted.begin(), e.omitted.end(), [&](const OmittedTable& table) {
+            return table.base == line.joint && table.output == output;
+          });
+      if (is_omitted || (!e.rules().cross && output != line.joint)) continue;
+      const bool is_angle = output >= kLinearJoints;
+      const double span = fine.half_span(output);
+      if (span <= (is_angle ? e.rules().angle_step : e.rules().length_step)) continue;
+      const auto table =
+          std::find_if(e.tables.begin(), e.tables.end(), [&](const CompensationTable& t) {
+            return t.line.joint == line.joint && t.output == output;
+          });
+      double missed = 0.0;
+      for (int i = 0; i <= FineLine::kIntervals; ++i) {
+        const double entry = line.entry_of(FineLine::position(line, i));
+        const double held =
+            table == e.tables.end() ? 0.0 : -0.5 * (table->at(entry, 1) + table->at(entry, -1));
+        missed = std::max(missed, std::abs(fine.d[static_cast<std::size_t>(i)][output] - held));
+      }
+      if (missed <= kMissed * span) continue;
+      int stride = FineLine::kIntervals;
+      while (stride > 1 && fine.off_chords(output, stride) > kWanted * span) stride /= 2;
+      const double needed = (line.to - line.from) * stride / FineLine::kIntervals;
+      if (needed >= line.spacing) continue;
+      out.push_back(fmt::format(
+          "{} over {}: points {:g} {} apart leave {} of an error of +-{}; it needs {:.3g} {}",
+          e.letter(output), e.letter(line.joint), line.spacing / unit_of(line.joint),
+          unit_name_of(line.joint), size_of(is_angle, missed), size_of(is_angle, span),
+          needed / unit_of(line.joint), unit_name_of(line.joint)));
+    }
+  }
+  return out;
+}
+
+// Points that miss an error do harm everywhere; without them the harm is at poses off the lines
+// that tables hold, of which the report tells.
+void refuse_harm(const TableExport& e) {
+  if (!does_harm(e) || e.coarse.empty()) return;
+  std::string why;
+  for (const std::string& one : e.coarse) why += "; " + one;
+  throw InputError(
+      {}, fmt::format("these tables would make the machine worse: tip off by up to {} "
+                      "without them, {} with{}",
+                      size_of(false, e.volume.before), size_of(false, e.volume.after), why));
 }
 
 }  // namespace
@@ -226,6 +346,8 @@ TableExport export_tables(const MachineSettings& machine, const plant::ErrorMode
   e.base = LineCorrection(e.source).base();
   e.left = left_over(e.source, e.lines, e.omitted, e.rules());
   e.volume = volume(e.source, e.lines, e.tables);
+  e.coarse = too_coarse(e);
+  refuse_harm(e);
   return e;
 }
 

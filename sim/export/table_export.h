@@ -37,6 +37,7 @@ struct TableExport {
   Joints base = Joints::Zero();           // m, rad: displacement that the reference would need
   std::vector<LeftOver> left;
   Volume volume;
+  std::vector<std::string> coarse;  // what points lie too far apart for
 
   const FormatRules& rules() const { return rules_of(request.format); }
   char letter(int joint) const { return source.chain.layout.letter_of(joint); }

@@ -454,6 +454,58 @@ TEST(VerifyTables, WhatAControlCannotHoldIsReported) {
             "both directions are held by X over X, Y over X");
 }
 
+// An error of 5 mm period between points 7 mm apart.
+TEST(VerifyTables, TablesThatMakeTheMachineWorseAreRefused) {
+  plant::ErrorModel errors;
+  errors.component("EYY"_err) = plant::harmonic(12.0 * um, 5.0 * mm);
+  TableRequest request = request_of(TableFormat::heidenhain);
+  request.spacing = 7.0 * mm;
+  try {
+    export_tables(machine_of("[w X b Y Z t]"), errors, request);
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("these tables would make the machine worse: tip off by up to "),
+              std::string::npos)
+        << what;
+    EXPECT_NE(what.find("; Y over Y: points 7 mm apart leave "), std::string::npos) << what;
+    EXPECT_NE(what.find(" of an error of +-12.000 um; it needs 0."), std::string::npos) << what;
+  }
+}
+
+// Points one period apart see an error that does not change.
+TEST(VerifyTables, PointsThatSeeNothingOfAnErrorAreReported) {
+  plant::ErrorModel errors;
+  errors.component("EYY"_err) = plant::harmonic(12.0 * um, 5.0 * mm);
+  errors.component("EXX"_err) = plant::polynomial({0.0, 1e-4});
+  TableRequest request = request_of(TableFormat::heidenhain);
+  request.spacing = 5.0 * mm;
+  std::string all;
+  for (const std::string& line :
+       report(export_tables(machine_of("[w X b Y Z t]"), errors, request))) {
+    all += line + "\n";
+  }
+  EXPECT_NE(all.find("note: Y over Y: points 5 mm apart leave 12.000 um of an error of +-12.000 "
+                     "um; it needs 0."),
+            std::string::npos)
+      << all;
+}
+
+// A straightness of which only the direction of travel matters has no mean to hold.
+TEST(VerifyTables, ReversalWithoutATableIsReportedAsLost) {
+  plant::ErrorModel errors = reversal_of_x();
+  errors.component("EYX"_err) = plant::reversal({2.0 * um}, 0.1 * mm);
+  for (const TableFormat format : {TableFormat::linuxcnc, TableFormat::heidenhain}) {
+    EXPECT_EQ(notes(format, errors),
+              (std::vector<std::string>{
+                  "note: EXX depends on the direction of travel, by 4.000 um at the ends of the "
+                  "travel; both directions are held by X over X",
+                  "note: EYX depends on the direction of travel, by 2.000 um at the ends of the "
+                  "travel; there is no table Y over X: half of it, 1.000 um, stays in each "
+                  "direction"}));
+  }
+}
+
 TEST(VerifyTables, MoreTablesThanASmallSinumerikHasAreReported) {
   plant::ErrorModel errors = reversal_of_x();
   for (const char* name : {"EXX", "EYX", "EZX", "EXY", "EYZ"}) {
