@@ -60,6 +60,54 @@ std::string near_key(const std::string& resolved, const std::string& key) {
   return did_you_mean(key.substr(begin), names);
 }
 
+// The part of KEY=VALUE before the '=', which may be quoted in it.
+std::string key_of(const std::string& change) {
+  char quote = 0;
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    const char c = change[i];
+    if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '=') {
+      return change.substr(0, i);
+    }
+  }
+  return change;
+}
+
+// Tells if a value of the key is gone once `later` is set: keys have several spellings.
+bool is_replaced(const Document& document, const std::string& key, const std::string& later) {
+  if (key != later && later == "machine") return false;  // its keys are set after the file is read
+  const auto with = [&](const char* value) {
+    Document changed = document;
+    changed.set(key + "=" + value);
+    changed.set(later + "=0");
+    return changed.to_toml();
+  };
+  try {
+    return with("1") == with("2");
+  } catch (const InputError&) {
+    return false;  // it is a table, in which the later key has its place
+  }
+}
+
+// A value for a key that the sweep varies would never be used.
+void refuse_swept(const std::vector<std::string>& changes, const Scenario& base) {
+  if (changes.empty()) return;
+  const Document document = Document::from_text(base.resolved, "");
+  std::vector<Fault> faults;
+  for (const std::string& change : changes) {
+    for (const SweepKey& varied : base.sweep.keys) {
+      if (!is_replaced(document, key_of(change), varied.key)) continue;
+      faults.push_back({{"--set " + change},
+                        fmt::format("the sweep varies {} ({}); this value would never be used",
+                                    varied.key, to_string(varied.place))});
+    }
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
 // Without the value in it: the same fault at another point has another one.
 std::string without(std::string message, const std::string& value) {
   const std::size_t at = message.find(value);
@@ -78,6 +126,7 @@ Sweep::Sweep(std::string scenario_path, std::vector<std::string> changes)
                      "has no [sweep] table; add one such as [sweep] "
                      "\"program.feed_override\" = [0.5, 1.0]");
   }
+  refuse_swept(changes_, base_);
   base_.swept_files = swept_files();
 }
 

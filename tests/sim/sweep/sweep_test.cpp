@@ -169,6 +169,29 @@ std::string refusal(const std::string& table) {
   return "accepted";
 }
 
+TEST(ValueOfASweptKey, IsRefused) {
+  const auto refused = [](const std::string& table, const std::string& change) -> std::string {
+    try {
+      sweep_of(table, {change});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::string feed = "program.feed_override=[1.0,2.0]";
+  EXPECT_EQ(refused(feed, "program.feed_override=0.3"),
+            "--set program.feed_override=0.3: error: the sweep varies program.feed_override "
+            "(--set sweep={program.feed_override=[1.0,2.0]}); this value would never be used");
+  const std::string time = "case.table.strategy.response_time_ms=[1,2]";
+  EXPECT_EQ(refused(time, "case[1].strategy[0].response_time_ms=3"),
+            "--set case[1].strategy[0].response_time_ms=3: error: the sweep varies "
+            "case.table.strategy.response_time_ms (--set sweep={" +
+                time + "}); this value would never be used")
+      << "another spelling of the same key";
+  EXPECT_EQ(refused(feed, "record.period_ms=1.0"), "accepted");
+  EXPECT_EQ(refused("machine.nc.Kv=[50,60]", "machine.solver_tolerance_nm=1"), "accepted");
+}
+
 TEST(RefuseHopeless, AcceptsWhatIsWrongAtSomePoints) {
   EXPECT_EQ(refusal("program.feed_override=[-1.0,1.0]"), "accepted");
   EXPECT_EQ(refusal("machine.nc.Kv=[5000,60]"), "accepted");
