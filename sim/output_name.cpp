@@ -9,8 +9,10 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <set>
+#include <string_view>
 #include <system_error>
 
 #include "plant/vocabulary/input_error.h"
@@ -71,6 +73,20 @@ struct TemporaryNames {
 TemporaryNames& temporary() {
   static TemporaryNames all;
   return all;
+}
+
+// False for what no writer of HDF5 leaves. One that was killed leaves the signature, or zeros or
+// nothing in its place; a special file is not read.
+bool may_be_result_file(const std::string& path) {
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return false;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return true;  // cannot be told
+  std::string begin(kSignature.size(), '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(file.gcount()));
+  return begin == kSignature || begin.find_first_not_of('\0') == std::string::npos;
 }
 
 // False if the file system cannot tell.
@@ -168,6 +184,12 @@ Writer writer_of(const std::string& partial) {
 void refuse_partial(const std::string& partial) {
   std::error_code ignored;
   if (!fs::exists(partial, ignored)) return;
+  if (!may_be_result_file(partial)) {
+    throw InputError(
+        {partial}, fmt::format("exists and is {}; a result has this name until it is complete: "
+                               "remove that, or name another result file",
+                               fs::is_directory(partial, ignored) ? "a folder" : "no result file"));
+  }
   switch (writer_of(partial)) {
     case Writer::alive:
       throw SystemError(partial, "cannot be made", "another process writes it");

@@ -129,7 +129,7 @@ class Ends(unittest.TestCase):
             result = os.path.join(folder, "out.h5")
             written = servomill("run", SCENARIO, "-o", result, **nobody)
             self.assertEqual(written.returncode, 3, written.stderr)
-            self.assertEqual(written.stderr, f"{result}.partial: cannot be made: Permission denied\n")
+            self.assertEqual(written.stderr, f"{result}.partial: error: cannot be made: Permission denied\n")
 
     def test_a_diverging_loop_stops_its_case_and_the_others_go_on(self):
         result = servomill("run", SCENARIO, "-q", "-o", self.out, "--set", "machine.nc.Kv=20000",

@@ -224,10 +224,23 @@ class PartialFiles(Folder):
             for force in ([], ["-f"]):
                 running = self.run_here("run", "scenario.toml", "-o", "out.h5", *force)
                 self.assertEqual((running.returncode, running.stderr),
-                                 (3, "out.h5.partial: cannot be made: another process writes it\n"))
+                                 (3, "out.h5.partial: error: cannot be made: another process writes it\n"))
         ended = self.run_here("run", "scenario.toml", "-o", "out.h5")
         self.assertEqual((ended.returncode, ended.stderr),
                          (2, "out.h5.partial: error: exists, left by a run that did not end; use --force to overwrite\n"))
+
+    def test_what_is_no_result_is_not_called_the_rest_of_a_run(self):
+        with open(self.path("out.h5.partial"), "w", encoding="utf-8") as file:
+            file.write("hello\n")
+        foreign = self.run_here("run", "scenario.toml", "-o", "out.h5")
+        self.assertEqual((foreign.returncode, foreign.stderr),
+                         (2, "out.h5.partial: error: exists and is no result file; a result has this name until it is "
+                             "complete: remove that, or name another result file\n"))
+        os.mkdir(self.path("two.h5.partial"))
+        folder = self.run_here("run", "scenario.toml", "-o", "two.h5")
+        self.assertEqual((folder.returncode, folder.stderr),
+                         (2, "two.h5.partial: error: exists and is a folder; a result has this name until it is "
+                             "complete: remove that, or name another result file\n"))
 
     def test_nothing_stays_where_nothing_was_promised(self):
         before = set(contents(self.folder))

@@ -266,8 +266,8 @@ class Resume(Sweeps):
         process.kill()
         process.communicate()
         said = [one.stderr.replace(self.folder + "/", "") for one in (done, forced)]
-        self.assertEqual(said, ["out.h5.partial: cannot be opened: another process writes it\n",
-                                "out.h5.partial: cannot be made: another process writes it\n"])
+        self.assertEqual(said, ["out.h5.partial: error: cannot be opened: another process writes it\n",
+                                "out.h5.partial: error: cannot be made: another process writes it\n"])
         again = servomill("sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, "--set", SLOW, status=1)
         self.assertIn("of 40 points are there already", again.stdout)
 

@@ -112,7 +112,7 @@ EC0Y = "0.2 mm/m"
     def test_a_folder_that_cannot_be_made_is_the_systems_fault(self):
         status, said, faults = servomill("table", SCENARIO, "--format", "csv", "-o", "/proc/none")
         self.assertEqual((status, said), (3, ""))
-        self.assertEqual(faults, "/proc/none: cannot be made: No such file or directory\n")
+        self.assertEqual(faults, "/proc/none: error: cannot be made: No such file or directory\n")
 
 
 if __name__ == "__main__":

@@ -138,7 +138,7 @@ TEST_F(Hdf5File, SaysWhyItCannotBeMade) {
             "no/out.h5: error: there is no folder 'no'");
   fs::create_directory(path("out.h5.partial"));
   EXPECT_EQ(message([&] { OutputFile(path("out.h5"), true); }),
-            "out.h5.partial: cannot be made: Is a directory");
+            "out.h5.partial: error: cannot be made: Is a directory");
   EXPECT_THROW(OutputFile(path("out.h5"), true), SystemError);
 }
 

@@ -166,7 +166,7 @@ TEST_F(SeriesFile, OnAFullDiskSaysSoAndKeepsWhatWasWritten) {
   }
   std::string message;
   const std::size_t rows = fill(disk + "/out.h5", message);
-  EXPECT_EQ(message, disk + "/out.h5.partial: cannot be written: No space left on device");
+  EXPECT_EQ(message, disk + "/out.h5.partial: error: cannot be written: No space left on device");
   EXPECT_FALSE(fs::exists(disk + "/out.h5"));
   EXPECT_GT(rows, 10'000u);
   { expect_rows(InputFile(disk + "/out.h5.partial"), "/servo", rows); }
@@ -186,7 +186,7 @@ TEST_F(SeriesFile, OnAFullDiskSaysSoAndKeepsWhatWasWritten) {
 TEST_F(SeriesFile, BeyondTheLimitOfFileSizeSaysSo) {
   // in a process of its own, because the limit cannot be raised again
   EXPECT_EXIT(fill_below_a_limit(path("out.h5")), testing::ExitedWithCode(0),
-              "out.h5.partial: cannot be written: File too large");
+              "out.h5.partial: error: cannot be written: File too large");
 }
 
 // Rows of every block that was promised, in a file left by a kill.
