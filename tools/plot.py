@@ -15,6 +15,9 @@ import pathlib
 import signal
 import sys
 
+if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.SIG_DFL)   # without a traceback, as soon as the imports below
+
 import numpy as np
 from PIL import Image
 
@@ -152,6 +155,9 @@ def formats_of(text, target):
         raise InputError(f"{target}: error: ends in .{ending}, but --format is {','.join(formats)}")
     if ending in PICTURES:
         raise InputError(f"{target}: error: figures are written as " + ", ".join(FORMATS))
+    if ending and ending not in FORMATS and not target.exists():
+        raise InputError(f"{target}: error: .{ending} is no format of figures; they are written as " + ", ".join(FORMATS) +
+                         "; make a folder of that name first")
     if ending not in FORMATS and target.exists() and not target.is_dir():
         raise InputError(f"{target}: error: is a file; figures go into a folder, or into a file that ends in ." +
                          ", .".join(FORMATS))

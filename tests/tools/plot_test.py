@@ -5,8 +5,10 @@ import contextlib
 import dataclasses
 import io
 import json
+import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -754,6 +756,8 @@ class OutputFiles(WithFiles):
                      self.out / "a.png", self.side, "--figures", "figure6,figure9")
         self.refuses("ends in .png, but --format is svg", self.out / "a.png", self.side, "--format", "svg")
         self.refuses("figures are written as png, svg, pdf", self.out / "a.jpg", self.side)
+        self.refuses(".txt is no format of figures; they are written as png, svg, pdf; make a folder of that name first",
+                     self.out / "one.txt", self.side)
         self.refuses("is a file; figures go into a folder, or into a file that ends in .png, .svg, .pdf",
                      self.side, self.side, "--force")
         self.assertEqual(self.drawn(), [])
@@ -828,6 +832,22 @@ class Mistakes(WithFiles):
         self.fails(f"{text}: error: is not an HDF5 file", text)
         self.fails(f"{foreign}: error: is not a result file of servomill", foreign)
         self.fails(f"{newer}: error: has schema version 99; this program reads version 3", newer)
+
+    def test_a_pipe_is_refused_at_once(self):
+        pipe = self.root / "pipe.h5"
+        os.mkfifo(pipe)
+        done = subprocess.run([PLOT, pipe], capture_output=True, text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stdout, done.stderr),
+                         (2, "", f"{pipe}: error: is no regular file; a result file of servomill is read from a disk\n"))
+
+    def test_an_interrupt_ends_it_without_a_traceback(self):
+        # an interrupt from a terminal goes to the whole group: the process that waits and the one that draws
+        process = subprocess.Popen([PLOT, self.side, "-o", self.out, "--format", "png,svg,pdf"], start_new_session=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process.stdout.readline()   # it draws
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, said.count("Traceback"), said.count("KeyboardInterrupt")), (130, 0, 0))
 
     def test_a_damaged_file(self):
         cut, hollow = self.root / "cut.h5", self.root / "hollow.h5"

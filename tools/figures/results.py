@@ -32,6 +32,8 @@ class ResultFile:
             raise InputError(f"{path}: error: no such file")
         if self.path.is_dir():
             raise InputError(f"{path}: error: is a folder, not a result file of servomill")
+        if not self.path.is_file():   # opening a pipe would wait for whoever writes into it
+            raise InputError(f"{path}: error: is no regular file; a result file of servomill is read from a disk")
         try:
             self.h5 = h5py.File(self.path, "r")
         except OSError as fault:

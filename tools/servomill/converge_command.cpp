@@ -22,9 +22,16 @@ std::string summary() {
     out += fmt::format("  {:<11}{}\n", info.name, info.help);
   }
   out +=
-      "The last columns say how many significant digits an error of twice the sum of all changes\n"
-      "(as large as one of first order is) leaves alone, and the value with these. Where no drive\n"
-      "is to be solved for, or no strategy writes blocks, nothing changes.";
+      "The last columns say how many significant digits of the value are certain, and print it "
+      "with\n"
+      "these. The error is taken as twice the sum of all changes (an error that halves with its\n"
+      "step is twice the change), but no less than half the resolution of the recording or of the\n"
+      "scales; an r behind the digits says that the resolution limits them. Blocks whose length "
+      "or\n"
+      "tolerance the scenario sets to another value than the default, such as an identified one,\n"
+      "are an input: they are not halved, and named below the table. Where no drive is to be "
+      "solved\n"
+      "for, or no strategy writes blocks, nothing changes.";
   return out;
 }
 
