@@ -98,7 +98,7 @@ class Ends(unittest.TestCase):
         for size in (0, 4096, 40000, 100000):
             result = servomill("run", SCENARIO, "-o", self.out, "--force", preexec_fn=only(size))
             self.assertEqual(result.returncode, 3, f"{size} bytes")
-            self.assertRegex(result.stderr, r"out\.h5\.partial: cannot be (written|made): File too large\n")
+            self.assertRegex(result.stderr, r"out\.h5\.partial: error: cannot be (written|made): File too large\n")
             self.assertFalse(os.path.exists(self.out))
 
     def test_full_disk_keeps_what_was_there(self):

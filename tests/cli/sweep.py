@@ -280,7 +280,7 @@ class Resume(Sweeps):
                 full = subprocess.run([SERVOMILL, "sweep", SCENARIO, "-q", "-o", self.path("out.h5"), "--set", POINTS],
                                       capture_output=True, text=True, timeout=PATIENCE, check=False, preexec_fn=limit)
                 self.assertEqual(full.returncode, 3, full.stderr)
-                self.assertRegex(full.stderr, r"out\.h5\.partial: cannot be (written|made): File too large\n")
+                self.assertRegex(full.stderr, r"out\.h5\.partial: error: cannot be (written|made): File too large\n")
                 self.sweep("out.h5")
                 os.remove(self.path("out.h5"))
                 os.remove(self.path("out.csv"))
