@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "plant/vocabulary/units.h"
 #include "sim/config/quantity.h"
 #include "sim/preparation_cache.h"
 #include "sim/text_table.h"
@@ -26,15 +27,36 @@ std::string assignment(const std::string& key, double value, std::string_view un
   return fmt::format("{}=\"{:.15g} {}\"", key, value, unit);
 }
 
-// Lengths and tolerances of the blocks that strategies write.
+bool is_of_blocks(const ParameterSpec& spec) {
+  return spec.shortcoming == Shortcoming::block_length ||
+         spec.shortcoming == Shortcoming::chord_tolerance;
+}
+
+// Names of the parameters of blocks that have not their defaults.
+std::vector<std::string_view> set_for_blocks(const StrategySpec& strategy) {
+  std::vector<std::string_view> out;
+  for (const ParameterSpec& spec : strategy.entry->parameters) {
+    if (!is_of_blocks(spec)) continue;
+    const ParsedUnit unit = parse_unit(spec.unit);
+    const double by_default =
+        std::stod(std::string(spec.default_text)) * (unit.unit ? unit.unit->factor : 1.0);
+    const double value = strategy.parameters.number(spec.name);
+    if (std::abs(value - by_default) > 1e-9 * by_default) out.push_back(spec.name);
+  }
+  return out;
+}
+
+// Lengths and tolerances of the blocks that strategies write, where none of them is an input: a
+// finer tolerance would shorten blocks of an identified length, too.
 std::vector<std::string> halved_blocks(const Scenario& scenario) {
   std::vector<std::string> out;
   for (std::size_t c = 0; c < scenario.cases.size(); ++c) {
     const auto& strategies = scenario.cases[c].strategies;
     for (std::size_t k = 0; k < strategies.size(); ++k) {
+      if (!set_for_blocks(strategies[k]).empty()) continue;
       for (const ParameterSpec& spec : strategies[k].entry->parameters) {
+        if (!is_of_blocks(spec)) continue;
         const bool is_length = spec.shortcoming == Shortcoming::block_length;
-        if (!is_length && spec.shortcoming != Shortcoming::chord_tolerance) continue;
         const double share = is_length ? 0.5 : 0.25;
         const ParsedUnit unit = parse_unit(spec.unit);
         const bool is_angle = unit.unit && unit.unit->quantity == kAngle;
@@ -98,7 +120,13 @@ const RefinementInfo& info_of(Refinement refinement) {
 double ConvergedRow::error() const {
   double sum = 0.0;
   for (const double one : change) sum += std::abs(one);
-  return kOfFirstOrder * sum;
+  return std::isnan(sum) ? sum : std::max(kOfFirstOrder * sum, 0.5 * resolution);
+}
+
+bool ConvergedRow::is_limited_by_resolution() const {
+  ConvergedRow exact = *this;
+  exact.resolution = 0.0;
+  return exact.error() < error();
 }
 
 int ConvergedRow::digits() const {
@@ -117,6 +145,40 @@ std::string ConvergedRow::stable() const {
   if (place <= 0) return fmt::format("{:.{}f}", row.value, -place);
   const double unit = std::pow(10.0, place);
   return fmt::format("{:.0f}", std::round(row.value / unit) * unit);
+}
+
+double resolution_of(const Scenario& scenario, const ComparisonRow& row) {
+  const bool is_linear = row.unit == "um";
+  if (!is_linear && row.unit != "urad") return 0.0;
+  const double unit = is_linear ? um : urad;
+  double largest = scenario.record.format.resolution;  // angles are rounded as seen from 1 m
+  for (const CaseSpec& one : scenario.cases) {
+    if (one.name != row.case_name || one.servo == ServoModel::ideal) continue;
+    const MachineSettings& machine = scenario.machine_of(one);
+    const auto joints = machine.joints();
+    const auto is_named = [&](int j) {
+      return row.axis == std::string(1, machine.chain.layout.letter_of(j));
+    };
+    const bool one_axis = std::any_of(joints.begin(), joints.end(), is_named);
+    for (const int j : joints) {
+      if ((j < kLinearJoints) != is_linear || (one_axis && !is_named(j))) continue;
+      largest = std::max(largest, machine.scale[static_cast<std::size_t>(j)].step());
+    }
+  }
+  return largest / unit;
+}
+
+std::vector<std::string> blocks_as_inputs(const Scenario& scenario) {
+  std::vector<std::string> out;
+  for (const CaseSpec& one : scenario.cases) {
+    for (const StrategySpec& strategy : one.strategies) {
+      const auto set = set_for_blocks(strategy);
+      if (set.empty()) continue;
+      out.push_back(fmt::format("case {}: strategy {}: {}", one.name, strategy.entry->name,
+                                fmt::join(set, ", ")));
+    }
+  }
+  return out;
 }
 
 std::vector<std::string> halved(Refinement refinement, const Scenario& scenario) {
@@ -157,7 +219,10 @@ std::optional<Convergence> find_convergence(const ScenarioSource& source,
     if (!outcome.finished)
       out.stopped.push_back(fmt::format("case {}: {}", one.name, outcome.reason));
   }
-  for (const ComparisonRow& row : as_it_is.comparison) out.rows.push_back({row, {}});
+  for (const ComparisonRow& row : as_it_is.comparison) {
+    out.rows.push_back({row, {}, resolution_of(base, row)});
+  }
+  if (refinements.contains(Refinement::block)) out.inputs = blocks_as_inputs(base);
   for (const Refinement refinement : refinements) {
     done += 1.0;
     if (stopped()) return std::nullopt;
@@ -189,11 +254,18 @@ std::string format_table(const Convergence& found) {
             row.statistic, row.sections,
             row.case_name, std::isfinite(row.value) ? fmt::format("{:.6g}", row.value) : "-"};
     for (const double change : one.change) line.push_back(number(change));
-    line.push_back(fmt::format("{}", one.digits()));
+    line.push_back(fmt::format("{}{}", one.digits(), one.is_limited_by_resolution() ? "r" : ""));
     line.push_back(one.stable());
     line.push_back(row.unit == "1" ? "" : row.unit);
   }
   std::string out = text_table(std::move(lines), 4, {5, 6, 7, 8, 9, 10, 11});
+  if (std::any_of(found.rows.begin(), found.rows.end(),
+                  [](const ConvergedRow& one) { return one.is_limited_by_resolution(); })) {
+    out += "r: limited by the resolution of the recording or of the scales, not by a step\n";
+  }
+  for (const std::string& input : found.inputs) {
+    out += fmt::format("not halved: {}: not the default, an input of the scenario\n", input);
+  }
   for (std::size_t n = 0; n < kRefinements; ++n) {
     if (found.why_not[n].empty()) continue;
     out += fmt::format("not halved: {}: {}\n", kInfos[n].help, found.why_not[n]);
@@ -210,8 +282,8 @@ std::string to_json(const ConvergedRow& one) {
   }
   const std::string row = to_json(one.row);
   const int digits = one.digits();
-  return fmt::format(R"({}, "changes": {{{}}}, "digits": {}, "stable": {}}})",
-                     row.substr(0, row.size() - 1), changes, digits,
+  return fmt::format(R"({}, "changes": {{{}}}, "resolution": {:.9g}, "digits": {}, "stable": {}}})",
+                     row.substr(0, row.size() - 1), changes, one.resolution, digits,
                      digits == 0 ? "null" : fmt::format("\"{}\"", one.stable()));
 }
 

@@ -36,10 +36,14 @@ const RefinementInfo& info_of(Refinement refinement);
 struct ConvergedRow {
   ComparisonRow row;                          // of the scenario unchanged
   std::array<double, kRefinements> change{};  // with the step halved, minus `row`; NaN: not known
+  double resolution = 0.0;                    // of what it is computed from, in the unit of `row`
 
   /// Bound of the error that the steps leave. An error of first order is as large as twice what
-  /// halving changes, one of a higher order is less:  e = 2 sum |change|                       (1)
+  /// halving changes, one of a higher order is less. No digit below the resolution r is known:
+  ///   e = max(2 sum |change|, r / 2)                                                        (1)
   double error() const;
+  /// Tells if the resolution, not a change, says which digits there are.
+  bool is_limited_by_resolution() const;
   /// Significant digits of the value that an error e does not reach: e <= half a unit of the last
   /// one. At most kAllDigits, which is what a value has that nothing changes; 0 where there is none
   /// or a change is not known.
@@ -54,6 +58,8 @@ struct Convergence {
   /// Reason why a step was not halved; empty: it was, or the scenario has no such step and nothing
   /// changes.
   std::array<std::string, kRefinements> why_not;
+  /// Blocks that are left alone: their lengths or tolerances are inputs of the scenario.
+  std::vector<std::string> inputs;   // "case one: strategy gcode: max_block_mm"
   std::vector<std::string> stopped;  // "case one: axis Y: following error ..."
 };
 
@@ -62,6 +68,15 @@ struct ConvergeControl {
   const StopFlag* stop = nullptr;
   std::function<void(double)> progress;  // share done, 0 to 1
 };
+
+/// Resolution (um or urad by `unit`; else 0: not known) of what a row is computed from: the larger
+/// of the rounding of recorded values and, if the case has servo loops, the measuring step of its
+/// scales, of one axis or the largest of its kind.
+double resolution_of(const Scenario& scenario, const ComparisonRow& row);
+
+/// Lengths and tolerances of blocks to which the scenario gives other values than the defaults,
+/// such as one that is identified: they are inputs, not steps of the computation.
+std::vector<std::string> blocks_as_inputs(const Scenario& scenario);
 
 /// The keys of a scenario, as --set takes them, that halve one of its steps; empty: it has none.
 std::vector<std::string> halved(Refinement refinement, const Scenario& scenario);
