@@ -171,6 +171,7 @@ void DialectWriter::write_moves(const Block& block) {
     } else if (code == 280 || code == 300) {
       write_reference(move, block, i == last);
     } else {
+      if (!is_place_of_machine(block)) restate_axes(move, block);
       write_step(block, walk_.next(move, block));
     }
   }
@@ -240,12 +241,13 @@ void DialectWriter::change_tool(int number, const Block& block) {
   if (coolant_ != 0) known_coolant_.reset();
   path_.clear();
   forget_positions();
+  height_.reset();
+  is_lost_.fill(true);
 }
 
 void DialectWriter::forget_positions() {
   walk_.forget_positions();
   out_known_.fill(false);
-  height_.reset();
 }
 
 void DialectWriter::restate_spindle_and_coolant() {

@@ -18,10 +18,12 @@ namespace servomill::sim {
 /// - The header brings the control into one state whatever was in force, and retracts; the end
 ///   stops the coolant, retracts and stops the spindle.
 /// - A position that nothing has named is unknown: a move to it is written wherever it ends. After
-/// a
-///   tool change everything is unknown, after M0, M1 and M60 the positions are.
+///   a tool change everything is unknown, after M0, M1 and M60 the positions are.
+/// - Before Z moves behind a tool change, rapids bring the other axes back to where the program has
+///   them.
 /// - A rapid in Z and other axes becomes two: Z first where it goes up, last where it goes down or
-///   comes from an unknown height. Axes may run at their own rates (Fanuc LRP, No. 1401#1, = 0;
+///   comes from an unknown height. After a stop the height is that before it, in case that nobody
+///   has jogged. Axes may run at their own rates (Fanuc LRP, No. 1401#1, = 0;
 ///   B-63844EN/02 p. 48).
 class DialectWriter final : public ProgramWriter {
  public:
@@ -54,6 +56,9 @@ class DialectWriter final : public ProgramWriter {
 
   // motion
   void write_reference(const Move& move, const Block& block, bool is_last);
+  void restate_axes(const Move& move, const Block& block);
+  std::vector<Axis> lost_axes(const Move& move, const Block& block) const;
+  void write_restated(const std::vector<Axis>& axes);
   void write_step(const Block& block, const Step& step);
   void write_path_mode(const Block& block, const Move& move);
   DialectMotion motion_of(const Block& block, const Step& step) const;
@@ -74,8 +79,11 @@ class DialectWriter final : public ProgramWriter {
   std::string file_;
   std::vector<std::string> lines_;
   std::unique_ptr<DialectPrinter> printer_;
-  std::optional<double> height_;  // m: machine coordinate of Z, where known
+  std::optional<double> height_;  // m: machine coordinate of Z, where known if nobody jogs
   AxisFlags out_known_{};         // axes that a block has named since positions were lost
+  AxisFlags is_lost_{};           // axes that a tool change may have moved, not named since
+  /// In which coordinates an axis has been written last. 0: those of the machine
+  std::array<int, kAxisWords> system_{};
   int tool_ = 0, coolant_ = 0, direction_ = 0;
   std::optional<int> known_coolant_ = 0;
   double rpm_ = 0.0;

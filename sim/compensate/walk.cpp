@@ -58,7 +58,8 @@ Walk::Walk(const WalkOptions& options, const controllers::ToolTable& tools, Corr
       feeds_(feeds),
       programmed_(options.start),
       out_(options.start),
-      known_(options.is_start_known) {
+      known_(options.is_start_known),
+      named_(options.is_start_known) {
   know_missing_axes();
 }
 
@@ -76,6 +77,16 @@ void Walk::forget_positions() {
   directions_.fill(0);
 }
 
+std::optional<double> Walk::programmed(Axis axis) const {
+  if (!named_[static_cast<std::size_t>(index_of(axis))]) return std::nullopt;
+  return programmed_[index_of(axis)];
+}
+
+void Walk::restate(Axis axis, double machine) {
+  known_[static_cast<std::size_t>(index_of(axis))] = true;
+  out_[index_of(axis)] = machine;
+}
+
 bool Walk::knows_all() const {
   return std::all_of(known_.begin(), known_.end(), [](bool one) { return one; });
 }
@@ -90,7 +101,7 @@ AxisFlags Walk::learn(const Move& move, const ExecutedBlock& block) {
     const bool is_polar = i < 2 && block.request != nullptr && block.request->has_polar();
     const bool names = is_named(block, i) || is_polar;
     commanded[k] = goes_home || names || std::abs(move.end_machine[i] - programmed_[i]) > kStill;
-    if (goes_home || (is_absolute && names)) known_[k] = true;
+    if (goes_home || (is_absolute && names)) known_[k] = named_[k] = true;
     const Axis axis = kAllAxes[k];
     if (is_named(block, i) && !correction_.layout().joint_of(axis)) {
       throw InputError({options_.file, move.line, block.request->word(letter(axis)).column},
@@ -328,7 +339,7 @@ void Walk::arrive_elsewhere(const Move& move) {
   ++summary_.blocks_before;
   ++summary_.blocks_after;
   const int Z = index_of(Axis::Z);
-  known_[static_cast<std::size_t>(Z)] = false;
+  known_[static_cast<std::size_t>(Z)] = named_[static_cast<std::size_t>(Z)] = false;
   programmed_[Z] = out_[Z] = move.end_machine[Z];
 }
 

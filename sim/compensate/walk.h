@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,12 @@ class Walk {
   void arrive(const Step& step, const AxisWords& machine);
   /// From here on no position is known: the tool has been changed, or the operator may have jogged.
   void forget_positions();
+  /// Where the program has an axis, whatever tool changes and stops have made of it; machine
+  /// coordinate. nullopt: nothing has named it
+  std::optional<double> programmed(Axis axis) const;
+  /// The output brings an axis back there.
+  /// @param machine  as printed
+  void restate(Axis axis, double machine);
   /// Z ends where LinuxCNC has stored a place, which is another place on other controls.
   void arrive_elsewhere(const Move& move);
 
@@ -97,9 +104,9 @@ class Walk {
   Summary& summary_;
   PathRecord* record_;
   SmoothedFeeds* feeds_;
-  AxisWords programmed_, out_;  // machine coordinates
-  AxisFlags known_{};
-  Directions directions_{};  // of travel, as programmed
+  AxisWords programmed_, out_;   // machine coordinates
+  AxisFlags known_{}, named_{};  // named_: since the start, others since positions were lost
+  Directions directions_{};      // of travel, as programmed
 };
 
 /// Whether O-words skip the line.

@@ -33,6 +33,59 @@ bool ReplayComparison::is_at(std::size_t axis, double target) const {
   return at_[axis] && std::abs(*at_[axis] - target) <= half + kSame;
 }
 
+// ------------------------------------------------------------------- axes behind tool changes
+
+void ReplayComparison::note_named(const Action& action) {
+  for (std::size_t i = 0; i < at_.size(); ++i) {
+    if (!action.is_commanded[i]) continue;
+    unmoved_[i] = action.end[i];
+    is_lost_[i] = false;
+  }
+}
+
+// Without Z, of axes that a tool change has lost, to where the original has them.
+bool ReplayComparison::restates(const OriginalAction& action, const Action& one) const {
+  if (one.kind != ActionKind::rapid || one.is_commanded[kZ]) return false;
+  bool is_any = false;
+  for (std::size_t i = 0; i < at_.size(); ++i) {
+    if (!one.is_commanded[i]) continue;
+    const double half = 0.5 * (i <= kZ ? limits_.grid : limits_.grid_turn) * (1.0 + 1e-6);
+    const double begin = action.begin[static_cast<int>(i)];
+    const bool is_back = one.end[i] && std::abs(*one.end[i] - begin) <= half + kSame;
+    if (!is_lost_[i] || !action.was_ever_known[i] || !is_back) return false;
+    is_any = true;
+  }
+  return is_any;
+}
+
+// Before a move of Z alone.
+void ReplayComparison::skip_restated(const OriginalAction& action) {
+  if (!action.moves_tip()) return;
+  for (const Action* one = peek(); one != nullptr && restates(action, *one); one = peek()) {
+    arrive(*one);
+  }
+}
+
+void ReplayComparison::check_lost_axes(const OriginalAction& action) const {
+  for (std::size_t i = 0; i < at_.size(); ++i) {
+    if (i == kZ || !correction_.layout().joint_of(kAllAxes[i])) continue;
+    if (!is_lost_[i] || !action.was_ever_known[i]) continue;
+    fail(fmt::format("moves Z where the tool change has left {}, which the original knows",
+                     name_of(i)));
+  }
+}
+
+// An axis that the written program has brought back is known; frames move no other axis than Z.
+OriginalAction ReplayComparison::as_known(const OriginalAction& action) const {
+  OriginalAction out = action;
+  if (limits_.is_linuxcnc) return out;
+  for (std::size_t i = 0; i < at_.size(); ++i) {
+    if (i == kZ || !at_[i] || is_lost_[i] || !action.was_ever_known[i]) continue;
+    out.was_known[i] = out.is_known[i] = true;
+  }
+  return out;
+}
+
 ReplayComparison::Targets ReplayComparison::targets_of(const OriginalAction& action) {
   Targets out;
   const AxisFlags6 changed = action.changed();
@@ -42,7 +95,8 @@ ReplayComparison::Targets ReplayComparison::targets_of(const OriginalAction& act
     is_all_known &= action.is_known[i];
     const bool is_open = !at_[i] || !action.was_known[i] || action.is_machine_position;
     out.is_required[i] = changed[i] || (action.is_named[i] && is_open);
-    out.is_allowed[i] = changed[i] || action.is_named[i] || !at_[i];
+    const bool may_be_restated = !at_[i] && (action.was_ever_known[i] || limits_.is_linuxcnc);
+    out.is_allowed[i] = changed[i] || action.is_named[i] || may_be_restated;
   }
   out.programmed = out.corrected = action.move.end_machine;
   if (action.is_machine_position) return out;
@@ -82,6 +136,7 @@ void ReplayComparison::check_rapid_block(const OriginalAction& action, const Tar
     }
     if (!one.end[i]) fail(fmt::format("leads {} to a place that is not known", name_of(i)));
   }
+  if (moves_Z && !limits_.is_linuxcnc && !one.is_machine_position) check_lost_axes(action);
   if (!moves_Z || !moves_other || limits_.is_linuxcnc) return;
   if (from_unknown) fail("a rapid of Z together with other axes from a place that is not known");
   if (!one.is_straight) {
@@ -97,7 +152,7 @@ void ReplayComparison::match_rapid(const OriginalAction& action) {
     if (!at_[kZ] && !limits_.is_linuxcnc && !action.is_machine_position) skip_retracts(&action);
     const Action& one = need("a rapid");
     if (blocks == kMaxBlocks) fail("the rapid does not end where it must");
-    if (blocks == 0) z_begin = at_[kZ];
+    if (blocks == 0) z_begin = unmoved_[kZ];
     check_rapid_block(action, targets, one);
     const bool is_Z = one.is_commanded[kZ];
     bool is_other = false;

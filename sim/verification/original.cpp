@@ -43,13 +43,20 @@ AxisFlags6 OriginalAction::changed() const {
   return out;
 }
 
+bool OriginalAction::moves_tip() const {
+  const bool is_of_workpiece =
+      !is_machine_position || (is_reference_return && !is_to_reference);  // on the way to it
+  return is_motion(move.kind) && is_of_workpiece && (is_named[2] || changed()[2]);
+}
+
 Original::Original(controllers::ProgramText text, const controllers::ProgramSetup& setup,
                    const OriginalOptions& options)
     : setup_(setup),
       options_(options),
       interpreter_(std::move(text), setup),
       position_(setup.start),
-      known_(options.is_start_known) {}
+      known_(options.is_start_known),
+      ever_known_(options.is_start_known) {}
 
 const OriginalAction* Original::next() {
   while (waiting_.empty()) {
@@ -85,6 +92,7 @@ void Original::take_motion(const Move& move, const ExecutedBlock& block, bool is
   action.move = move;
   action.begin = position_;
   action.was_known = known_;
+  action.was_ever_known = ever_known_;
   action.auxiliary = auxiliary_;
   // a canned cycle follows its path exactly, whatever is in force
   const bool is_cycle =
@@ -115,12 +123,12 @@ void Original::learn(OriginalAction& action, const ExecutedBlock& block) {
   for (int i = 0; i < kAxisWords; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (!options_.layout.joint_of(kAllAxes[k])) known_[k] = true;
-    if (is_absolute && names(block, i)) known_[k] = true;
+    if (is_absolute && names(block, i)) known_[k] = ever_known_[k] = true;
     if (!action.is_to_reference) continue;
     if (!is_any_named) action.is_named[k] = options_.layout.joint_of(kAllAxes[k]).has_value();
     // another control's reference position is another place
     const bool moves = action.is_named[k] || changed[k];
-    if (moves) known_[k] = !options_.forgets_positions;
+    if (moves) known_[k] = ever_known_[k] = !options_.forgets_positions;
   }
   action.is_known = known_;
 }

@@ -26,11 +26,13 @@ struct AuxiliaryState {
 /// A motion, dwell, tool change, stop or end of the program.
 struct OriginalAction {
   Move move;
-  bool is_machine_position = false;                // G53, G28, G30: not corrected
-  bool is_reference_return = false;                // G28, G30
-  bool is_to_reference = false;                    // the last move of those
-  AxisFlags6 is_named{};                           // by its block
-  AxisFlags6 is_known{}, was_known{};              // positions named so far, and before this action
+  bool is_machine_position = false;    // G53, G28, G30: not corrected
+  bool is_reference_return = false;    // G28, G30
+  bool is_to_reference = false;        // the last move of those
+  AxisFlags6 is_named{};               // by its block
+  AxisFlags6 is_known{}, was_known{};  // positions named so far, and before this action
+  /// Positions named before this action, whatever tool changes and stops have made of them.
+  AxisFlags6 was_ever_known{};
   AxisWords begin = AxisWords::Zero();             // machine coordinates; m, rad
   Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();  // tip of the tool that works (m)
   AuxiliaryState auxiliary;                        // in force
@@ -38,6 +40,8 @@ struct OriginalAction {
   bool is_of_cycle = false;  // of a canned cycle, which stops at corners or does not
 
   AxisFlags6 changed() const;
+  /// A move of Z to a position of the workpiece.
+  bool moves_tip() const;
 };
 
 struct OriginalOptions {
@@ -70,7 +74,7 @@ class Original {
   std::deque<OriginalAction> waiting_;
   OriginalAction current_;
   AxisWords position_;
-  AxisFlags6 known_{};
+  AxisFlags6 known_{}, ever_known_{};
   AuxiliaryState auxiliary_;
   bool has_path_mode_ = false;
   std::string text_;

@@ -84,6 +84,7 @@ const controllers::MachineAction* ReplayComparison::peek() {
   take_auxiliary();
   while (next_ < replay_.size() && is_still(replay_[next_])) {
     check_retract(replay_[next_]);
+    note_named(replay_[next_]);
     ++next_;
     take_auxiliary();
   }
@@ -98,6 +99,7 @@ const controllers::MachineAction& ReplayComparison::need(const std::string& what
 
 void ReplayComparison::arrive(const Action& action) {
   check_retract(action);
+  note_named(action);
   at_ = action.end;
   ++next_;
   ++blocks_;
@@ -238,6 +240,8 @@ void ReplayComparison::match_other(const OriginalAction& action) {
   const bool is_dwell = kind == ActionKind::dwell;
   if (!is_dwell) at_ = one.end;
   if (kind == ActionKind::tool) {
+    unmoved_ = {};
+    is_lost_.fill(true);
     auxiliary_.direction.reset();
     if (!limits_.is_linuxcnc) auxiliary_.coolant.reset();
   }
@@ -252,7 +256,8 @@ void ReplayComparison::match(const OriginalAction& action) {
     if (is_lost && !limits_.is_linuxcnc) directions_.fill(0);
     return match_other(action);
   }
-  for (const OriginalAction& piece : pieces_of(action, correction_)) {
+  if (!limits_.is_linuxcnc) skip_restated(action);
+  for (const OriginalAction& piece : pieces_of(as_known(action), correction_)) {
     turn(directions_, piece);
     correction_.set_directions(directions_);
     match_motion(piece);

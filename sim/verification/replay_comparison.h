@@ -43,7 +43,7 @@ class ReplayComparison {
                    const ComparisonLimits& limits, Correction& correction);
 
   /// Positions before the program.
-  void start_at(const controllers::KnownPosition& start) { at_ = start; }
+  void start_at(const controllers::KnownPosition& start) { at_ = unmoved_ = start; }
   /// @throws ReplayDifference
   void match(const OriginalAction& action);
   void finish();
@@ -67,6 +67,11 @@ class ReplayComparison {
 
   void take_auxiliary();
   void skip_retracts(const OriginalAction* before);
+  void note_named(const Action& action);
+  bool restates(const OriginalAction& action, const Action& one) const;
+  void skip_restated(const OriginalAction& action);
+  void check_lost_axes(const OriginalAction& action) const;
+  OriginalAction as_known(const OriginalAction& action) const;
   void compare_auxiliary(const OriginalAction& action, bool is_strict) const;
   void match_motion(const OriginalAction& action);
   void compare_stop(const OriginalAction& action, const Action& one);
@@ -95,6 +100,8 @@ class ReplayComparison {
   Correction& correction_;
   std::size_t next_ = 0;
   controllers::KnownPosition at_;
+  controllers::KnownPosition unmoved_;                // if nobody has jogged at a stop
+  AxisFlags6 is_lost_{};                              // by a tool change, and not named since
   Directions directions_{};                           // of travel, as the original has them
   AuxiliaryState auxiliary_, auxiliary_before_line_;  // before the line of the last change
   int auxiliary_line_ = 0;
