@@ -164,8 +164,8 @@ void ReplayComparison::match_rapid(const OriginalAction& action) {
     if (is_other && began_with_Z && !is_Z && goes_down && !limits_.is_linuxcnc) {
       fail("goes down before it moves the other axes");
     }
-    // where the original leaves the height open, the frame has retracted Z
-    if (is_Z && began_without_Z && goes_up && action.was_known[kZ] && !limits_.is_linuxcnc) {
+    // from the height of the frames every way across is clear
+    if (is_Z && began_without_Z && goes_up && !is_retracted_ && !limits_.is_linuxcnc) {
       fail("moves the other axes before it goes up");
     }
     if (is_other && !is_Z) began_without_Z = true;
