@@ -304,16 +304,20 @@ std::vector<std::string> too_coarse(const TableExport& e) {
   return out;
 }
 
+std::string joined(const std::vector<std::string>& reasons) {
+  std::string out;
+  for (const std::string& reason : reasons) out += "; " + reason;
+  return out;
+}
+
 // Points that miss an error do harm everywhere; without them the harm is at poses off the lines
 // that tables hold, of which the report tells.
 void refuse_harm(const TableExport& e) {
   if (!does_harm(e) || e.coarse.empty()) return;
-  std::string why;
-  for (const std::string& one : e.coarse) why += "; " + one;
-  throw InputError(
-      {}, fmt::format("these tables would make the machine worse: tip off by up to {} "
-                      "without them, {} with{}",
-                      size_of(false, e.volume.before), size_of(false, e.volume.after), why));
+  throw InputError({}, fmt::format("these tables would make the machine worse: tip off by up to {} "
+                                   "without them, {} with{}",
+                                   size_of(false, e.volume.before), size_of(false, e.volume.after),
+                                   joined(e.coarse)));
 }
 
 }  // namespace
@@ -338,9 +342,10 @@ TableExport export_tables(const MachineSettings& machine, const plant::ErrorMode
   }
   std::erase_if(e.tables, [](const CompensationTable& table) { return table.is_second_order; });
   if (e.tables.empty() && !(csv && !errors.is_zero())) {
+    const std::string why = csv ? "" : joined(too_coarse(e));
     throw InputError({}, fmt::format("{} tables over the axes that are asked for can hold nothing "
-                                     "of the error model '{}'",
-                                     name_of(request.format), request.model));
+                                     "of the error model '{}'{}",
+                                     name_of(request.format), request.model, why));
   }
   if (csv) return e;
   e.base = LineCorrection(e.source).base();

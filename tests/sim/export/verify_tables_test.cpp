@@ -489,6 +489,18 @@ TEST(VerifyTables, PointsThatSeeNothingOfAnErrorAreReported) {
                      "um; it needs 0."),
             std::string::npos)
       << all;
+
+  errors.component("EXX"_err) = {};
+  try {
+    export_tables(machine_of("[w X b Y Z t]"), errors, request);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("can hold nothing of the error model"),
+              std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("; Y over Y: points 5 mm apart leave 12.000 um"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 // A straightness of which only the direction of travel matters has no mean to hold.
