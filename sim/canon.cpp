@@ -1,5 +1,9 @@
 #include "sim/canon.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -9,6 +13,7 @@
 #include "controllers/gcode/parameter_file.h"
 #include "sim/config/document.h"
 #include "sim/implausible.h"
+#include "sim/prepared_case.h"
 #include "sim/read_file.h"
 #include "sim/run.h"
 #include "sim/scenario.h"
@@ -20,28 +25,54 @@ namespace {
 
 constexpr std::size_t kWrittenAtOnce = 1U << 16;  // bytes
 
-void warn_of(const MachineSettings& machine, std::vector<std::string>* warnings) {
+void warn_of(const MachineSettings& machine, const std::string& path,
+             std::vector<Fault>* warnings) {
   if (warnings == nullptr) return;
-  for (std::string& value : implausible_values(machine)) warnings->push_back(std::move(value));
+  for (std::string& value : implausible_values(machine)) {
+    warnings->push_back({{path}, std::move(value)});
+  }
+}
+
+// What the cases' programs hold beyond LinuxCNC's rules; the cases mostly run the same one.
+void add_program_warnings(const Scenario& scenario, std::vector<Fault>& warnings) {
+  for (const CaseSpec& spec : scenario.cases) {
+    std::vector<Fault> found;
+    read_program(scenario, spec, &found);
+    for (Fault& one : found) {
+      const bool is_known = std::any_of(warnings.begin(), warnings.end(), [&](const Fault& other) {
+        return other.place == one.place && other.message == one.message;
+      });
+      if (!is_known) warnings.push_back(std::move(one));
+    }
+  }
 }
 
 void check_toml(const std::string& path, const std::vector<std::string>& changes,
-                std::vector<std::string>* warnings) {
+                std::vector<Fault>* warnings) {
   const Document document = Document::from_file(path);
   if (document.root().find("structure") != nullptr) {
     const MachineSettings machine = read_machine_file(path);
-    warn_of(machine, warnings);
+    warn_of(machine, path, warnings);
     check_machine(machine);
     return;
   }
   const Scenario scenario = read_scenario(path, changes);
-  warn_of(scenario.machine, warnings);
+  warn_of(scenario.machine, path, warnings);
   check_scenario(scenario);
+  if (warnings != nullptr) add_program_warnings(scenario, *warnings);
   if (!scenario.sweep.empty()) Sweep(path, changes).check();
 }
 
 bool holds_cutter_locations(std::string_view path) {
   return path.ends_with(".cls") || path.ends_with(".apt") || path.ends_with(".csv");
+}
+
+controllers::Reader reader_of(const std::string& name) {
+  const auto reader = controllers::reader_named(name);
+  if (reader) return *reader;
+  throw InputError({"--reader " + name},
+                   fmt::format("must be one of {}{}", fmt::join(controllers::kReaders, ", "),
+                               did_you_mean(name, controllers::kReaders)));
 }
 
 }  // namespace
@@ -70,6 +101,7 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
     }
     setup.parameters[parameter.substr(0, equals)] = value;
   }
+  setup.reader = reader_of(inputs.reader);
   setup.block_delete = inputs.block_delete;
   setup.most_jumps = inputs.most_jumps;
   for (const std::string& folder : inputs.subroutine_folders) {
@@ -105,7 +137,7 @@ std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& i
 }
 
 std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,
-                              const ProgramInputs& inputs, std::vector<std::string>* warnings) {
+                              const ProgramInputs& inputs, std::vector<Fault>* warnings) {
   try {
     if (path.ends_with(".toml")) {
       check_toml(path, changes, warnings);
@@ -116,7 +148,7 @@ std::vector<Fault> check_file(const std::string& path, const std::vector<std::st
       return {};
     }
     return controllers::check_program(controllers::ProgramText::of_file(path),
-                                      program_setup(inputs, path));
+                                      program_setup(inputs, path), warnings);
   } catch (const InputError& error) {
     return error.faults();
   }

@@ -18,6 +18,7 @@ struct ProgramInputs {
   std::string machine = {};                          // file of the machine that runs it, or empty
   std::string parameter_file = {};                   // LinuxCNC's "var" file, or empty
   std::vector<std::string> subroutine_folders = {};  // beside that of the program
+  std::string reader = "any";                        // one of controllers::kReaders
   bool block_delete = false;                         // leave out lines that start with '/'
   long most_jumps = 1'000'000;                       // loops turned and subroutines called
 };
@@ -38,9 +39,9 @@ std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& i
 /// program (anything else).
 /// @param changes     what --set says, for scenarios
 /// @param inputs   for programs
-/// @param warnings    receives values that no machine has; may be nullptr
+/// @param warnings  receives what programs hold beyond LinuxCNC's rules and values
+/// that no machine has; may be nullptr
 std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,
-                              const ProgramInputs& inputs,
-                              std::vector<std::string>* warnings = nullptr);
+                              const ProgramInputs& inputs, std::vector<Fault>* warnings = nullptr);
 
 }  // namespace servomill::sim

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "controllers/gcode/reader.h"
 #include "sim/comparison.h"
 #include "sim/config/document.h"
 #include "strategies/registry.h"
@@ -29,6 +30,21 @@ std::string describe_quantities() {
   std::string out;
   for (const QuantityInfo& info : quantities()) {
     out += fmt::format("{:<24} {:<3} {}\n", info.name, info.unit, info.help);
+  }
+  return out;
+}
+
+std::string describe_reader_rules() {
+  using controllers::Reader;
+  std::string out;
+  for (const controllers::ReaderRuleEntry& rule : controllers::reader_rules()) {
+    std::string readers;
+    for (std::size_t k = 0; k < controllers::kReaders.size(); ++k) {
+      if (!controllers::has_rule(static_cast<Reader>(k), rule.rule)) continue;
+      readers += fmt::format("{}{}", readers.empty() ? "" : ", ", controllers::kReaders[k]);
+    }
+    out += fmt::format("{}: {}\n  controls: {}\n  --reader: {}\n  source: {}\n", rule.found,
+                       rule.reading, rule.controls, readers, rule.source);
   }
   return out;
 }

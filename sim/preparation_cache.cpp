@@ -161,8 +161,8 @@ void add(MemoKey& key, const plant::ErrorModel& errors) {
 }
 
 void add(MemoKey& key, const controllers::ProgramSetup& setup) {
-  const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, start,
-               block_delete, subroutine_file, most_jumps, machine] = setup;
+  const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, reader,
+               start, block_delete, subroutine_file, most_jumps, machine] = setup;
   key.add(stored.size());
   for (const auto& [number, value] : stored) {
     key.add(number);
@@ -178,6 +178,7 @@ void add(MemoKey& key, const controllers::ProgramSetup& setup) {
   key.add(work_system);
   add(key, tools);
   key.add(tool);
+  key.add(static_cast<int>(reader));
   key.add(start);
   key.add(block_delete);
   key.add(most_jumps);  // texts of subroutines are of the program

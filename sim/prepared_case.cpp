@@ -37,6 +37,7 @@ controllers::ProgramSetup setup_of(const Scenario& scenario, const CaseSpec& spe
   setup.parameters = scenario.program.parameters;
   setup.work_offset[0] = scenario.program.work_offset + spec.work_offset;
   setup.tools = scenario.program.tools;
+  setup.reader = scenario.program.reader;
   setup.start = machine_start(scenario, spec);
   setup.machine = tool_centre_point(scenario.machine_of(spec));
   setup.subroutine_file = [texts = scenario.program.subroutines, file = scenario.program.file](

@@ -158,6 +158,8 @@ class ScenarioReader {
       table.fault("file", "must name the program");
     }
     refuse_unwritable(program.file, program.text);
+    program.reader =
+        static_cast<controllers::Reader>(table.choice_or("reader", 0, controllers::kReaders));
     program.feed_override = table.real_or("feed_override", 1.0, kNumber, {above(0.0)});
     if (table.has("parameters")) {
       Reader parameters = table.table("parameters");

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "controllers/gcode/reader.h"
 #include "controllers/gcode/tool_table.h"
 #include "plant/cutting/cutter.h"
 #include "plant/cutting/material.h"
@@ -33,6 +34,7 @@ struct ProgramSpec {
   std::string text;
   std::map<std::string, std::string> subroutines;  // texts of NAME.ngc beside the program, by NAME
   std::map<std::string, double> parameters;        // "#101" -> value
+  controllers::Reader reader = controllers::Reader::any;
   double feed_override = 1.0;
   AxisWords work_offset = AxisWords::Zero();  // G54, m, rad, machine coordinates
   AxisWords start = AxisWords::Zero();        // m, rad, in work coordinates

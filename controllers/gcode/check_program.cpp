@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "controllers/gcode/interpreter.h"
-#include "controllers/gcode/parser.h"
+#include "controllers/gcode/line_reader.h"
 #include "controllers/gcode/program_text.h"
 #include "controllers/gcode/request.h"
 
@@ -29,18 +29,18 @@ void append(std::vector<Fault>& faults, const InputError& error) {
 }
 
 // Subroutines may stand behind M2: where the program has O-words it is read to its last line.
-std::vector<Fault> syntax_faults(ProgramText& text, bool block_delete) {
+std::vector<Fault> syntax_faults(ProgramText& text, const ProgramSetup& setup) {
   std::vector<Fault> faults;
-  Parser parser(block_delete);
+  LineReader reader(setup.block_delete, setup.reader);
   Block block;
   PercentRule percent;
   bool has_o_words = false;
   for (std::string_view line; text.next(line);) {
     if (is_blank(line)) continue;
     try {
-      parser.parse(line, text.file(), text.number(), block);
+      reader.parse(line, text.file(), text.number(), block);
       if (block.percent) {
-        if (percent.saw_percent() == Percent::end) break;
+        if (percent.saw_percent() != Percent::start) break;
         continue;
       }
       percent.saw_line();
@@ -58,13 +58,15 @@ std::vector<Fault> syntax_faults(ProgramText& text, bool block_delete) {
 
 }  // namespace
 
-std::vector<Fault> check_program(ProgramText text, ProgramSetup setup) {
-  std::vector<Fault> faults = syntax_faults(text, setup.block_delete);
+std::vector<Fault> check_program(ProgramText text, ProgramSetup setup,
+                                 std::vector<Fault>* warnings) {
+  std::vector<Fault> faults = syntax_faults(text, setup);
   const std::string file = text.file();
   try {
     Interpreter interpreter(std::move(text), std::move(setup));
     while (interpreter.next() != nullptr) {
     }
+    if (warnings != nullptr) *warnings = interpreter.warnings();
   } catch (const InputError& error) {
     append(faults, error);
   }

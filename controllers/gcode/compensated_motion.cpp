@@ -106,6 +106,11 @@ double Interpreter::Machine::compensation_diameter() const {
     tool_named('D', number);
   }
   const ToolEntry* tool = setup_.tools.find(number);
+  if (tool == nullptr && number != 0) {
+    fail(chosen.column, fmt::format("{}: the diameter of tool {} is unknown; pass a tool table "
+                                    "with --tools",
+                                    name, number));
+  }
   if (tool == nullptr) return 0.0;  // nothing in the spindle
   refuse_turning_tool(request().has('D') ? request().word('D').column : chosen.column,
                       tool->orientation);

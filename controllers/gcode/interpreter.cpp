@@ -25,6 +25,8 @@ std::string_view trimmed(std::string_view text) {
 
 constexpr std::string_view kMisplacedPercent =
     "'%' ends a program only if another '%' is its first line";
+constexpr std::string_view kPercentInside =
+    "Fanuc ends the program at this '%', other controls go on behind it; choose with --reader";
 constexpr std::string_view kNoEnd = "the program ends without M2, M30 or a closing '%'";
 
 }  // namespace
@@ -102,8 +104,8 @@ void Interpreter::Machine::store_setup_offset(int system) {
 
 bool Interpreter::Machine::read_block() {
   here_ = {text_, text().mark()};
-  if (!text().next(line_)) fail_at_end();
   block_.clear();
+  if (!text().next(line_)) return end_of_text(), true;
   if (is_blank(line_)) return true;
   if (flow_.jumps > 0) ++flow_.lines;
   try {
@@ -118,7 +120,8 @@ bool Interpreter::Machine::read_block() {
 }
 
 void Interpreter::Machine::read_executed_line() {
-  parser_.parse(line_, file(), line(), block_);
+  reader_.parse(line_, file(), line(), block_);
+  for (const AppliedRule& one : reader_.applied()) tolerates(one.rule, one.column);
   if (block_.percent) return saw_percent();
   texts_[text_].percent.saw_line();
   if (!block_.deleted) execute();
@@ -126,14 +129,14 @@ void Interpreter::Machine::read_executed_line() {
 
 // Only the line with the right label ends the skipping; it is then read in full.
 void Interpreter::Machine::read_skipped_line() {
-  parser_.parse(line_, file(), line(), block_, Parser::Extent::flow_only);
+  reader_.parse(line_, file(), line(), block_, Parser::Extent::flow_only);
   if (block_.percent) {
     if (!texts_[text_].percent.is_framed()) return block_.clear();
     return saw_percent();
   }
   texts_[text_].percent.saw_line();
   if (block_.deleted || !may_end_skipping(block_.o_word)) return block_.clear();
-  parser_.parse(line_, file(), line(), block_, Parser::Extent::flow_value);
+  reader_.parse(line_, file(), line(), block_, Parser::Extent::flow_value);
   execute();
 }
 
@@ -159,13 +162,51 @@ bool Interpreter::Machine::may_end_skipping(const OWord& o) const {
 
 void Interpreter::Machine::saw_percent() {
   const Percent meaning = texts_[text_].percent.saw_percent();
-  if (meaning == Percent::misplaced) fail(1, std::string(kMisplacedPercent));
+  if (meaning == Percent::misplaced) {
+    if (!has_rule(setup_.reader, ReaderRule::percent_at_end) || flow_.skip_to || text_ != 0) {
+      fail(1, std::string(kMisplacedPercent));
+    }
+    if (setup_.reader == Reader::any && has_more_words()) fail(1, std::string(kPercentInside));
+    return run_end(ReaderRule::percent_at_end);
+  }
   if (meaning != Percent::end) return;
   if (flow_.skip_to || text_ != 0) fail_at_end();
   ended_ = true;
 }
 
 // The text ends although the program does not.
+void Interpreter::Machine::end_of_text() {
+  const bool is_empty = texts_[0].percent.saw_nothing();
+  const bool is_main = !is_empty && !flow_.skip_to && flow_.calls.empty() && text_ == 0;
+  if (!is_main || !has_rule(setup_.reader, ReaderRule::end_of_text)) fail_at_end();
+  run_end(ReaderRule::end_of_text);
+}
+
+// M2 in place of a line, so that writers of programs see it.
+void Interpreter::Machine::run_end(ReaderRule rule) {
+  tolerates(rule, 0);
+  line_ = "M2";
+  reader_.parse(line_, file(), line(), block_);
+  execute();
+}
+
+bool Interpreter::Machine::has_more_words() {
+  const ProgramText::Mark here = text().mark();
+  bool found = false;
+  for (std::string_view next; !found && text().next(next);) {
+    found = next.find_first_not_of(" \t\r%") != std::string_view::npos;
+  }
+  text().go_to(here);
+  return found;
+}
+
+// Whether the reader has the rule; its first use is reported.
+bool Interpreter::Machine::tolerates(ReaderRule rule, int column) {
+  if (!has_rule(setup_.reader, rule)) return false;
+  if (tolerated_.insert(rule).second) warn(column, sentence(rule));
+  return true;
+}
+
 void Interpreter::Machine::fail_at_end() {
   ended_ = true;
   std::string message(kNoEnd);
@@ -223,7 +264,7 @@ void Interpreter::Machine::run_block() {
 std::optional<ExecutedBlock> Interpreter::Machine::next_block() {
   clear_output();
   if (ended_) return std::nullopt;
-  parser_.keep_pieces(true);
+  reader_.keep_pieces(true);
   request_.clear();
   new_numbers_.clear();
   const std::size_t read_from = text_;
@@ -346,6 +387,12 @@ const ToolEntry& Interpreter::Machine::tool_named(char letter, int number) const
   if (number == 0) return no_tool;
   const ToolEntry* tool = setup_.tools.find(number);
   if (tool == nullptr) {
+    if (setup_.tools.empty() && has_rule(setup_.reader, ReaderRule::tool_without_table)) {
+      fail_at(letter,
+              fmt::format("{0}{1}: length and diameter of tool {1} are unknown; pass a tool "
+                          "table with --tools",
+                          letter, number));
+    }
     fail_at(letter,
             setup_.tools.empty()
                 ? fmt::format("{}{}: no tool is known; a tool table says them", letter, number)
@@ -359,7 +406,11 @@ void Interpreter::Machine::select_tool() {
   if (!request().has('T')) return;
   const int number = integer('T');
   if (number < 0) fail_at('T', fmt::format("T{}; must be >= 0", number));
-  tool_named('T', number);
+  // a table that lacks the number shows a slip
+  const bool is_unknown = number != 0 && setup_.tools.empty();
+  if (!is_unknown || !tolerates(ReaderRule::tool_without_table, request().word('T').column)) {
+    tool_named('T', number);
+  }
   state_.selected_tool = number;
 }
 

@@ -116,7 +116,9 @@ class Interpreter {
 std::vector<Move> interpret(std::string text, std::string file, ProgramSetup setup);
 
 /// Every fault of syntax in the program (up to its end), and the first fault met on running it.
-std::vector<Fault> check_program(ProgramText text, ProgramSetup setup);
+/// @param warnings  receives what the interpreter reports, or nullptr
+std::vector<Fault> check_program(ProgramText text, ProgramSetup setup,
+                                 std::vector<Fault>* warnings = nullptr);
 std::vector<Fault> check_program(std::string text, std::string file, ProgramSetup setup);
 
 }  // namespace servomill::controllers

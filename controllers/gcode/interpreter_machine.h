@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,9 +16,9 @@
 #include "controllers/gcode/arc_geometry.h"
 #include "controllers/gcode/canned_cycles.h"
 #include "controllers/gcode/interpreter.h"
+#include "controllers/gcode/line_reader.h"
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/parameters.h"
-#include "controllers/gcode/parser.h"
 #include "controllers/gcode/program_text.h"
 #include "controllers/gcode/request.h"
 #include "controllers/gcode/saved_state.h"
@@ -88,7 +89,7 @@ class Interpreter::Machine {
         tools_at_start_(setup_.tools),
         parameters_({[this](int number) { return system_number(number); },
                      [this](std::string_view name) { return system_name(name); }}),
-        parser_(setup_.block_delete) {
+        reader_(setup_.block_delete, setup_.reader) {
     texts_.push_back({std::move(text), {}, 0});
     load_stored_parameters();
     for (const auto& [name, value] : setup_.parameters) set_initial(name, value);
@@ -145,7 +146,11 @@ class Interpreter::Machine {
   void read_skipped_line();
   bool may_end_skipping(const OWord& o) const;
   void saw_percent();
+  void end_of_text();
   [[noreturn]] void fail_at_end();
+  bool has_more_words();
+  void run_end(ReaderRule rule);
+  bool tolerates(ReaderRule rule, int column);
   void execute();
   void run_block();
   void clear_output() {
@@ -359,7 +364,8 @@ class Interpreter::Machine {
   ProgramSetup setup_;
   ToolTable tools_at_start_;  // G10 changes those of `setup_`
   Parameters parameters_;
-  Parser parser_;
+  LineReader reader_;
+  std::set<ReaderRule> tolerated_;
   std::string_view line_;  // as it was read last
   LinePlace here_;         // where it begins
   FlowState flow_;

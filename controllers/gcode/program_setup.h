@@ -9,6 +9,7 @@
 #include <string>
 
 #include "controllers/gcode/program_text.h"
+#include "controllers/gcode/reader.h"
 #include "controllers/gcode/tool_table.h"
 #include "controllers/path/tool_centre_point.h"
 #include "plant/vocabulary/axes.h"
@@ -25,6 +26,7 @@ struct ProgramSetup {
   int work_system = 1;  // in force at the start; 1 is G54. `stored` does not set it
   ToolTable tools;
   int tool = 0;                         // in the spindle at the start; 0: none
+  Reader reader = Reader::linuxcnc;     // whose rules the text follows
   AxisWords start = AxisWords::Zero();  // machine coordinates before the first block; m, rad
   bool block_delete = false;            // leave out the lines that start with '/'
   /// The file of a subroutine that the program calls and does not define: `o<name> call` asks for

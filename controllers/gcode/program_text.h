@@ -79,6 +79,7 @@ enum class Percent { start, end, misplaced };
 class PercentRule {
  public:
   void saw_line() { first_ = false; }
+  bool saw_nothing() const { return first_; }
   /// Whether the program began with a '%'.
   bool is_framed() const { return open_; }
   Percent saw_percent() {

@@ -37,6 +37,12 @@ double Interpreter::Machine::system_number(int number) const {
   const ToolEntry* found = setup_.tools.find(state_.tool);
   const ToolEntry& tool = found == nullptr ? no_tool : *found;
   if (number == kTool) return state_.tool;
+  const bool is_of_tool = number > kTool && number <= kToolDiameter + 3;
+  if (is_of_tool && found == nullptr && state_.tool != 0) {
+    fail(0, fmt::format("#{}: length and diameter of tool {} are unknown; pass a tool table with "
+                        "--tools",
+                        number, state_.tool));
+  }
   if (number == kToolDiameter) return tool.diameter / mm;
   if (number == kToolDiameter + 1) return tool.front_angle / deg;
   if (number == kToolDiameter + 2) return tool.back_angle / deg;

@@ -26,10 +26,10 @@ int check_command(const Arguments& arguments) {
   const sim::ProgramInputs inputs = program_inputs(options);
   std::size_t faults = 0;
   for (const std::string& path : options.words()) {
-    std::vector<std::string> warnings;
+    std::vector<Fault> warnings;
     const auto found = sim::check_file(path, options.list("set"), inputs, &warnings);
-    for (const std::string& warning : warnings) {
-      fmt::print(stderr, "{}: warning: {}\n", path, warning);
+    for (const Fault& warning : warnings) {
+      fmt::print(stderr, "{}: warning: {}\n", to_string(warning.place), warning.message);
     }
     for (const Fault& fault : found) fmt::print(stderr, "{}\n", to_string(fault));
     if (found.empty() && !options.has("quiet")) fmt::print("{}: no faults\n", path);

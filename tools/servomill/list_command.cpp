@@ -33,10 +33,11 @@ void list_files(const std::string& folder, bool machines) {
 int list_command(const Arguments& arguments) {
   namespace po = boost::program_options;
   Options options(
-      "list", "strategies|machines|scenarios|quantities",
+      "list", "strategies|machines|scenarios|quantities|rules",
       "Prints the strategies with their keys, the quantities that a comparison can hold, "
-      "or the machines and scenarios of a folder.",
-      "strategies|machines|scenarios|quantities");
+      "the rules by which programs are read beyond LinuxCNC's, or the machines and scenarios of a "
+      "folder.",
+      "strategies|machines|scenarios|quantities|rules");
   options.add()("folder", po::value<std::string>()->default_value("scenarios")->value_name("DIR"),
                 "where machines and scenarios are looked for");
   if (!options.parse(arguments)) return kDone;
@@ -45,10 +46,13 @@ int list_command(const Arguments& arguments) {
     fmt::print("{}", sim::describe_strategies());
   } else if (what == "quantities") {
     fmt::print("{}", sim::describe_quantities());
+  } else if (what == "rules") {
+    fmt::print("{}", sim::describe_reader_rules());
   } else if (what == "machines" || what == "scenarios") {
     list_files(options.get<std::string>("folder"), what == "machines");
   } else {
-    constexpr std::string_view kWhat[] = {"strategies", "machines", "scenarios", "quantities"};
+    constexpr std::string_view kWhat[] = {"strategies", "machines", "scenarios", "quantities",
+                                          "rules"};
     throw InputError({"servomill list"},
                      fmt::format("cannot list '{}'{}", what, did_you_mean(what, kWhat)));
   }

@@ -16,6 +16,9 @@ void add_program_options(Options& options) {
   options.add()("subs", texts("FOLDER"),
                 "where files of subroutines are, NAME.ngc for O<NAME> CALL; the folder of the "
                 "program comes first");
+  options.add()("reader", text("NAME"),
+                "whose rules the program follows: any (default: beyond LinuxCNC's what other "
+                "controls accept, with a warning), linuxcnc (strict), fanuc, haas, mach, grbl");
   options.add()("block-delete", "leaves out the lines that start with '/'");
   options.add()("max-jumps", po::value<long>()->value_name("N"),
                 "loops turned and subroutines called before a program counts as endless "
@@ -38,6 +41,7 @@ sim::ProgramInputs program_inputs(const Options& options) {
   inputs.machine = text("machine");
   inputs.parameter_file = text("parameter-file");
   inputs.subroutine_folders = options.list("subs");
+  if (options.has("reader")) inputs.reader = text("reader");
   inputs.block_delete = options.has("block-delete");
   if (options.has("max-jumps")) inputs.most_jumps = options.get<long>("max-jumps");
   if (inputs.most_jumps < 1) throw InputError({"--max-jumps"}, "must be >= 1");

@@ -1,0 +1,59 @@
+/// Lines of programs, read by the rules of a reader.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "controllers/gcode/parser.h"
+#include "controllers/gcode/reader.h"
+
+namespace servomill::controllers {
+
+/// A rule that a line needed, and the first column that needed it.
+struct AppliedRule {
+  ReaderRule rule;
+  int column = 0;
+};
+
+/// A line that LinuxCNC's rules accept and that means the same. Every character keeps its column.
+struct TolerantLine {
+  std::string text;
+  std::vector<AppliedRule> applied;
+};
+
+/// Applies the lexical rules of `reader` to a line.
+/// @param number  of the line, from 1
+/// @return the line itself where no rule applies
+TolerantLine tolerant_line(std::string_view line, int number, Reader reader);
+
+/// The sentence that names the language of a line, if it is none of G-code: Heidenhain's
+/// conversational, cycles of Siemens, words of a printer; else empty.
+/// @param column  of the character that is no G-code, from 1; 0: unknown
+std::string other_language(std::string_view line, int column);
+
+/// Parses lines as LinuxCNC does and, where it refuses one, as the rules of the reader say.
+class LineReader {
+ public:
+  LineReader(bool block_delete, Reader reader) : parser_(block_delete), reader_(reader) {}
+
+  void keep_pieces(bool keep) { parser_.keep_pieces(keep); }
+  Reader reader() const { return reader_; }
+
+  /// As Parser::parse.
+  /// @param line  set to the text that was parsed; it is valid until the next call
+  /// @throws InputError as LinuxCNC would put it, if no rule helps
+  void parse(std::string_view& line, const std::string& file, int number, Block& block,
+             Parser::Extent extent = Parser::Extent::all);
+
+  /// The rules that the line parsed last needed.
+  const std::vector<AppliedRule>& applied() const { return tolerant_.applied; }
+
+ private:
+  Parser parser_;
+  Reader reader_;
+  TolerantLine tolerant_;
+};
+
+}  // namespace servomill::controllers
