@@ -16,6 +16,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/canon.h"
 #include "sim/compensate/dialect_writer.h"
+#include "sim/compensate/highest_z.h"
 #include "sim/compensate/linuxcnc_writer.h"
 #include "sim/compensate/smoothed_feeds.h"
 #include "sim/compensate/walk.h"
@@ -194,6 +195,12 @@ DialectSettings dialect_settings(const CompensateRequest& request,
                      "is missing: programs for other controls retract before and after; --retract "
                      "Z=... in machine coordinates, or axis.Z.retract_mm of the machine file");
   }
+  const NcSettings& nc = described.machine.nc;
+  if (*retract < nc.lower[2] || *retract > nc.upper[2]) {
+    throw InputError({fmt::format("--retract Z={:g}", *retract / mm)},
+                     fmt::format("is outside the travel of Z, {:g} ... {:g} mm", nc.lower[2] / mm,
+                                 nc.upper[2] / mm));
+  }
   settings.retract_Z = *retract;
   if (request.dialect == Dialect::fanuc && request.program_number == 0) {
     throw InputError({"--program-number"},
@@ -338,14 +345,21 @@ Compensated compensate(const CompensateRequest& request) {
   const auto writer = writer_of(request, prepared.described, known.setup, walk, out.summary);
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
                                        known.setup);
+  HighestZ highest;
   while (const auto block = interpreter.next_block()) {
     throw_if_interrupted();
+    if (known.depends_on_place) highest.look(*block);
     refuse_unknown_system(*block, request, known);
     if (block->text.starts_with(kHeader)) {
       out.warnings.push_back({{request.program_file, block->line},
                               "this program has been corrected before; it is corrected again"});
     }
     writer->write(*block);
+  }
+
+  const auto retract = request.retract_Z ? request.retract_Z : prepared.described.retract_Z;
+  if (prepared.options.is_for_other_control && retract) {
+    highest.refuse_above(*retract, request.program_file);
   }
 
   Summary& summary = out.summary;

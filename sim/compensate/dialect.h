@@ -125,6 +125,7 @@ class DialectPrinter {
   /// The whole text, numbered.
   virtual std::string text() const = 0;
   /// Things that the operator has to make sure of, one clause each.
+  void assume(std::string clause);
   const std::vector<std::string>& assumptions() const { return assumptions_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
 
@@ -132,7 +133,6 @@ class DialectPrinter {
   virtual void put_comment(std::string_view text) = 0;
   virtual void put_smoothing(bool is_on) = 0;
   void put(std::string line) { lines_.push_back(std::move(line)); }
-  void assume(std::string clause);
   void warn(std::string sentence);
   /// A feed or a speed. @throws Unsayable if nothing of it stays
   std::string rate(double x, int decimals, std::string_view name) const;

@@ -33,8 +33,9 @@ void DialectWriter::write_reference(const Move& move, const Block& block, bool i
   for (const Axis axis : kAllAxes) {
     if (axis != Axis::Z && !request.has(letter(axis))) continue;
     if (axis == Axis::Z && request.has('Z')) continue;
-    throw Unsayable{fmt::format("{} of other axes than Z goes to places that LinuxCNC has stored",
-                                is_G28 ? "G28" : "G30")};
+    throw Unsayable{fmt::format(
+        "{} of other axes than Z goes to places that LinuxCNC has stored; write G53 G0 X... Y...",
+        is_G28 ? "G28" : "G30")};
   }
   if (block.state->is_incremental && request['Z'] != 0.0) {
     throw Unsayable{"goes home by way of an increment; name Z0 under G91"};
@@ -51,6 +52,10 @@ void DialectWriter::write_reference(const Move& move, const Block& block, bool i
     is_at_reference = printer_->reference_Z();
   } else {
     printer_->retract();
+    printer_->assume(
+        fmt::format("Z{:g} of the machine serves where the original goes to the second "
+                    "reference position (G30)",
+                    settings_.retract_Z / mm));
   }
   height_.reset();
   if (!is_at_reference) height_ = settings_.retract_Z;

@@ -52,6 +52,7 @@ class Fanuc final : public IsoDialect {
 
   void motion(const DialectMotion& motion) override {
     check_positions(motion, kMostPosition);
+    assume_ways(motion);
     if (motion.is_place) return place(motion);
     if (modes_.work_system != motion.work_system) work_system(motion.work_system);
     std::string prefix;
@@ -126,6 +127,21 @@ class Fanuc final : public IsoDialect {
   }
 
  private:
+  // What no block can say of the way to its end.
+  void assume_ways(const DialectMotion& motion) {
+    // B-63844EN/02 p. 48
+    if (motion.is_rapid && motion.names(Axis::X) && motion.names(Axis::Y)) {
+      assume("rapids in X and Y meet nothing, also off their line (No. 1401#1, LRP, may be 0)");
+    }
+    for (const Axis axis : {Axis::A, Axis::B, Axis::C}) {
+      const auto i = static_cast<std::size_t>(index_of(axis) - kLinearJoints);
+      if (!motion.names(axis) || !settings_.is_endless[i]) continue;
+      assume(
+          fmt::format("{} counts beyond 360 deg and does not roll over (No. 1008#0, ROA, is 0; M)",
+                      letter(axis)));
+    }
+  }
+
   static bool is_numbered(const std::string& line) {
     return line.front() != 'O' && line.front() != '(';
   }

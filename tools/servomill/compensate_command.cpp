@@ -139,6 +139,7 @@ sim::CompensateRequest request_of(const Options& options) {
   request.program_number = program_number(options);
   request.resolution = resolution_of(options);
   request.retract_Z = retract_option(options);
+  request.smoothing = positive_option(options, "smoothing", sim::kLength, "um").value_or(0.0);
   request.preset = preset_of(options);
   request.records = options.has("record");
   return request;

@@ -444,5 +444,43 @@ TEST(DialectRules, TheStartOfZIsUnknownBehindTheRetract) {
   EXPECT_EQ(refusal(trial), "taken");
 }
 
+// The errors of a trial for which the place matters.
+Trial with_errors(Dialect dialect, const std::string& program) {
+  Trial trial = dialect_trial(dialect, program);
+  trial.request.error_file =
+      written("scale.toml", "[errors.scale]\nEXX = { polynomial_um = [0.0, 0.1], of = \"mm\" }\n");
+  return trial;
+}
+
+TEST(DialectRules, RetractsOutsideTheTravelAreRefused) {
+  Trial trial = with_errors(Dialect::fanuc, kStart + "G0 X1 Y1\nZ5\nM2\n");
+  trial.request.retract_Z = 50 * mm;
+  try {
+    trial.run();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "--retract Z=50: error: is outside the travel of Z, -150 ... 0 mm");
+  }
+}
+
+// G54 and tool 1 have Z48 at the machine's Z-2.
+TEST(DialectRules, RetractsThatGoDownAreRefused) {
+  const std::string program = kStart + "G0 X1 Y1\nZ45\nZ5\nM2\n";
+  EXPECT_EQ(refusal(with_errors(Dialect::fanuc, program)), "taken");
+  Trial trial = with_errors(Dialect::siemens, program);
+  trial.request.retract_Z = -60 * mm;
+  EXPECT_EQ(refusal(trial),
+            "plate.ngc:5: error: goes to Z-5.000 of the machine, above the height "
+            "to retract to, Z-60; give a higher --retract, or check --work-offset "
+            "and the tool length");
+}
+
+TEST(DialectRules, WhatNoBlockCanExpressIsAssumedInTheFile) {
+  const std::string text =
+      dialect_trial(Dialect::fanuc, kStart + "G0 X1 Y1\nZ5\nG30 Z5\nM2\n").run().program;
+  EXPECT_NE(text.find("RAPIDS IN X AND Y MEET NOTHING"), std::string::npos) << text;
+  EXPECT_NE(text.find("THE SECOND REFERENCE POSITION"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace servomill::sim
