@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "plant/vocabulary/units.h"
 #include "sim/background.h"
@@ -32,13 +33,12 @@ std::string in_time(double seconds) {
 
 }  // namespace
 
-RunEstimate estimate(const Scenario& scenario, std::span<const PreparedCase> cases,
-                     unsigned threads) {
+RunEstimate estimate(const Scenario& scenario, std::span<const double> motions, unsigned threads) {
   RunEstimate out;
   double longest = 0.0, ticks = 0.0;
   const LoopPeriods& periods = scenario.machine.nc.periods;
-  for (const PreparedCase& one : cases) {
-    const double motion = one.duration() + scenario.settle_time;
+  for (const double one : motions) {
+    const double motion = one + scenario.settle_time;
     out.motion += motion;
     ticks += motion / periods.base;
     longest = std::max(longest, motion / periods.base);
@@ -48,6 +48,13 @@ RunEstimate estimate(const Scenario& scenario, std::span<const PreparedCase> cas
   const double cores = std::min<double>(thread_count(threads), thread_count(0));
   out.computing = std::max(longest, ticks / cores) / kTicksPerSecond;
   return out;
+}
+
+RunEstimate estimate(const Scenario& scenario, std::span<const PreparedCase> cases,
+                     unsigned threads) {
+  std::vector<double> motions;
+  for (const PreparedCase& one : cases) motions.push_back(one.duration());
+  return estimate(scenario, motions, threads);
 }
 
 std::string to_string(const RunEstimate& estimate) {

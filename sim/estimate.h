@@ -16,7 +16,9 @@ struct RunEstimate {
   double computing = 0.0;  // s, on so many threads; by the speed of one core of a desktop computer
 };
 
+/// @param motions  of the cases, s
 /// @param threads  that share the cases; 0: one a core
+RunEstimate estimate(const Scenario& scenario, std::span<const double> motions, unsigned threads);
 RunEstimate estimate(const Scenario& scenario, std::span<const PreparedCase> cases,
                      unsigned threads);
 

@@ -373,7 +373,11 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   refuse_absent_axes(*parts.program, scenario);
   refuse_standing_spindle(*parts.program, scenario);
   refuse_turned_tip(*parts.program, scenario, spec);
-  refuse_endless(scenario, prepare.least_time(*parts.program));
+  const double least_time = prepare.least_time(*parts.program);
+  refuse_endless(scenario, least_time);
+  // planning takes memory and time for every second of motion
+  const std::vector<double> motions(scenario.cases.size(), least_time);
+  refuse_too_large(scenario, estimate(scenario, motions, 0));
   refuse_start_outside(scenario, parts.machine(), prepare.start());
 
   // the strategies, each of which may rewrite what the one before left

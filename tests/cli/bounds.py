@@ -104,6 +104,14 @@ class Bounds(unittest.TestCase):
                              "the 3.2 GB of memory that there are for them; run fewer cases, or record fewer rows: "
                              "record.period_ms = 1\n"))
 
+    def test_the_size_of_signals_is_known_before_planning(self):
+        experiment = os.path.join(HERE, "..", "..", "scenarios", "guevel2025", "experiment1.toml")
+        begin = time.monotonic()
+        status, said = self.run_here("run", experiment, "--set", "program.feed_override=1e-3")
+        self.assertEqual(status, 2)
+        self.assertRegex(said, r"error: takes \S+ h in \d+ cases and \S+ rows: \S+ GB of signals; must be <= record.max_size_GB = 8")
+        self.assertLess(time.monotonic() - begin, 5.0, "the motion has been planned")
+
     def test_what_is_long_or_large_is_told_before_it_begins(self):
         process = subprocess.Popen([SERVOMILL, "run", "scenario.toml", "-o", "out.h5", "--set", "program.feed_override=2e-4"],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, cwd=self.folder)
