@@ -62,7 +62,7 @@ struct MachineAction {
   bool operator==(const MachineAction&) const = default;
 };
 
-/// What the operator has entered in the control, and the position at the start as far as known.
+/// Entries of the operator in the control, and the position at the start as far as it is known.
 struct ControlSetup {
   /// G54 ... G59.3 (Heidenhain: preset numbers 1 ... 9) in machine coordinates; nullopt: unknown.
   std::array<std::optional<AxisWords>, 9> work_offset;

@@ -200,7 +200,7 @@ bool Interpreter::Machine::has_more_words() {
   return found;
 }
 
-// Whether the reader has the rule; its first use is reported.
+// Checks that the reader has the rule, and reports its first use.
 bool Interpreter::Machine::tolerates(ReaderRule rule, int column) {
   if (!has_rule(setup_.reader, rule)) return false;
   if (tolerated_.insert(rule).second) warn(column, sentence(rule));

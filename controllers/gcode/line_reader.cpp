@@ -196,7 +196,7 @@ class LexicalRules {
     }
   }
 
-  // Whether a control that ends the comment at its first ')' would find words behind it.
+  // Detects words that a control which ends the comment at its first ')' would read.
   bool has_words(std::size_t begin, std::size_t end) const {
     for (std::size_t i = begin; i + 1 < end; ++i) {
       const bool is_number = is_digit(at(i + 1)) || at(i + 1) == '-' || at(i + 1) == '.';

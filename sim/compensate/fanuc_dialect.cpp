@@ -39,7 +39,7 @@ class Fanuc final : public IsoDialect {
   }
   void put_comment(std::string_view text) override { put(fmt::format("({})", plain(text, true))); }
 
-  // In a block of its own; its tolerance is the control's (B-63944EN, AI contour control; M)
+  // In a block of its own; its tolerance is the control's (B-63944EN, contour control of G5.1; M)
   void put_smoothing(bool is_on) override {
     put(is_on ? "G5.1 Q1" : "G5.1 Q0");
     warn(fmt::format("G5.1 Q1 has no tolerance: set the control's to {:g} mm",
