@@ -35,7 +35,7 @@ struct PostOptions {
   Eigen::Vector3d part_zero = Eigen::Vector3d::Zero();  // m in W: what the work offset holds
   int work_system = 1;                                  // 1 is G54
   ToolTable tools;                                      // empty: lengths are 0
-  int tool = 0;  // in front of the first LOADTL; 0: no tool, H0
+  int tool = 0;                   // in front of the first LOADTL; 0: no tool, H0
   double feed = 0.0;              // m/s, where the data give none; 0: they must
   double turn_rate = 1.0;         // rad/s of the tool axis where the tip stands still
   Joints start = Joints::Zero();  // m, rad; chooses among the solutions of the first location
