@@ -19,11 +19,10 @@ bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
 // One pass over a line, from left to right; every rule puts characters of the same number.
 class LexicalRules {
  public:
-  LexicalRules(std::string_view line, int number, Reader reader)
-      : line_{std::string(line), {}}, number_(number), reader_(reader) {}
+  LexicalRules(std::string_view line, Reader reader)
+      : line_{std::string(line), {}}, reader_(reader) {}
 
   TolerantLine result() {
-    byte_order_mark();
     control_characters();
     skip_blanks();
     if (at_ < text().size() && text()[at_] == '%') return percent_title(), std::move(line_);
@@ -55,12 +54,6 @@ class LexicalRules {
   std::size_t digits_end(std::size_t from) const {
     while (is_digit(at(from))) ++from;
     return from;
-  }
-
-  void byte_order_mark() {
-    constexpr std::string_view kMark = "\xEF\xBB\xBF";
-    if (number_ != 1 || !std::string_view(text()).starts_with(kMark)) return;
-    if (apply(ReaderRule::byte_order_mark, 0)) blank(0, kMark.size());
   }
 
   void control_characters() {
@@ -206,7 +199,6 @@ class LexicalRules {
   }
 
   TolerantLine line_;
-  int number_;
   Reader reader_;
   std::size_t at_ = 0;
   bool seen_ = false;  // anything but a block number
@@ -230,8 +222,8 @@ bool contains_word(std::string_view line, std::string_view word) {
 
 }  // namespace
 
-TolerantLine tolerant_line(std::string_view line, int number, Reader reader) {
-  return LexicalRules(line, number, reader).result();
+TolerantLine tolerant_line(std::string_view line, Reader reader) {
+  return LexicalRules(line, reader).result();
 }
 
 std::string other_language(std::string_view line, int column) {
@@ -265,12 +257,12 @@ void LineReader::parse(std::string_view& line, const std::string& file, int numb
   try {
     parser_.parse(line, file, number, block, extent);
     if (!has_rule(reader_, ReaderRule::fan_code) || !has_fan_code(block)) return;
-    tolerant_ = tolerant_line(line, number, reader_);
+    tolerant_ = tolerant_line(line, reader_);
   } catch (const InputError& error) {
     const int column = error.faults().front().place.column;
     const std::string language = other_language(line, column);
     if (!language.empty()) throw InputError({file, number, column}, language);
-    tolerant_ = tolerant_line(line, number, reader_);
+    tolerant_ = tolerant_line(line, reader_);
     if (tolerant_.applied.empty()) throw;
   }
   parser_.parse(tolerant_.text, file, number, block, extent);

@@ -24,9 +24,8 @@ struct TolerantLine {
 };
 
 /// Applies the lexical rules of `reader` to a line.
-/// @param number  of the line, from 1
 /// @return the line itself where no rule applies
-TolerantLine tolerant_line(std::string_view line, int number, Reader reader);
+TolerantLine tolerant_line(std::string_view line, Reader reader);
 
 /// The sentence that names the language of a line, if it is none of G-code: Heidenhain's
 /// conversational, cycles of Siemens, words of a printer; else empty.

@@ -28,8 +28,6 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      kFanuc | kHaas, "Fanuc B-64014EN/03 p. 21 (leader section)"},
     {control_characters, "control characters (NUL, DEL, ...)", "read as blanks", "Fanuc, Haas",
      kAll, "from memory: NUL and DEL of tapes are skipped"},
-    {byte_order_mark, "a byte-order mark", "left out",
-     "no control documents it; editors of Windows write it", kAll, "none found"},
     {open_comment, "a comment without ')'", "read as a comment to the end of the line", "grbl",
      kGrbl, "grbl 1.1, protocol.c"},
     {nested_comment, "brackets within a comment", "read as part of the comment",

@@ -25,7 +25,6 @@ enum class ReaderRule : std::uint8_t {
   percent_at_end,
   percent_title,
   control_characters,
-  byte_order_mark,
   open_comment,
   nested_comment,
   slash_comment,

@@ -65,7 +65,7 @@ def check_names(servomill):
         for dialect in ("linuxcnc", "heidenhain", "fanuc", "siemens"):
             number = ["--program-number", "17"] if dialect == "fanuc" else []
             subprocess.run([servomill, "compensate", "part.ngc", "--machine", MACHINE, "--dialect", dialect, "-q",
-                            "--work-offset", "X=0,Y=0,Z=0", "--tool-length", "1=50", "--retract", "Z=0", *number],
+                            "--work-offset", "X=0,Y=0,Z=-100", "--tool-length", "1=50", "--retract", "Z=0", *number],
                            cwd=folder, check=True)
         names = {one.name for one in pathlib.Path(folder).iterdir()} - {"part.ngc"}
         assert names == {"part.compensated.ngc", "part_compensated.h", "O0017.nc", "part_compensated.mpf"}, names

@@ -281,7 +281,9 @@ TEST(Compensate, TakesToolLengthsWithoutATable) {
   Trial trial(program);
   const std::string with_table = without_header(trial.run().program);  // 40 mm
   trial.request.inputs.tool_table.clear();
-  EXPECT_EQ(refusal(trial), "part.ngc:2:1: error: T1: no tool is known; a tool table says them");
+  EXPECT_EQ(refusal(trial),
+            "part.ngc:3:5: error: H1: length and diameter of tool 1 are unknown; pass a tool table "
+            "with --tools");
   trial.request.tool_lengths = {"1=40"};
   EXPECT_EQ(without_header(trial.run().program), with_table);
   trial.request.tool_lengths = {"1=90"};

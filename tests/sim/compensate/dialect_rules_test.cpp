@@ -92,6 +92,7 @@ TEST(DialectRules, ReturnsToTheReferenceBecomeTheControlsOwnOrTheRetractedHeight
             "D1 Z5\n");
   EXPECT_EQ(refusal(Dialect::fanuc, kStart + "G28\nM2\n"),
             "plate.ngc:5: error: G28 of other axes than Z goes to places that LinuxCNC has stored; "
+            "write G53 G0 X... Y...; "
             "that cannot be expressed for fanuc");
 }
 
@@ -447,8 +448,7 @@ TEST(DialectRules, TheStartOfZIsUnknownBehindTheRetract) {
 // The errors of a trial for which the place matters.
 Trial with_errors(Dialect dialect, const std::string& program) {
   Trial trial = dialect_trial(dialect, program);
-  trial.request.error_file =
-      written("scale.toml", "[errors.scale]\nEXX = { polynomial_um = [0.0, 0.1], of = \"mm\" }\n");
+  trial.request.error_file = written("scale.toml", "[errors.scale]\nEXX = { um_per_m = 100.0 }\n");
   return trial;
 }
 
@@ -470,7 +470,7 @@ TEST(DialectRules, RetractsThatGoDownAreRefused) {
   Trial trial = with_errors(Dialect::siemens, program);
   trial.request.retract_Z = -60 * mm;
   EXPECT_EQ(refusal(trial),
-            "plate.ngc:5: error: goes to Z-5.000 of the machine, above the height "
+            "plate.ngc:6: error: goes to Z-5.000 of the machine, above the height "
             "to retract to, Z-60; give a higher --retract, or check --work-offset "
             "and the tool length");
 }

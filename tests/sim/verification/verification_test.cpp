@@ -64,11 +64,11 @@ TEST(Verification, TakesWhatIsWritten) {
 TEST(Verification, ShowsBothLines) {
   EXPECT_EQ(refusal(Dialect::fanuc, "X50.", "X51."),
             "plate.ngc:9: error: the program written for fanuc would do something else than "
-            "\"G1 X50\": goes beyond X250 Y260 Z-51, where the original ends (its line 23, "
+            "\"G1 X50\": goes beyond X250 Y260 Z-51, where the original ends (its line 24, "
             "\"N15 X51.\"; EVO=0 TOS=0 LRP=0 IS-B)");
   EXPECT_EQ(refusal(Dialect::fanuc, "G43 H1 Z5.", "Z5."),
             "plate.ngc: error: the program written for fanuc cannot be verified (EVO=0 TOS=0 LRP=0 "
-            "IS-B): its line 20, \"N12 Z5.\": Z while none of G43, G44 and G49 is known to be in "
+            "IS-B): its line 21, \"N12 Z5.\": Z while none of G43, G44 and G49 is known to be in "
             "force");
   EXPECT_EQ(refusal(Dialect::siemens, "M8", "M9"),
             "plate.ngc:8: error: the program written for siemens would do something else than "
