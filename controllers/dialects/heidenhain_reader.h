@@ -55,7 +55,7 @@ struct HeidenhainSettings {
   bool is_m6_halting = true;        ///< M6 halts the program: MP7440 bit 0. [306] p. 4-99
 };
 
-/// Where the settings differ from usual ones, for messages: "M1 does not stop, M136 in um".
+/// Differences of the settings from usual ones, for messages: "M1 does not stop, M136 in um".
 std::string to_string(const HeidenhainSettings& settings);
 
 /// Settings to read a program with: a usual control, then each setting changed by itself (their

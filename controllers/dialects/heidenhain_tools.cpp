@@ -67,8 +67,8 @@ ToolCall read_call(const HeidenhainBlock& block) {
 
 }  // namespace
 
-// What a tool change leaves unknown: the builder's macros move axes and switch spindle and coolant.
-// Transformations and M functions of the control stay.
+// State that a tool change leaves unknown: the builder's macros move axes and switch spindle and
+// coolant. Transformations and M functions of the control stay.
 void Control::forget_tool_change() {
   if (rules_.tool_call_forgets_positions) forget_positions();
   state_.direction.reset();

@@ -86,7 +86,7 @@ class Reader {
                        [&](const SiemensNumber& M) { return M.value == number; });
   }
 
-  // What may share a block with what.
+  // Words that may share a block.
   void check_block() const {
     for (const SiemensGroup group : {SiemensGroup::frame, SiemensGroup::transformation}) {
       if (block_.has(group) && block_.words > 1) {

@@ -55,7 +55,7 @@ struct SiemensState {
   }
 };
 
-/// What stays the same while a program is read.
+/// Constants during the reading of a program.
 struct SiemensContext {
   const std::string& file;
   const ControlSetup& setup;

@@ -19,7 +19,7 @@ inline constexpr std::array<std::string_view, 6> kReaders = {"any",  "linuxcnc",
 /// The reader of that name, or nullopt.
 std::optional<Reader> reader_named(std::string_view name);
 
-/// What is read beyond LinuxCNC's rules.
+/// Readings beyond LinuxCNC's rules.
 enum class ReaderRule : std::uint8_t {
   end_of_text,
   percent_at_end,
@@ -50,7 +50,7 @@ struct ReaderRuleEntry {
 /// All rules, in the order of `ReaderRule`.
 std::span<const ReaderRuleEntry> reader_rules();
 
-/// Whether `reader` has the rule. `linuxcnc` has none.
+/// Returns true if `reader` has the rule. `linuxcnc` has none.
 bool has_rule(Reader reader, ReaderRule rule);
 
 /// "a program that ends without M2 or M30: read as if M2 followed (grbl, Mach)", for warnings.

@@ -6,25 +6,6 @@ namespace {
 using controllers::ActionKind;
 using controllers::MachineAction;
 
-ActionKind kind_of(MoveKind kind) {
-  switch (kind) {
-    case MoveKind::rapid:
-      return ActionKind::rapid;
-    case MoveKind::feed:
-      return ActionKind::feed;
-    case MoveKind::arc:
-      return ActionKind::arc;
-    case MoveKind::dwell:
-      return ActionKind::dwell;
-    case MoveKind::tool:
-      return ActionKind::tool;
-    case MoveKind::stop:
-      return ActionKind::stop;
-    default:
-      return ActionKind::end;
-  }
-}
-
 MachineAction action_of(const OriginalAction& original) {
   const Move& move = original.move;
   MachineAction out;

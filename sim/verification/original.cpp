@@ -35,6 +35,26 @@ Eigen::Vector3d working_tool(const controllers::ModalState& state,
 
 }  // namespace
 
+controllers::ActionKind kind_of(MoveKind kind) {
+  using controllers::ActionKind;
+  switch (kind) {
+    case MoveKind::rapid:
+      return ActionKind::rapid;
+    case MoveKind::feed:
+      return ActionKind::feed;
+    case MoveKind::arc:
+      return ActionKind::arc;
+    case MoveKind::dwell:
+      return ActionKind::dwell;
+    case MoveKind::tool:
+      return ActionKind::tool;
+    case MoveKind::stop:
+      return ActionKind::stop;
+    default:
+      return ActionKind::end;
+  }
+}
+
 AxisFlags6 OriginalAction::changed() const {
   AxisFlags6 out{};
   for (int i = 0; i < kAxisWords; ++i) {

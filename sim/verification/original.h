@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "controllers/dialects/machine_action.h"
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/program_setup.h"
 #include "plant/vocabulary/axes.h"
@@ -43,6 +44,9 @@ struct OriginalAction {
   /// A move of Z to a position of the workpiece.
   bool moves_tip() const;
 };
+
+/// The action of a move that is neither spindle nor coolant nor message.
+controllers::ActionKind kind_of(MoveKind kind);
 
 struct OriginalOptions {
   AxisFlags6 is_start_known{};

@@ -26,19 +26,6 @@ std::string_view name_of(ActionKind kind) {
   return kNames[static_cast<int>(kind)];
 }
 
-ActionKind kind_of(const Move& move) {
-  switch (move.kind) {
-    case MoveKind::dwell:
-      return ActionKind::dwell;
-    case MoveKind::tool:
-      return ActionKind::tool;
-    case MoveKind::stop:
-      return ActionKind::stop;
-    default:
-      return ActionKind::end;
-  }
-}
-
 bool is_auxiliary(ActionKind kind) {
   return kind == ActionKind::spindle || kind == ActionKind::coolant;
 }
@@ -213,7 +200,7 @@ void ReplayComparison::check_retract(const Action& action) {
 }
 
 void ReplayComparison::match_other(const OriginalAction& action) {
-  const ActionKind kind = kind_of(action.move);
+  const ActionKind kind = kind_of(action.move.kind);
   const bool has_frame = kind == ActionKind::tool || kind == ActionKind::end;
   if ((has_frame || !has_motion_) && !limits_.is_linuxcnc) skip_retracts(nullptr);
   const Action& one = need(std::string(name_of(kind)));
