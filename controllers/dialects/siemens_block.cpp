@@ -23,6 +23,7 @@ constexpr CodeEntry kCodes[] = {
     {"G1", SiemensGroup::motion},
     {"G2", SiemensGroup::motion},
     {"G3", SiemensGroup::motion},
+    {"CIP", SiemensGroup::motion},
     {"G4", SiemensGroup::dwell},
     {"TRANS", SiemensGroup::frame},
     {"ROT", SiemensGroup::frame},
@@ -96,7 +97,6 @@ constexpr std::pair<std::string_view, std::string_view> kNotRead[] = {
     {"G112", "sets a pole of polar coordinates"},
     {"AP", "is a polar angle"},
     {"RP", "is a polar radius"},
-    {"CIP", "is an arc through a point"},
     {"CT", "is an arc that is tangential to what came before"},
     {"AR", "is the angle of an arc"},
     {"DIAMON", "makes X a diameter"},
@@ -240,6 +240,11 @@ class BlockBuilder {
       const std::size_t centre = std::string_view("IJK").find(word.name[0]);
       if (centre != std::string_view::npos) return put_once(word, block_.centre[centre]);
     }
+    const bool is_through = word.name.size() == 2 && word.name[1] == '1' &&
+                            std::string_view("IJK").find(word.name[0]) != std::string_view::npos;
+    if (is_through) {
+      return put_once(word, block_.through[static_cast<std::size_t>(word.name[0] - 'I')]);
+    }
     if (word.form != SiemensForm::number) {
       fail(word.column, fmt::format("{}: AC(...) and IC(...) are for axes and I J K", word.name));
     }
@@ -315,6 +320,10 @@ bool SiemensBlock::has_axes() const {
 
 bool SiemensBlock::has_centre() const {
   return std::any_of(centre.begin(), centre.end(), [](const auto& c) { return c.has_value(); });
+}
+
+bool SiemensBlock::has_through() const {
+  return std::any_of(through.begin(), through.end(), [](const auto& c) { return c.has_value(); });
 }
 
 SiemensBlock siemens_block(const SiemensLine& line, int number, const std::string& file) {

@@ -15,7 +15,7 @@ namespace servomill::controllers {
 
 /// Groups of which a block holds at most one word.
 enum class SiemensGroup : std::uint8_t {
-  motion,          // G0 G1 G2 G3
+  motion,          // G0 G1 G2 G3 CIP
   dwell,           // G4
   frame,           // TRANS ROT SCALE MIRROR, without axes
   plane,           // G17 G18 G19
@@ -61,7 +61,8 @@ struct SiemensBlock {
   int column = 1;  // of the first word
   std::array<std::optional<SiemensCode>, kSiemensGroups> codes;
   std::array<std::optional<SiemensNumber>, kAxisWords> axes;
-  std::array<std::optional<SiemensNumber>, 3> centre;  // I J K
+  std::array<std::optional<SiemensNumber>, 3> centre;   // I J K
+  std::array<std::optional<SiemensNumber>, 3> through;  // I1 J1 K1: CIP
   std::optional<SiemensNumber> CR, TURN, F, S, D, ADIS, ADISPOS, CTOL;
   std::optional<SiemensTool> T;
   std::optional<SiemensSmoothing> smoothing;
@@ -74,7 +75,8 @@ struct SiemensBlock {
   bool has(SiemensGroup group) const { return code(group).has_value(); }
   bool has_axes() const;
   bool has_centre() const;
-  bool moves() const { return has_axes() || has_centre() || CR || TURN; }
+  bool has_through() const;
+  bool moves() const { return has_axes() || has_centre() || has_through() || CR || TURN; }
 };
 
 /// @throw InputError where a word is unknown or not read, or appears twice

@@ -14,6 +14,10 @@ namespace {
 
 constexpr double kLeastSweep = 1e-3 * deg;  // below, rounding decides between none and a turn
 constexpr double kSamePoint = 1.0 * nm;     // a tenth of the last digit that programs have
+// Rise of CIP along the normal of a plane of two axes. Taken as linear, it is off by at most 0.11
+// of that, the largest of |a / pi - (1 - cos a) / 2|.
+constexpr double kMostTilt = 1.0 * um;
+constexpr double kCollinear = 1e-9;  // rad, between the chords of CIP
 
 std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
 char name_of(int axis) { return letter(kAllAxes[at(axis)]); }
@@ -46,14 +50,21 @@ class Motion {
 
   MachineAction run() {
     const bool is_arc = *state_.motion >= 2;
-    if (is_arc) {
+    const bool is_through_point = *state_.motion == kThroughPoint;
+    if (is_through_point) {
+      check_through_words();
+    } else if (is_arc) {
       check_arc_words();
     } else {
       check_line_words();
     }
     read_targets();
     complete_rotated_plane();
-    if (is_arc) add_arc();
+    if (is_through_point) {
+      add_arc_through_point();
+    } else if (is_arc) {
+      add_arc();
+    }
     out_.line = block_.line;
     out_.kind = is_arc                ? ActionKind::arc
                 : *state_.motion == 1 ? ActionKind::feed
@@ -76,20 +87,23 @@ class Motion {
     if (block_.has_centre() || block_.CR || block_.TURN) {
       fail(fmt::format("I, J, K, CR and TURN are for G2 and G3; G{} is in force", *state_.motion));
     }
+    refuse_through_point();
+  }
+
+  void refuse_through_point() const {
+    if (!block_.has_through()) return;
+    fail(fmt::format("I1, J1 and K1 are for CIP; G{} is in force", *state_.motion));
   }
 
   void check_arc_words() {
     if (frame_.is_of_machine()) fail("SUPA with G2 or G3 is not read");
+    refuse_through_point();
     if (!state_.normal_axis) fail("the plane of the arc is not known; G17, G18 or G19 sets it");
     out_.normal_axis = *state_.normal_axis;
     u_ = (out_.normal_axis + 1) % 3;
     v_ = (out_.normal_axis + 2) % 3;
     if (!context_.rules.G18_is_ZX && out_.normal_axis == 1) std::swap(u_, v_);
-    for (int a = 3; a < kAxisWords; ++a) {
-      if (has(a))
-        fail(block_.axes[at(a)]->column,
-             fmt::format("{} in a block with an arc is not read", name_of(a)));
-    }
+    refuse_rotary_axes();
     const auto& along_normal = block_.centre[at(out_.normal_axis)];
     if (along_normal) {
       fail(along_normal->column,
@@ -100,13 +114,36 @@ class Motion {
     if (frame_.rotation() != 0.0 && out_.normal_axis != 2) {
       fail("an arc outside the XY plane under a rotated work offset is not read");
     }
-    if (context_.rules.length_needs_a_line) refuse_new_length();
+    if (context_.rules.length_needs_a_line) refuse_new_length(out_.normal_axis);
+  }
+
+  void refuse_rotary_axes() const {
+    for (int a = 3; a < kAxisWords; ++a) {
+      if (!has(a)) continue;
+      fail(block_.axes[at(a)]->column,
+           fmt::format("{} in a block with an arc is not read", name_of(a)));
+    }
+  }
+
+  // [P] p. 198: which of I1, J1 and K1 may be left out is told for the value 0 only.
+  void check_through_words() const {
+    if (frame_.is_of_machine()) fail("SUPA with CIP is not read");
+    if (frame_.rotation() != 0.0) fail("CIP under a rotated work offset is not read");
+    if (block_.has_centre() || block_.CR || block_.TURN) {
+      fail("I, J, K, CR and TURN are for G2 and G3; CIP is in force");
+    }
+    refuse_rotary_axes();
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!block_.through[i]) fail(fmt::format("CIP without {}1", "IJK"[i]));
+    }
+    if (context_.rules.length_needs_a_line) refuse_new_length(-1);
   }
 
   // [W1] p. 13: a new tool length acts with the first motion of its axis, which must be a line.
-  void refuse_new_length() const {
+  // @param still  axis that the block moves only if it names it
+  void refuse_new_length(int still) const {
     for (int a = 0; a < 3; ++a) {
-      if (!has(a) && a == out_.normal_axis) continue;
+      if (!has(a) && a == still) continue;
       const double length = frame_.length(a);
       const std::optional<double>& before = state_.length_shift[at(a)];
       if (before ? *before != length : length != 0.0) {
@@ -217,6 +254,52 @@ class Motion {
     std::array<bool, kAxisWords> plane{};
     plane[at(u_)] = plane[at(v_)] = true;
     frame_.to_machine(machine, plane);
+    out_.centre = machine.head<3>();
+  }
+
+  Eigen::Vector3d through_point(const Eigen::Vector3d& start) const {
+    Eigen::Vector3d out;
+    for (int i = 0; i < 3; ++i) {
+      const SiemensNumber& word = *block_.through[at(i)];
+      const bool counts_from_start =
+          is_incremental(word, "IJK"[i]) || !context_.rules.CIP_point_is_absolute;
+      out[i] = (counts_from_start ? start[i] : 0.0) + word.value * unit_of(i, word.column);
+    }
+    return out;
+  }
+
+  // The circle through three points, where its plane is that of two axes.
+  void add_arc_through_point() {
+    Eigen::Vector3d start, end;
+    for (int a = 0; a < 3; ++a) {
+      const std::optional<double> known = frame_.program(state_.position, a);
+      if (!known) fail(fmt::format("the arc starts at an unknown position of {}", name_of(a)));
+      start[a] = *known;
+      if (!is_used_[at(a)]) add_start(a);
+      end[a] = target_[a];
+    }
+    const Eigen::Vector3d through = through_point(start);
+    const Eigen::Vector3d p = through - start, q = end - start, normal = p.cross(q);
+    if (q.norm() < kSamePoint) fail("CIP with equal start and end: the circle is not determined");
+    if (normal.norm() < kCollinear * p.norm() * q.norm()) {
+      fail("the three points of CIP are on a line");
+    }
+    normal.cwiseAbs().maxCoeff(&out_.normal_axis);
+    u_ = (out_.normal_axis + 1) % 3;
+    v_ = (out_.normal_axis + 2) % 3;
+    if (std::max(std::abs(p[out_.normal_axis]), std::abs(q[out_.normal_axis])) >
+        kMostTilt + 1e-12) {
+      fail("CIP in a plane that is not that of two axes is not read");
+    }
+    const Eigen::Vector3d centre =
+        start + (p.squaredNorm() * q.cross(normal) + q.squaredNorm() * normal.cross(p)) /
+                    (2.0 * normal.squaredNorm());
+    const bool is_positive = normal[out_.normal_axis] > 0.0;
+    out_.turns = is_positive == context_.rules.CIP_passes_its_point ? 1 : -1;
+    out_.is_commanded[at(u_)] = out_.is_commanded[at(v_)] = true;
+    AxisWords machine = AxisWords::Zero();
+    machine.head<3>() = centre;
+    frame_.to_machine(machine, {true, true, true, false, false, false});
     out_.centre = machine.head<3>();
   }
 

@@ -142,7 +142,9 @@ class Reader {
 
   void set_modes() {
     using enum SiemensGroup;
-    if (block_.has(motion)) state_.motion = number_of(motion);
+    if (block_.has(motion)) {
+      state_.motion = block_.code(motion)->name == "CIP" ? kThroughPoint : number_of(motion);
+    }
     if (block_.has(plane)) state_.normal_axis = 19 - number_of(plane);
     if (block_.has(cutter)) state_.is_cutter_off = true;
     if (block_.has(frame)) state_.is_frame_clear = true;

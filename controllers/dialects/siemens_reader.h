@@ -70,6 +70,8 @@ struct SiemensRules {
   bool G18_is_ZX = true;                    // Z the first axis, X the second (M)
   bool negative_CR_is_long = true;          // more than 180 deg [P] p. 192
   bool TURN_adds_turns = true;              // full circles before the rest [P] p. 205
+  bool CIP_passes_its_point = true;         // which decides the direction [P] p. 198
+  bool CIP_point_is_absolute = true;        // under G90, or with AC [P] p. 198
   bool equal_ends_are_full_circle = true;   // (M)
   bool G71_leaves_F = true;                 // only G700 and G710 set the unit of F [D] p. 8-139
   bool F_ends_with_its_kind = true;         // G93, G94, G95 delete it [V1] p. 2-4

@@ -19,8 +19,10 @@ struct SiemensUnits {
   bool is_of_feed = false;  // G700, G710; else F counts in the basic unit of the control
 };
 
+inline constexpr int kThroughPoint = 4;
+
 struct SiemensState {
-  std::optional<int> motion;       // 0 ... 3: G0 ... G3
+  std::optional<int> motion;       // 0 ... 3: G0 ... G3; kThroughPoint: CIP
   std::optional<int> normal_axis;  // of the plane: 2, 1, 0 with G17, G18, G19
   bool is_cutter_off = false;      // G40
   bool is_frame_clear = false;     // TRANS without axes

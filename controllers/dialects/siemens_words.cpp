@@ -82,9 +82,20 @@ class LineReader {
     }
   }
 
+  // "I1=AC(5)": the point that CIP goes through. With other letters the digit is an extension.
+  bool is_at_through_address() const {
+    if (std::string_view("IJK").find(upper(now())) == std::string_view::npos) return false;
+    if (at_ + 1 == line_.size() || line_[at_ + 1] != '1') return false;
+    const std::size_t after = line_.find_first_not_of(" \t", at_ + 2);
+    return after != std::string_view::npos && line_[after] == '=';
+  }
+
   std::string read_name() {
     std::string name;
-    if (at_ + 1 < line_.size() && is_letter(line_[at_ + 1])) {
+    if (is_at_through_address()) {
+      name = {upper(now()), '1'};
+      at_ += 2;
+    } else if (at_ + 1 < line_.size() && is_letter(line_[at_ + 1])) {
       while (!at_end() && (is_letter(now()) || is_digit(now()))) name += upper(line_[at_++]);
     } else {
       name = upper(line_[at_++]);

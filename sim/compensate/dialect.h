@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/move.h"
 #include "plant/vocabulary/units.h"
@@ -42,13 +43,15 @@ struct DialectSettings {
   double smoothing = 0.0;     // m, tolerance of the control's smoothing; 0: not set
 };
 
-/// An arc in the XY plane, or a helix.
+/// An arc in the plane of two linear axes, or a helix. In the units of positions.
 struct DialectArc {
-  bool is_counter_clockwise = false;
-  double x = 0.0, y = 0.0;    // centre, as positions
-  double dx = 0.0, dy = 0.0;  // centre from the begin
-  double sweep = 0.0;         // rad, counter-clockwise positive
-  double share = 1.0;         // of the length of the path: the arc without Z
+  ArcSweep path;
+  bool is_counter_clockwise = false;  // about the positive normal
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero(), from_begin = Eigen::Vector3d::Zero();
+  double sweep = 0.0;  // rad, counter-clockwise positive
+  double share = 1.0;  // of the length of the path: the arc without its normal
+
+  bool is_in_XY() const { return path.c == 2; }
 };
 
 /// Positions of one block, in mm (inch in inch programs) and deg.
@@ -64,6 +67,7 @@ struct DialectMotion {
   int tool = 0;         // in the spindle
 
   bool names(Axis axis) const;
+  bool rises() const { return arc && names(kAllAxes[static_cast<std::size_t>(arc->path.c)]); }
 };
 
 /// A thing that a dialect cannot express, as a part of a sentence.
@@ -92,8 +96,10 @@ class DialectPrinter {
   void comment(std::string_view text);
   virtual void message(std::string_view text) { comment(text); }
   virtual void motion(const DialectMotion& motion) = 0;
-  /// Tells if the arc can be written as one. False for a block that changes the tool length, too.
-  virtual bool takes_arc(const DialectMotion& motion, bool is_helix) const = 0;
+  /// True if the arc can be written as one: not in a block that changes the tool length.
+  virtual bool takes_arc(const DialectMotion& motion) const = 0;
+  /// Reason for which arcs outside the XY plane become lines, as the rest of a sentence.
+  virtual std::string_view why_lines() const = 0;
   /// Sets the end of the arc of `motion`, if the control computes it from an angle.
   virtual void turn_by_angle(const DialectMotion&, const AxisWords&, AxisWords&) const {}
   /// Z to settings.retract_Z, without tool length.

@@ -172,17 +172,23 @@ DialectWriter::Words DialectWriter::words_of(const Step& step, const AxisWords& 
 std::optional<DialectArc> DialectWriter::arc_of(const Step& step, const FittedBlock& fitted,
                                                 const AxisWords& origin, const AxisWords& from,
                                                 const AxisWords& to) const {
-  if (fitted.arc->normal_axis != 2 || std::abs(fitted.arc->turns) != 1) return std::nullopt;
+  if (std::abs(fitted.arc->turns) != 1) return std::nullopt;
+  const ArcSweep& programmed = *step.programmed.arc;
+  // a rotated work system takes a plane with Z out of those of two axes
+  if (programmed.c != 2 && step.programmed.frame.sin != 0.0) return std::nullopt;
   AxisWords centre = AxisWords::Zero();
   centre.head<3>() = fitted.arc->centre;
   centre = step.programmed.frame.machine(centre) - origin;
   const double unit = printer_->unit(Axis::X), grid = std::pow(10.0, -printer_->decimals(Axis::X));
-  const Eigen::Vector2d begin = from.head<2>(), end = to.head<2>();
-  const Eigen::Vector2d d = (((centre.head<2>() - begin) / unit / grid).array().round()) * grid;
+  const auto in_plane = [&](const AxisWords& p) {
+    return Eigen::Vector2d(p[programmed.a], p[programmed.b]);
+  };
+  const Eigen::Vector2d begin = in_plane(from), end = in_plane(to);
+  const Eigen::Vector2d d = (((in_plane(centre) - begin) / unit / grid).array().round()) * grid;
   const Eigen::Vector2d a = -d * unit, b = end - begin + a;  // from the centre
   if (std::abs(a.norm() - b.norm()) > kMostRadiusError) return std::nullopt;
   // start = end is a full circle: the digits must not make one, nor miss one
-  const double wanted = step.programmed.arc->sweep * (fitted.t_end - fitted.t_begin);
+  const double wanted = programmed.sweep * (fitted.t_end - fitted.t_begin);
   const double full = 2.0 * std::numbers::pi, sign = wanted > 0.0 ? 1.0 : -1.0;
   double sweep = sign * std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
   if (sweep < 0.0) sweep += full;
@@ -193,12 +199,13 @@ std::optional<DialectArc> DialectWriter::arc_of(const Step& step, const FittedBl
   if (std::abs(sweep - std::abs(wanted)) > kMostTurnOff) return std::nullopt;
   DialectArc arc;
   arc.is_counter_clockwise = sign > 0.0;
-  arc.dx = d.x();
-  arc.dy = d.y();
-  arc.x = begin.x() / unit + d.x();
-  arc.y = begin.y() / unit + d.y();
+  arc.from_begin[programmed.a] = d.x();
+  arc.from_begin[programmed.b] = d.y();
+  arc.centre = from.head<3>() / unit + arc.from_begin;
+  arc.path = ArcSweep(from.head<3>() / unit, to.head<3>() / unit, arc.centre, programmed.c,
+                      sign > 0.0 ? 1 : -1);
   arc.sweep = sign * sweep;
-  const double round = a.norm() * sweep, rise = to[2] - from[2];
+  const double round = a.norm() * sweep, rise = to[programmed.c] - from[programmed.c];
   arc.share = rise == 0.0 ? 1.0 : round / std::hypot(round, rise);
   return arc;
 }
@@ -213,14 +220,14 @@ bool DialectWriter::takes_arcs(const DialectMotion& motion, const Step& step,
     one.words = words_of(step, target, at);
     if (fitted.arc) {
       one.arc = arc_of(step, fitted, origin, at, target);
-      if (!one.arc || !printer_->takes_arc(one, one.names(Axis::Z))) return false;
+      if (!one.arc || !printer_->takes_arc(one)) return false;
+      name_end(one, target);
     }
-    if (fitted.arc) name_end(one, target);
     const AxisWords begin = at;
     for (const auto& [axis, value] : one.words) at[index_of(axis)] = target[index_of(axis)];
     if (!fitted.arc) continue;
     printer_->turn_by_angle(one, begin, at);
-    if ((at - target).head<2>().norm() > settings_.resolution) return false;
+    if ((at - target).head<3>().norm() > settings_.resolution) return false;
   }
   return true;
 }
@@ -238,12 +245,12 @@ void DialectWriter::write_rapid(DialectMotion motion, double height) {
   printer_->motion(rises ? motion : up);
 }
 
-// Both words, so that a circle has an end, too.
+// Both words of the plane, so that a circle has an end, too.
 void DialectWriter::name_end(DialectMotion& motion, const AxisWords& target) const {
-  const bool rises = motion.names(Axis::Z);
+  const bool rises = motion.rises();
   motion.words.clear();
   for (const Axis axis : {Axis::X, Axis::Y, Axis::Z}) {
-    if (axis == Axis::Z && !rises) continue;
+    if (index_of(axis) == motion.arc->path.c && !rises) continue;
     motion.words.emplace_back(axis, target[index_of(axis)] / printer_->unit(axis));
   }
 }
@@ -332,7 +339,9 @@ void DialectWriter::write_step(const Block& block, const Step& given) {
   }
   if (motion.is_place) printer_->end_smoothing();
   if (!motion.is_place) write_path_mode(block, *given.move);
-  const Step step = takes_arcs(motion, given, origin) ? given : walk_.without_arcs(given);
+  const bool keeps_arcs = takes_arcs(motion, given, origin);
+  if (!keeps_arcs && given.programmed.arc && given.programmed.arc->c != 2) ++arcs_to_lines_;
+  const Step step = keeps_arcs ? given : walk_.without_arcs(given);
   AxisWords at = walk_.out() - origin;
   for (const FittedBlock& fitted : step.blocks) {
     const AxisWords target = on_grid(step.programmed.frame.machine(fitted.end) - origin);

@@ -258,6 +258,15 @@ void DialectWriter::restate_spindle_and_coolant() {
   known_coolant_ = coolant_;
 }
 
+std::vector<std::string> DialectWriter::warnings() const {
+  std::vector<std::string> out = printer_->warnings();
+  if (arcs_to_lines_ > 0) {
+    out.push_back(fmt::format("arcs in G18 and G19 written as lines: {}; {}", arcs_to_lines_,
+                              printer_->why_lines()));
+  }
+  return out;
+}
+
 std::string DialectWriter::rounding() const {
   const bool is_inch = printer_->unit(Axis::X) != mm;
   return is_inch ? fmt::format("{:g} inch", std::pow(10.0, -printer_->decimals(Axis::X)))

@@ -33,7 +33,7 @@ class DialectWriter final : public ProgramWriter {
   void write(const controllers::ExecutedBlock& block) override;
   std::string finish(const std::vector<std::string>& header) override;
   std::vector<std::string> assumptions() const override { return printer_->assumptions(); }
-  std::vector<std::string> warnings() const override { return printer_->warnings(); }
+  std::vector<std::string> warnings() const override;
   std::string rounding() const override;
 
  private:
@@ -91,6 +91,7 @@ class DialectWriter final : public ProgramWriter {
   bool says_path_ = false;       // the program has named how it is to be followed
   std::string path_;             // code in force
   bool has_ended_ = false;
+  std::size_t arcs_to_lines_ = 0;  // outside the XY plane
 };
 
 }  // namespace servomill::sim

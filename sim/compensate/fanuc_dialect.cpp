@@ -46,8 +46,15 @@ class Fanuc final : public IsoDialect {
                      settings_.smoothing / mm));
   }
 
-  bool takes_arc(const DialectMotion& motion, bool) const override {
+  bool takes_arc(const DialectMotion& motion) const override {
+    if (!motion.arc->is_in_XY()) return false;
     return !motion.names(Axis::Z) || modes_.length == motion.length;
+  }
+  // B-63943EN-1/02 p. 1654: type A acts along Z, type B along one of X, Y and Z. That the length
+  // stays on Z when the plane changes after its G43 was found for a control like it only
+  // (Milltronics, system information, p. 253).
+  std::string_view why_lines() const override {
+    return "the tool length may follow a change of the plane (No. 5001#1, TLB, may be 1)";
   }
 
   void motion(const DialectMotion& motion) override {

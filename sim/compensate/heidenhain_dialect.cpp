@@ -51,7 +51,10 @@ class Heidenhain final : public DialectPrinter {
   }
   void put_comment(std::string_view text) override { put("; " + plain(text, false)); }
 
-  bool takes_arc(const DialectMotion&, bool) const override { return true; }
+  bool takes_arc(const DialectMotion& motion) const override { return motion.arc->is_in_XY(); }
+  std::string_view why_lines() const override {
+    return "circles lie in the plane that the tool axis determines (TNC 407 manual p. 5-20)";
+  }
 
   // Cycle 32 without a tolerance takes that of the machine (M).
   void put_smoothing(bool is_on) override {
@@ -62,7 +65,7 @@ class Heidenhain final : public DialectPrinter {
   void turn_by_angle(const DialectMotion& motion, const AxisWords& begin,
                      AxisWords& end) const override {
     if (!motion.names(Axis::Z)) return;
-    const Eigen::Vector2d centre(motion.arc->x * mm, motion.arc->y * mm);
+    const Eigen::Vector2d centre = motion.arc->centre.head<2>() * mm;
     const double angle = std::stod(angle_text(*motion.arc)) * deg;
     end.head<2>() = centre + Eigen::Rotation2Dd(angle) * (begin.head<2>() - centre);
   }
@@ -71,7 +74,10 @@ class Heidenhain final : public DialectPrinter {
     check_positions(motion, kMostPosition);
     if (!motion.is_place) check_frame(motion);
     check_rotation(motion);
-    if (motion.arc) put("CC" + words({{Axis::X, motion.arc->x}, {Axis::Y, motion.arc->y}}));
+    if (motion.arc) {
+      const Eigen::Vector3d& centre = motion.arc->centre;
+      put("CC" + words({{Axis::X, centre.x()}, {Axis::Y, centre.y()}}));
+    }
     std::string text = motion.arc ? arc_text(motion) : "L" + words(motion.words);
     if (motion.arc) add_word(text, motion.arc->is_counter_clockwise ? "DR+" : "DR-");
     if (!has_R0_) add_word(text, "R0");

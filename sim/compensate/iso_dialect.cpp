@@ -54,22 +54,29 @@ std::string IsoDialect::position_word(Axis axis, double value) {
   return letter(axis) + number(fixed_text(value, decimals(axis)));
 }
 
+std::string IsoDialect::arc_code(const DialectArc& arc) const {
+  return arc.is_counter_clockwise ? "G3" : "G2";
+}
+
+std::string IsoDialect::arc_words(const DialectArc& arc) const {
+  std::string text;
+  for (int i = 0; i < 3; ++i) {
+    if (i == arc.path.c) continue;
+    add_word(text, "IJK"[i] + number(fixed_text(arc.from_begin[i], decimals(Axis::X))));
+  }
+  return text;
+}
+
 std::string IsoDialect::motion_text(const DialectMotion& motion, std::string_view prefix) {
   std::string text(prefix);
   add_feed_mode(motion, text);
-  const std::string code = motion.is_rapid                    ? "G0"
-                           : !motion.arc                      ? "G1"
-                           : motion.arc->is_counter_clockwise ? "G3"
-                                                              : "G2";
+  const std::string code = motion.is_rapid ? "G0" : motion.arc ? arc_code(*motion.arc) : "G1";
   if (modes_.code != code) add_word(text, code);
   modes_.code = code;
   for (const auto& [axis, value] : motion.words) {
     add_word(text, position_word(axis, value));
   }
-  if (motion.arc) {
-    add_word(text, "I" + number(fixed_text(motion.arc->dx, decimals(Axis::X))));
-    add_word(text, "J" + number(fixed_text(motion.arc->dy, decimals(Axis::Y))));
-  }
+  if (motion.arc) add_word(text, arc_words(*motion.arc));
   if (!motion.is_rapid) {
     const bool is_per_revolution = motion.feed_mode == FeedMode::units_per_revolution;
     const int digits = feed_decimals() + (is_per_revolution || is_inch_ ? 1 : 0);

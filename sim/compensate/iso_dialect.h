@@ -32,6 +32,9 @@ class IsoDialect : public DialectPrinter {
 
   /// G0 or G1, feed mode, positions, feed: of these what is not in force, behind the prefix.
   std::string motion_text(const DialectMotion& motion, std::string_view prefix);
+  virtual std::string arc_code(const DialectArc& arc) const;
+  /// The centre from the begin of the arc.
+  virtual std::string arc_words(const DialectArc& arc) const;
   /// Everything that a tool change may have changed. The spindle has been off before.
   void forget_modes();
   virtual std::string number(std::string text) const { return text; }

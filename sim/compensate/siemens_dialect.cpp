@@ -1,6 +1,8 @@
 // Siemens 840D: 6FC5397-0BP10-2BA0 (W1, Tool Offset), ISO Dialects Milling 04.07.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "controllers/gcode/number_text.h"
 #include "sim/compensate/iso_dialect.h"
 
@@ -11,6 +13,7 @@ using controllers::fixed_text;
 
 constexpr std::size_t kMostNumbered = 99'999'999;  // N has nine digits, tens of them are used
 constexpr double kMostPosition = 999999.999;       // M
+constexpr double kMostTilt = 1e-3;  // mm; of a circle through points, against a plane of two axes
 
 class Siemens final : public IsoDialect {
  public:
@@ -36,8 +39,14 @@ class Siemens final : public IsoDialect {
   }
 
   // Tool length acts on G0, G1, POLY and POS only: no arc in a block that changes it (W1 p. 13).
-  bool takes_arc(const DialectMotion& motion, bool) const override {
-    return !motion.names(Axis::Z) || modes_.length == edge(motion);
+  bool takes_arc(const DialectMotion& motion) const override {
+    const bool is_in_XY = motion.arc->is_in_XY();
+    const ArcSweep& path = motion.arc->path;
+    if (!is_in_XY && std::abs(path.along_end - path.along_begin) > kMostTilt) return false;
+    return (is_in_XY && !motion.names(Axis::Z)) || modes_.length == edge(motion);
+  }
+  std::string_view why_lines() const override {
+    return "G18 may give the tool length to another axis (SD42940), and CIP makes no helix";
   }
 
   void motion(const DialectMotion& motion) override {
@@ -53,6 +62,7 @@ class Siemens final : public IsoDialect {
         assume(fmt::format("D1 of tool {} holds its length", motion.tool));
       }
     }
+    if (motion.arc && !motion.arc->is_in_XY()) return put_through_point(motion);
     put(motion_text(motion, prefix));
   }
 
@@ -103,6 +113,36 @@ class Siemens final : public IsoDialect {
   // 3-42).
   std::string retract_text() const {
     return fmt::format("SUPA G0 Z{} D0", fixed_text(settings_.retract_Z / mm, decimals(Axis::Z)));
+  }
+
+  // G18 and G19 exchange the components of the tool length where SD42940 is 0 (6FC5398-2EP40-0BA0
+  // p. 750). CIP goes through a point in any plane and needs neither (p. 198). More than half a
+  // circle is divided: near its begin the end would determine little.
+  void put_through_point(const DialectMotion& motion) {
+    constexpr double kHalfTurn = 180.01 * deg;
+    const int parts = std::abs(motion.arc->sweep) > kHalfTurn ? 2 : 1;
+    for (int i = 1; i <= parts; ++i) {
+      DialectMotion part = motion;
+      const Eigen::Vector3d end = motion.arc->path.point(static_cast<double>(i) / parts);
+      if (i < parts) {
+        for (auto& [axis, value] : part.words) value = end[index_of(axis)];
+      }
+      through_ = motion.arc->path.point((i - 0.5) / parts);
+      put(motion_text(part, ""));
+    }
+  }
+
+  std::string arc_code(const DialectArc& arc) const override {
+    return arc.is_in_XY() ? IsoDialect::arc_code(arc) : "CIP";
+  }
+  std::string arc_words(const DialectArc& arc) const override {
+    if (arc.is_in_XY()) return IsoDialect::arc_words(arc);
+    std::string text;
+    for (int i = 0; i < 3; ++i) {
+      add_word(text,
+               fmt::format("{}1=AC({})", "IJK"[i], fixed_text(through_[i], decimals(Axis::X))));
+    }
+    return text;
   }
 
   void place(const DialectMotion& motion) {
@@ -159,6 +199,7 @@ class Siemens final : public IsoDialect {
   // Rotary axes as written last, deg; nullopt: not known in the work system in force.
   std::array<std::optional<double>, 3> count_{};
   bool is_of_machine_ = false;
+  Eigen::Vector3d through_ = Eigen::Vector3d::Zero();  // of an arc outside XY, half way along
 
   int feed_decimals() const override { return 4; }
   std::string speed(double rpm) const override { return fixed_text(rpm, 3); }

@@ -55,6 +55,8 @@ constexpr WrongRule kWrongRules[] = {
     {"G18_is_ZX", &SiemensRules::G18_is_ZX},
     {"negative_CR_is_long", &SiemensRules::negative_CR_is_long},
     {"TURN_adds_turns", &SiemensRules::TURN_adds_turns},
+    {"CIP_passes_its_point", &SiemensRules::CIP_passes_its_point},
+    {"CIP_point_is_absolute", &SiemensRules::CIP_point_is_absolute},
     {"equal_ends_are_full_circle", &SiemensRules::equal_ends_are_full_circle},
     {"G71_leaves_F", &SiemensRules::G71_leaves_F},
     {"F_ends_with_its_kind", &SiemensRules::F_ends_with_its_kind},

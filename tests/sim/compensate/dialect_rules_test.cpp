@@ -219,7 +219,7 @@ TEST(DialectRules, ArcsStayArcs) {
                   .starts_with("G2 X0 Y-10 I-10 J0\n"
                                "G3 X0 Y-10 I0 J10\n"
                                "X10 Y0 Z-1 I0 J10\n"
-                               "G1 X"));
+                               "CIP X-7.07107 Z6.07107 "));
   EXPECT_TRUE(from(Dialect::heidenhain, "CC ")
                   .starts_with("CC X+0 Y+0\n"
                                "C X+0 Y-10 DR-\n"
@@ -228,6 +228,63 @@ TEST(DialectRules, ArcsStayArcs) {
                                "CC X+0 Y+0\n"
                                "CP IPA+90 Z-1 DR+\n"
                                "L X"));
+}
+
+std::vector<std::string> warnings_about_arcs(const Trial& trial) {
+  std::vector<std::string> out;
+  for (const Fault& fault : trial.run().warnings) {
+    if (fault.message.starts_with("arcs in G18")) out.push_back(fault.message);
+  }
+  return out;
+}
+
+const std::string kArcsInAllPlanes = kStart +
+                                     "G0 X10 Y0 Z5\nG1 Z0 F100\nG18 G3 X0 Z10 I-10 K0\n"
+                                     "G19 G2 Y10 Z0 J0 K-10\nG2 Y10 Z0 J-10 K0\n"
+                                     "G18 G2 X10 Y11 Z10 I10 K0\nM2\n";
+
+// G18 and G19 exchange the components of the tool length where SD42940 is 0. CIP needs no plane
+// (6FC5398-2EP40-0BA0 p. 750, p. 198); a circle has its end where it begins and becomes two.
+TEST(DialectRules, ArcsOfSiemensInOtherPlanesGoThroughAPoint) {
+  const Trial trial = dialect_trial(Dialect::siemens, kArcsInAllPlanes);
+  const std::string text = body(trial);
+  const std::size_t begin = text.find("CIP");
+  ASSERT_NE(begin, std::string::npos) << text;
+  EXPECT_TRUE(
+      text.substr(begin).starts_with("CIP X-7.07107 Z-7.07107 I1=AC(3.82683) J1=AC(0) "
+                                     "K1=AC(-9.2388)\n"
+                                     "X0 Z10 I1=AC(-9.2388) J1=AC(0) K1=AC(3.82683)\n"
+                                     "Y10 Z0 I1=AC(0) J1=AC(7.07107) K1=AC(7.07107)\n"
+                                     "Y-10 Z0 I1=AC(0) J1=AC(0) K1=AC(-10)\n"
+                                     "Y10 Z0 I1=AC(0) J1=AC(0) K1=AC(10)\n"
+                                     "G1 X"))
+      << text.substr(begin, 400);
+  EXPECT_EQ(text.find("G18"), std::string::npos);
+  EXPECT_EQ(text.find("G19"), std::string::npos);
+  EXPECT_EQ(warnings_about_arcs(trial),
+            std::vector<std::string>{"arcs in G18 and G19 written as lines: 1; G18 may give the "
+                                     "tool length to another axis (SD42940), and CIP makes no "
+                                     "helix"});
+}
+
+TEST(DialectRules, ArcsInOtherPlanesAreLinesWhereTheLengthMayFollow) {
+  EXPECT_EQ(warnings_about_arcs(dialect_trial(Dialect::fanuc, kArcsInAllPlanes)),
+            std::vector<std::string>{"arcs in G18 and G19 written as lines: 4; the tool length may "
+                                     "follow a change of the plane (No. 5001#1, TLB, may be 1)"});
+  EXPECT_EQ(warnings_about_arcs(dialect_trial(Dialect::heidenhain, kArcsInAllPlanes)),
+            std::vector<std::string>{"arcs in G18 and G19 written as lines: 4; circles lie in the "
+                                     "plane that the tool axis determines (TNC 407 manual p. "
+                                     "5-20)"});
+  EXPECT_TRUE(
+      warnings_about_arcs(dialect_trial(Dialect::fanuc, kStart + "G0 X1 Y1 Z5\nM2\n")).empty());
+}
+
+// The errors of the router move the third axis, too: a circle through a point may be tilted by 1
+// um.
+TEST(DialectRules, CorrectedArcsInOtherPlanesAreVerified) {
+  Trial trial = dialect_trial(Dialect::siemens, kArcsInAllPlanes);
+  trial.request.error_file.clear();
+  EXPECT_EQ(warnings_about_arcs(trial).size(), 1U);
 }
 
 // Its digits would make a full circle of it, or nothing.
