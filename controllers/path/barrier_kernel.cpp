@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kIdle = 0.1;  // of a limit, below which it does not bend the search
 constexpr double kLeastLoss = 1e-9;
+constexpr double kLeastLength = 1e-12;  // m, for which a point stands
 
 template <class Arch>
 struct Triple {
@@ -54,6 +55,119 @@ struct JointTerms {
   P L(const Triple<Arch>& x) const { return l0 * x.v[0] + l1 * x.v[1] + l2 * x.v[2]; }
   P M(const Triple<Arch>& x) const { return m0 * x.v[0] + m1 * x.v[1]; }
 };
+
+// Each of eight numbers three times, one after the other: the third of them with that index.
+template <std::size_t third, class Arch>
+Pack<Arch> spread(const Pack<Arch>& x) {
+#ifdef __AVX512F__
+  if constexpr (Pack<Arch>::kRegisters == 1) {
+    constexpr long long k = 8 * third;
+    const __m512i from = _mm512_setr_epi64(k / 3, (k + 1) / 3, (k + 2) / 3, (k + 3) / 3,
+                                           (k + 4) / 3, (k + 5) / 3, (k + 6) / 3, (k + 7) / 3);
+    Pack<Arch> out;
+    out.r[0] = _mm512_permutexvar_pd(from, x.r[0]);
+    return out;
+  }
+#endif
+  LaneArray all, out;
+  x.store(all);
+  for (std::size_t n = 0; n < kLaneWidth; ++n) out[n] = all[(8 * third + n) / 3];
+  return Pack<Arch>(out);
+}
+
+// Lanes of that third whose point is the begin (0), the middle (1) or the end (2) of its part.
+template <std::size_t third, class Arch>
+PackMask<Arch> lanes_of(std::size_t place) {
+  unsigned bits = 0;
+  for (std::size_t n = 0; n < kLaneWidth; ++n) {
+    bits |= ((8 * third + n) % 3 == place ? 1U : 0U) << n;
+  }
+  return PackMask<Arch>::of(bits);
+}
+
+// Eight parts, on the way to their points: what their three points have in common.
+template <class Arch>
+struct FormedParts {
+  using P = Pack<Arch>;
+  P at, from, middle, to, half, whole, sixth, two_thirds, swell, b_top;
+  P p00, p01, p10, p11, p20, p21, p22;  // coefficients -> b, b', b'' at the begin of the interval
+  P j0[kBarrierJoints], j1[kBarrierJoints], j2[kBarrierJoints], j1_third[kBarrierJoints];
+
+  FormedParts(const BarrierParts& parts, const BarrierJoints& joints)
+      : at(parts.at), from(parts.from), to(parts.to), b_top(parts.b_top) {
+    const P D = P(parts.next) - P(parts.before), E = P(parts.after) - at, h = P(parts.next) - at;
+    const P per_D = P(2.0) / D, per_Dh = P(2.0) / (D * h), per_Eh = P(2.0) / (E * h);
+    p00 = h / D, p01 = (at - P(parts.before)) / D;
+    p10 = -per_D, p11 = per_D;
+    p20 = per_Dh, p21 = -per_Dh - per_Eh, p22 = per_Eh;
+    whole = to - from, half = P(0.5) * whole, middle = P(0.5) * (from + to);
+    const P least(kLeastLength);
+    sixth = max(whole / P(6.0), least), two_thirds = max(whole * P(2.0 / 3.0), least);
+    swell = P(4.5) * whole * whole / P(8.0);
+    const P x(parts.x);
+    for (std::size_t k = 0; k < joints.count; ++k) {
+      const P c1(parts.c1[k]), c2(parts.c2[k]), c3(parts.c3[k]), per_jerk(joints.per_jerk[k]);
+      j0[k] = c3 * per_jerk;
+      j1[k] = P(1.5) * ((c2 + x * c3) * per_jerk);
+      j2[k] = P(0.5) * ((c1 + x * (c2 + P(0.5) * x * c3)) * per_jerk);
+      j1_third[k] = j1[k] / P(3.0);
+    }
+  }
+
+  template <std::size_t third>
+  void write(const BarrierParts& parts, const BarrierJoints& joints, const double* c,
+             BarrierPoints& out) const {
+    const auto is_middle = lanes_of<third, Arch>(1), is_end = lanes_of<third, Arch>(2);
+    const P zero(0.0);
+    const P s = select(is_middle, spread<third>(middle),
+                       select(is_end, spread<third>(to), spread<third>(from)));
+    const P x = select(is_middle, spread<third>(half), select(is_end, spread<third>(whole), zero));
+    const P bulge = select(is_middle, spread<third>(swell), zero);
+    const P length = select(is_middle, spread<third>(two_thirds), spread<third>(sixth));
+    put(out.length, length);
+    put(out.b_top, spread<third>(b_top));
+    put(out.swell, bulge);
+    write_rows<third>(s - spread<third>(at), out);
+    for (std::size_t k = 0; k < joints.count; ++k) {
+      const P i0 = spread<third>(j0[k]), i1 = spread<third>(j1[k]);
+      const P i2 = spread<third>(j2[k]), i1_third = spread<third>(j1_third[k]);
+      put(out.j0[k], i0);
+      put(out.j1[k], i1 + P(1.5) * x * i0);
+      put(out.j2[k], i2 + x * (i1_third + P(0.25) * x * i0) - bulge * i0);
+    }
+    for (std::size_t n = 0; n < kLaneWidth; ++n) {
+      out.interval[n] = parts.interval[(8 * third + n) / 3];
+    }
+    put(out.time, length / sqrt(max(applied<Arch>(out, c).v[0], P(1e-300))));
+  }
+
+ private:
+  // y metres behind the begin of the interval.
+  template <std::size_t third>
+  void write_rows(const P& y, BarrierPoints& out) const {
+    const P zero(0.0);
+    const P first[3] = {spread<third>(p00), spread<third>(p01), zero};
+    const P second[3] = {spread<third>(p10), spread<third>(p11), zero};
+    const P last[3] = {spread<third>(p20), spread<third>(p21), spread<third>(p22)};
+    const P half_y = P(0.5) * y;
+    for (std::size_t j = 0; j < 3; ++j) {
+      put(out.S[0][j], first[j] + y * (second[j] + half_y * last[j]));
+      put(out.S[1][j], second[j] + y * last[j]);
+      put(out.S[2][j], last[j]);
+    }
+  }
+};
+
+template <class Arch>
+void form(const BarrierParts* parts, std::size_t count, const BarrierJoints& joints,
+          const double* c, BarrierPoints* out) {
+  for (std::size_t n = 0; n < count; ++n) {
+    const FormedParts<Arch> formed(parts[n], joints);
+    formed.template write<0>(parts[n], joints, c, out[3 * n]);
+    formed.template write<1>(parts[n], joints, c, out[3 * n + 1]);
+    formed.template write<2>(parts[n], joints, c, out[3 * n + 2]);
+  }
+}
 
 template <class Arch>
 BarrierUse use(BarrierPoints* points, std::size_t count, const BarrierJoints& joints,
@@ -183,7 +297,8 @@ double largest_loss(const BarrierPoints* points, std::size_t count, const Barrie
 
 template <>
 BarrierKernel make_barrier_kernel<SERVOMILL_LEVEL>() {
-  return {&use<SERVOMILL_ARCH>, &derive<SERVOMILL_ARCH>, &largest_loss<SERVOMILL_ARCH>};
+  return {&form<SERVOMILL_ARCH>, &use<SERVOMILL_ARCH>, &derive<SERVOMILL_ARCH>,
+          &largest_loss<SERVOMILL_ARCH>};
 }
 
 }  // namespace servomill::controllers

@@ -33,7 +33,20 @@ struct BarrierPoints {
 /// The joints that move.
 struct BarrierJoints {
   std::size_t count = 0;
-  std::array<double, kBarrierJoints> ratio = {};  // s, J/A
+  std::array<double, kBarrierJoints> ratio = {};     // s, J/A
+  std::array<double, kBarrierJoints> per_jerk = {};  // s^3/m, 1/J
+};
+
+/// Eight parts of the path, each of one interval between knots and of one piece. Their points -
+/// both ends and the middle - take six times the memory, so that a long path forms them when they
+/// are due.
+struct BarrierParts {
+  LaneArray before, at, next, after;  // m, the knots around: the interval goes from `at` to `next`
+  LaneArray from, to;                 // m
+  LaneArray x;                        // m, `from` on the piece
+  LaneArray b_top;                    // m^2/s^2
+  std::array<LaneArray, kBarrierJoints> c1, c2, c3;  // of the piece, for the joints that move
+  std::array<std::uint32_t, kLaneWidth> interval;
 };
 
 /// Where eight points are, and what they add to cost by their three coefficients.
@@ -50,6 +63,10 @@ struct BarrierUse {
 
 /// Functions of one instruction set; the same bits from all of them.
 struct BarrierKernel {
+  /// Three blocks of points from each of the parts, in the order begin, middle, end of the first,
+  /// begin ... of the second. `time` is that at the coefficients c.
+  void (*form)(const BarrierParts* parts, std::size_t count, const BarrierJoints&, const double* c,
+               BarrierPoints* out);
   /// Fills `time`, too.
   BarrierUse (*use)(BarrierPoints* points, std::size_t count, const BarrierJoints&,
                     const double* c);
