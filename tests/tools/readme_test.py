@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The lines of Python in README.md run as they are printed. Usage: readme_test.py SERVOMILL"""
+"""The lines of Python in sim/records/README.md run as they are printed. Usage: readme_test.py SERVOMILL"""
 import ast
 import os
 import pathlib
@@ -16,7 +16,7 @@ except ImportError:
     sys.exit(77)
 
 HERE = pathlib.Path(__file__).resolve().parent
-README = HERE.parents[1] / "README.md"
+README = HERE.parents[1] / "sim/records/README.md"
 SERVOMILL = ""
 
 

@@ -1,0 +1,10 @@
+/// The example of strategies/README.md, "Add a strategy".
+#pragma once
+
+#include "strategies/registry.h"
+
+namespace servomill::strategies {
+
+Entry setpoint_entry();
+
+}  // namespace servomill::strategies
