@@ -14,7 +14,7 @@ foreach(source ${sources})
 endforeach()
 string(SHA256 sum "${all}")
 string(SUBSTRING ${sum} 0 12 sum)
-file(WRITE ${OUT} "#include \"sim/build_identity.h\"
+file(WRITE ${OUT} "#include \"sim/run/build_identity.h\"
 
 namespace servomill::sim {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "sim/config/parse_toml.h"
-#include "sim/read_file.h"
+#include "sim/system/read_file.h"
 
 namespace servomill::sim {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/servo_axes.h"
+#include "sim/engine/servo_axes.h"
 
 namespace servomill::sim {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <span>
 
-#include "sim/scenario.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim {
 namespace {

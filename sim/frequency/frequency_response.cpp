@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "sim/stability.h"
+#include "sim/frequency/stability.h"
 
 namespace servomill::sim {
 namespace {

@@ -21,9 +21,9 @@ enum class Entry : std::uint8_t {
 /// @param h  s, base period
 StandInput sinusoid(Entry entry, Complex u, double w, double h);
 
-/// The linear part of an axis (sim/stability.h) under sampled loops is a linear system whose
-/// coefficients repeat after one hyperperiod T: x(t + T) = Phi x(t) + f. A sinusoid exp(j w t) as
-/// input has the steady answer
+/// The linear part of an axis (sim/frequency/stability.h) under sampled loops is a linear system
+/// whose coefficients repeat after one hyperperiod T: x(t + T) = Phi x(t) + f. A sinusoid exp(j w
+/// t) as input has the steady answer
 ///
 ///   x(t + T) = exp(j w T) x(t),   x(0) = (exp(j w T) I - Phi)^-1 x_f,
 ///

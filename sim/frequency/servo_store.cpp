@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
-#include "sim/store.h"
+#include "sim/run/store.h"
 
 namespace servomill::sim {
 namespace {

@@ -11,8 +11,8 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/frequency_response.h"
+#include "sim/frequency/stability.h"
 #include "sim/frequency/step_response.h"
-#include "sim/stability.h"
 
 namespace servomill::sim {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/margins.h"
-#include "sim/machine.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim {
 

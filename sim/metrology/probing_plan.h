@@ -1,7 +1,7 @@
 /// Where a coordinate measuring machine (CMM) probes a part: features with their nominal points.
 ///
-/// All coordinates are those of the work frame G (sim/work_frame.h), in m; normals point out of the
-/// part and have length 1.
+/// All coordinates are those of the work frame G (sim/model/work_frame.h), in m; normals point out
+/// of the part and have length 1.
 #pragma once
 
 #include <Eigen/Core>

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "sim/build_identity.h"
-#include "sim/store.h"
+#include "sim/run/build_identity.h"
+#include "sim/run/store.h"
 
 namespace servomill::sim {
 namespace {

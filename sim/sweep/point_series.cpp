@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <system_error>
 
-#include "sim/build_identity.h"
-#include "sim/hdf5/system_error.h"
-#include "sim/store.h"
+#include "sim/run/build_identity.h"
+#include "sim/run/store.h"
+#include "sim/system/system_error.h"
 
 namespace servomill::sim {
 

@@ -12,11 +12,11 @@
 #include <thread>
 
 #include "plant/vocabulary/interrupt.h"
-#include "sim/background.h"
 #include "sim/config/document.h"
-#include "sim/estimate.h"
-#include "sim/preparation_cache.h"
-#include "sim/scenario_document.h"
+#include "sim/input/scenario_document.h"
+#include "sim/preparation/estimate.h"
+#include "sim/preparation/preparation_cache.h"
+#include "sim/system/background.h"
 
 namespace servomill::sim {
 namespace {

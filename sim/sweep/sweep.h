@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/batch.h"
-#include "sim/estimate.h"
-#include "sim/scenario.h"
-#include "sim/scenario_source.h"
-#include "sim/sweep/design.h"
+#include "sim/input/scenario_source.h"
+#include "sim/model/design.h"
+#include "sim/model/scenario.h"
+#include "sim/preparation/estimate.h"
+#include "sim/run/batch.h"
 #include "sim/sweep/selection.h"
 
 namespace servomill::sim {

@@ -17,9 +17,9 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/user_file.h"
-#include "sim/build_identity.h"
-#include "sim/output_name.h"
-#include "sim/store.h"
+#include "sim/run/build_identity.h"
+#include "sim/run/store.h"
+#include "sim/system/output_name.h"
 
 namespace servomill::sim {
 namespace {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "plant/vocabulary/simd.h"
-#include "sim/hdf5/hdf5_file.h"
-#include "sim/scenario.h"
+#include "sim/model/scenario.h"
+#include "sim/records/hdf5_file.h"
 #include "sim/sweep/selection.h"
 #include "sim/sweep/sweep.h"
 

@@ -7,7 +7,7 @@
 
 #include "plant/drives/drive_bank.h"
 #include "plant/geometry/volumetric.h"
-#include "sim/run.h"
+#include "sim/run/run.h"
 
 namespace servomill::sim {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/hdf5/series_writer.h"
+#include "sim/records/series_writer.h"
 
 namespace servomill::sim {
 namespace {

@@ -10,9 +10,9 @@
 #include <map>
 
 #include "sim/config/reader.h"
-#include "sim/read_file.h"
-#include "sim/read_machine.h"
-#include "sim/scenario.h"
+#include "sim/input/read_machine.h"
+#include "sim/model/scenario.h"
+#include "sim/system/read_file.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace servomill::fuzz {
@@ -100,7 +100,7 @@ void run(std::string_view text) {
 
 namespace servomill::sim {
 
-// In place of that of sim/read_file.cpp: no file but those named above can be read.
+// In place of that of sim/system/read_file.cpp: no file but those named above can be read.
 std::string read_file(const std::string& path, const Place& at, std::string_view what) {
   if (path == fuzz::kDocument) return std::string(fuzz::document);
   const auto found = fuzz::files().find(std::filesystem::path(path).filename().string());

@@ -12,7 +12,7 @@
 
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/units.h"
-#include "sim/comparison.h"
+#include "sim/evaluation/comparison.h"
 #include "strategies/pose_compensation.h"
 #include "tests/sim/five_axis_program.h"
 

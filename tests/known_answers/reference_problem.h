@@ -13,8 +13,8 @@
 
 #include "plant/geometry/volumetric.h"
 #include "plant/kinematics/structure.h"
-#include "sim/feedback_lanes.h"
-#include "sim/servo_axes.h"
+#include "sim/engine/feedback_lanes.h"
+#include "sim/engine/servo_axes.h"
 #include "strategies/registry.h"
 
 namespace servomill::reference_problem {

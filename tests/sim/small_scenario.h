@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/run.h"
+#include "sim/run/run.h"
 
 namespace servomill::sim {
 

@@ -1,7 +1,7 @@
 """Result files of servomill (HDF5) as arrays, and differences between cases along the path.
 
 Positions are in mm, differences in um, angles in deg, time in s, as the file's `units` say. The
-definitions are those of `servomill compare` (sim/comparison.h); a test holds the two together.
+definitions are those of `servomill compare` (sim/evaluation/comparison.h); a test holds the two together.
 """
 import dataclasses
 import pathlib

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/config/quantity.h"
-#include "sim/scenario.h"
+#include "sim/model/scenario.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {

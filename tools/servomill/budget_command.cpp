@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/budget.h"
-#include "sim/budget_store.h"
+#include "sim/run/budget.h"
+#include "sim/run/budget_store.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
 

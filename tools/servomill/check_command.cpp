@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/canon.h"
+#include "sim/programs/canon.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/program_options.h"
 

@@ -5,11 +5,11 @@
 #include <filesystem>
 
 #include "plant/vocabulary/units.h"
-#include "sim/compensate/compensate.h"
-#include "sim/output_name.h"
-#include "sim/store.h"
-#include "sim/sweep/design.h"
-#include "sim/write_file.h"
+#include "sim/model/design.h"
+#include "sim/programs/compensate/compensate.h"
+#include "sim/run/store.h"
+#include "sim/system/output_name.h"
+#include "sim/system/write_file.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/program_options.h"
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/converge.h"
+#include "sim/run/converge.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
 

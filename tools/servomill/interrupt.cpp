@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "plant/vocabulary/interrupt.h"
-#include "sim/output_name.h"
+#include "sim/system/output_name.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/catalogue.h"
+#include "sim/input/catalogue.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "plant/vocabulary/units.h"
-#include "sim/post_file.h"
-#include "sim/sweep/design.h"
-#include "sim/write_file.h"
+#include "sim/model/design.h"
+#include "sim/programs/post_file.h"
+#include "sim/system/write_file.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {

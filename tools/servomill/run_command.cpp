@@ -7,10 +7,10 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
-#include "sim/estimate.h"
-#include "sim/hdf5/system_error.h"
-#include "sim/run.h"
-#include "sim/store.h"
+#include "sim/preparation/estimate.h"
+#include "sim/run/run.h"
+#include "sim/run/store.h"
+#include "sim/system/system_error.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
 

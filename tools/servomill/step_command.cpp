@@ -8,7 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/frequency_response.h"
 #include "sim/frequency/servo_store.h"
-#include "sim/stability.h"
+#include "sim/frequency/stability.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {

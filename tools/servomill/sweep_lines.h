@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/comparison.h"
+#include "sim/evaluation/comparison.h"
 #include "sim/sweep/sweep.h"
 
 namespace servomill::tools {

@@ -7,12 +7,12 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
-#include "sim/export/verify_tables.h"
-#include "sim/hdf5/system_error.h"
-#include "sim/output_name.h"
-#include "sim/read_errors.h"
-#include "sim/read_machine.h"
-#include "sim/write_file.h"
+#include "sim/input/read_errors.h"
+#include "sim/input/read_machine.h"
+#include "sim/system/output_name.h"
+#include "sim/system/system_error.h"
+#include "sim/system/write_file.h"
+#include "sim/tables/verify_tables.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {

@@ -10,8 +10,8 @@
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/bode.h"
 #include "sim/frequency/margins.h"
-#include "sim/scenario.h"
-#include "sim/stability.h"
+#include "sim/frequency/stability.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/margins.h"
+#include "sim/frequency/stability.h"
 #include "sim/frequency/step_response.h"
-#include "sim/scenario.h"
-#include "sim/stability.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "sim/frequency/measured_response.h"
-#include "sim/scenario.h"
-#include "sim/stability.h"
+#include "sim/frequency/stability.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim {
 namespace {

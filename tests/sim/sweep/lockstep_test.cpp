@@ -7,8 +7,8 @@
 #include <cstring>
 #include <map>
 
-#include "sim/batch.h"
-#include "sim/preparation_cache.h"
+#include "sim/preparation/preparation_cache.h"
+#include "sim/run/batch.h"
 
 namespace servomill::sim {
 namespace {

@@ -1,0 +1,84 @@
+#include "sim/engine/feedback_lanes.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace servomill::sim {
+
+void FeedbackLanes::add(std::size_t run, const strategies::Strategy& strategy,
+                        double model_period) {
+  auto together = std::find_if(all_.begin(), all_.end(),
+                               [&](const Together& one) { return one.strategy == &strategy; });
+  if (together == all_.end()) {
+    all_.push_back({&strategy, strategy.feedback(model_period)});
+    together = all_.end() - 1;
+  }
+  use(*together, run - first_, true);
+}
+
+void FeedbackLanes::use(Together& together, std::size_t lane, bool used) {
+  together.lanes.at(lane) = used;
+  together.count = 0;
+  for (std::size_t n = 0; n < kLaneWidth; ++n) {
+    if (!together.lanes[n]) continue;
+    ++together.count;
+    together.last = n;
+  }
+}
+
+FeedbackLanes::Together& FeedbackLanes::of(std::size_t run) {
+  const auto found = std::find_if(all_.begin(), all_.end(), [&](const Together& together) {
+    return together.lanes.at(run - first_);
+  });
+  assert(found != all_.end());
+  return *found;
+}
+
+Joints FeedbackLanes::settle(std::size_t run, const Joints& Q_meas) {
+  return of(run).part->settle(Q_meas, run - first_);
+}
+
+std::vector<strategies::Saturation> FeedbackLanes::drop(std::size_t run) {
+  Together& together = of(run);
+  if (together.waiting > 0) act(together);  // its own: periods that have passed
+  use(together, run - first_, false);
+  return together.part->saturations(run - first_);
+}
+
+void FeedbackLanes::advance() {
+  bool are_read = false;
+  for (Together& together : all_) {
+    if (together.count == 0) continue;
+    if (together.count == 1) {
+      wait(together);
+      continue;
+    }
+    if (!are_read) axes_.get_readings(Q_meas_, first_);
+    are_read = true;
+    together.d = &together.part->advance(Q_meas_, together.lanes);
+  }
+}
+
+void FeedbackLanes::wait(Together& one) {
+  const Joints Q_meas = axes_.Q_meas(first_ + one.last);
+  for (int j = 0; j < kJoints; ++j) one.Q_waiting[j][one.waiting] = Q_meas[j];
+  if (++one.waiting == kLaneWidth) act(one);
+}
+
+void FeedbackLanes::act() {
+  for (Together& together : all_) act(together);
+}
+
+void FeedbackLanes::act(Together& together) {
+  if (together.d != nullptr) {
+    axes_.displace(*together.d, together.lanes, together.strategy->displaces_rotary(), first_);
+    together.d = nullptr;
+  }
+  if (together.waiting > 0) {
+    axes_.displace(together.part->advance(together.Q_waiting, together.waiting, together.last),
+                   first_ + together.last);
+    together.waiting = 0;
+  }
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,56 @@
+/// Feedback parts of runs in lockstep.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "plant/vocabulary/joint_lanes.h"
+#include "sim/engine/servo_axes.h"
+#include "strategies/strategy.h"
+
+namespace servomill::sim {
+
+/// The feedback hardware of eight runs that lie side by side in ServoAxes. Runs with one strategy
+/// advance together, in the lanes in which they lie; what other lanes hold is left aside. Of a run
+/// that is the only one with its strategy up to eight model periods wait, and then advance
+/// together: the axes get to know what acts when they read it.
+class FeedbackLanes {
+ public:
+  /// @param axes   must outlive this
+  /// @param first  run in the first lane
+  FeedbackLanes(ServoAxes& axes, std::size_t first) : axes_(axes), first_(first) {}
+
+  /// A run has the feedback of a strategy from now on, and displacements of 0 (5; m, rad).
+  /// @param model_period  s, of all runs
+  void add(std::size_t run, const strategies::Strategy& strategy, double model_period);
+  /// Settles at standstill in Q_meas; d of all joints (5; m, rad).
+  Joints settle(std::size_t run, const Joints& Q_meas);
+  /// The run goes on no longer; where it has been saturated.
+  std::vector<strategies::Saturation> drop(std::size_t run);
+  /// To be called once a model period, after ServoAxes::read_scales.
+  void advance();
+  /// To be called before ServoAxes::take_readings: what acts now acts on the axes.
+  void act();
+
+ private:
+  struct Together {
+    const strategies::Strategy* strategy;
+    std::unique_ptr<strategies::FeedbackPart> part;
+    LaneFlags lanes = {};
+    std::size_t count = 0, last = 0;  // of the lanes in use
+    const JointLanes* d = nullptr;    // of several runs: acts, but the axes do not know yet
+    JointLanes Q_waiting = {};        // readings of the only run, period by period
+    std::size_t waiting = 0;          // periods
+  };
+  Together& of(std::size_t run);
+  void use(Together& together, std::size_t lane, bool used);
+  void wait(Together& one);
+  void act(Together& together);
+
+  ServoAxes& axes_;
+  std::size_t first_;
+  std::vector<Together> all_;
+  JointLanes Q_meas_{};
+};
+
+}  // namespace servomill::sim

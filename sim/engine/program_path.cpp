@@ -1,0 +1,157 @@
+#include "sim/engine/program_path.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "plant/vocabulary/tool_axis.h"
+
+namespace servomill::sim {
+namespace {
+
+// How far along the path the closest point is looked for, beyond the distance of the point itself.
+constexpr double kSearchMargin = 0.1e-3;  // m
+
+int index_of_section(std::vector<std::string>& sections, const std::string& name) {
+  const auto known = std::find(sections.begin(), sections.end(), name);
+  if (known != sections.end()) return static_cast<int>(known - sections.begin());
+  sections.push_back(name);
+  return static_cast<int>(sections.size()) - 1;
+}
+
+}  // namespace
+
+ProgramPath::ProgramPath(std::span<const Move> moves, const AxisWords& start,
+                         std::shared_ptr<const controllers::ToolCentrePoint> machine,
+                         const std::map<int, Eigen::Vector3d>& tips)
+    : machine_(std::move(machine)) {
+  AxisWords at = start;  // machine coordinates; behind a tip piece tip words with its p_ST
+  const Piece* before = nullptr;
+  int section = 0;
+  std::optional<int> tool;
+  for (const Move& move : moves) {
+    if (move.kind == MoveKind::tool) tool = move.number;
+    if (move.kind == MoveKind::message) section = index_of_section(sections_, move.text);
+    if (!is_motion(move.kind)) continue;
+    Piece piece{{},
+                move.end_machine,
+                move.s_begin,
+                move.s_end,
+                move.line,
+                move.tool_offset,
+                tool.value_or(move.tool_offset),
+                move.kind == MoveKind::rapid,
+                section};
+    piece.is_tip = move.tool_control != ToolControl::none;
+    if (piece.is_tip) piece.p_ST = tips.at(move.tool_offset);
+    piece.begin = begin_of(piece, before, at);
+    piece.curve = MoveCurve(piece.begin, move);
+    set_tool_axes(piece, move);
+    pieces_.push_back(piece);
+    before = &pieces_.back();
+    at = move.end_machine;
+  }
+}
+
+// Where a piece begins, in its own coordinates; `at` is in those of the piece before.
+AxisWords ProgramPath::begin_of(const Piece& piece, const Piece* before, AxisWords at) const {
+  const bool was_tip = before != nullptr && before->is_tip;
+  if (was_tip == piece.is_tip && (!was_tip || before->p_ST == piece.p_ST)) return at;
+  assert(machine_ != nullptr);
+  if (was_tip) at = machine_->machine_words(at, before->p_ST).value_or(at);
+  if (piece.is_tip) at = machine_->tip_words(at, piece.p_ST);
+  return at;
+}
+
+void ProgramPath::set_tool_axes(Piece& piece, const Move& move) const {
+  piece.is_great_circle = move.tool_control == ToolControl::tool_axis;
+  if (!piece.is_great_circle) return;
+  piece.k_begin = machine_->tool_axis(machine_->chain().layout.joints(piece.begin));
+  piece.k_end = move.tool_axis;
+}
+
+std::vector<std::size_t> ProgramPath::pieces_of(std::span<const Move> moves) const {
+  const auto holds = [](const Piece& p, const Move& move) {
+    return p.line == move.line && p.s_begin <= move.s_begin && move.s_end <= p.s_end;
+  };
+  std::vector<std::size_t> out;
+  out.reserve(moves.size());
+  std::size_t piece = 0;
+  for (const Move& move : moves) {
+    while (is_motion(move.kind) && !holds(pieces_[piece], move)) {
+      if (++piece == pieces_.size()) throw std::logic_error("a move is on no line of the program");
+    }
+    out.push_back(piece);
+  }
+  return out;
+}
+
+AxisWords ProgramPath::at(std::size_t index, double s) const {
+  const Piece& p = pieces_[index];
+  const double length = p.s_end - p.s_begin;
+  return length > 0.0 ? p.curve.at(std::clamp((s - p.s_begin) / length, 0.0, 1.0)) : p.end;
+}
+
+// Share of the piece that is behind; by the turn of the rotary axes where s stands.
+double ProgramPath::fraction(const Piece& p, double s, const JointLayout& layout,
+                             const Joints& Q_near) const {
+  const double length = p.s_end - p.s_begin;
+  double share = 1.0;
+  if (length > 0.0) {
+    share = (s - p.s_begin) / length;
+  } else if (p.is_great_circle) {
+    const double angle = angle_between(p.k_begin, p.k_end);
+    const Eigen::Vector3d k = machine_->tool_axis(Q_near);
+    const Eigen::Vector3d across = p.k_end - p.k_begin * p.k_begin.dot(p.k_end);
+    if (angle > 0.0) share = std::atan2(k.dot(across.normalized()), k.dot(p.k_begin)) / angle;
+  } else {
+    const Eigen::Vector3d turn = (p.end - p.begin).tail<3>();
+    const Eigen::Vector3d turned = (layout.words(Q_near) - p.begin).tail<3>();
+    if (!turn.isZero(0.0)) share = turn.dot(turned) / turn.squaredNorm();
+  }
+  return std::clamp(share, 0.0, 1.0);
+}
+
+Joints ProgramPath::joints(std::size_t index, double s, const JointLayout& layout,
+                           const Joints& Q_near) const {
+  const Piece& p = pieces_[index];
+  const double share = fraction(p, s, layout, Q_near);
+  const AxisWords words = p.curve.at(share);
+  Joints Q = layout.joints(words);
+  if (!p.is_tip) return Q;
+  if (p.is_great_circle) {
+    const auto k = controllers::ToolCentrePoint::axis_between(p.k_begin, p.k_end, share);
+    Q.tail<kJoints - kLinearJoints>() =
+        machine_->point(k, Q_near).Q.tail<kJoints - kLinearJoints>();
+  }
+  // the planner has been there: the linear axes can
+  return machine_->joints(words.head<3>(), Q, p.p_ST).value_or(Q_near);
+}
+
+double ProgramPath::distance(const Eigen::Vector3d& point, std::size_t index) const {
+  const bool is_tip = pieces_[index].is_tip;
+  const auto to_piece = [&](const Piece& p) {
+    if (p.is_tip != is_tip) return std::numeric_limits<double>::infinity();
+    return (p.curve.at(p.curve.closest(point)).head<3>() - point).norm();
+  };
+  double best = to_piece(pieces_[index]);
+  const double reach = best + kSearchMargin;
+  double gone = 0.0;
+  for (std::size_t i = index; i + 1 < pieces_.size() && gone < reach; ++i) {
+    best = std::min(best, to_piece(pieces_[i + 1]));
+    gone += pieces_[i + 1].curve.length();
+  }
+  gone = 0.0;
+  for (std::size_t i = index; i > 0 && gone < reach; --i) {
+    best = std::min(best, to_piece(pieces_[i - 1]));
+    gone += pieces_[i - 1].curve.length();
+  }
+  return best;
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,376 @@
+#include "sim/engine/recorder.h"
+
+#include <bit>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "plant/kinematics/inverse.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr std::size_t kBlockRows = 1024;
+
+constexpr const char* kLinear = "axis_linear";
+constexpr const char* kRotary = "axis_rotary";
+constexpr const char* kXyz = "xyz";
+constexpr const char* kIjk = "ijk";
+
+std::string letters(const MachineSettings& machine, const std::vector<int>& joints) {
+  std::string out;
+  for (const int joint : joints) out += machine.chain.layout.letter_of(joint);
+  return out;
+}
+
+std::vector<Signal> signals(const std::string& linear, const std::string& rotary, bool with_imposed,
+                            bool with_uncorrectable, bool with_cut) {
+  std::vector<Signal> all = {
+      {"time", "s", "time since the start of the program", "", ""},
+      {"s", "mm", "arc length on the path of the original program", "", ""},
+      {"line", "1", "line of the original program", "", ""},
+      {"section", "1", "section of the original program, index into attribute sections", "", ""},
+      {"rapid", "1", "1 while a rapid move is interpolated", "", ""},
+  };
+  const auto per_axis = [&](const std::string& name, const char* unit_linear,
+                            const char* unit_rotary, const std::string& what) {
+    if (!linear.empty()) {
+      all.push_back({name + "_linear", unit_linear, what + ", linear axes", linear, kLinear});
+    }
+    if (!rotary.empty()) {
+      all.push_back({name + "_rotary", unit_rotary, what + ", rotary axes", rotary, kRotary});
+    }
+  };
+  per_axis("ref", "mm", "deg", "interpolated position");
+  per_axis("cmd", "mm", "deg", "set point after corrections");
+  per_axis("read", "mm", "deg", "position that the NC reads, virtual displacement included");
+  per_axis("meas", "mm", "deg", "reading of the scale");
+  per_axis("true", "mm", "deg", "position of the slide or table");
+  per_axis("following_error", "um", "deg", "set point minus position that the NC reads");
+  per_axis("velocity", "mm/s", "deg/s", "velocity of the slide or table");
+  per_axis("current", "A", "A", "torque-forming current");
+  per_axis("torque", "N m", "N m", "motor torque");
+  if (with_imposed) {
+    all.push_back({"imposed_linear", "um",
+                   "displacement that the imposed errors ask for at the programmed position",
+                   linear, kLinear});
+  }
+  all.push_back({"tool_position_nominal", "mm",
+                 "tool centre point of the ideal machine on the programmed path, in the workpiece",
+                 "XYZ", kXyz});
+  all.push_back({"tool_position_true", "mm", "tool centre point, in the workpiece", "XYZ", kXyz});
+  all.push_back(
+      {"tool_deviation", "um", "true minus nominal tool centre point at equal s", "XYZ", kXyz});
+  all.push_back({"tool_axis_nominal", "1", "unit tool axis of the ideal machine", "IJK", kIjk});
+  all.push_back({"tool_axis_true", "1", "unit tool axis, in the workpiece", "IJK", kIjk});
+  all.push_back({"contour_error", "um",
+                 "distance of the true tool centre point to the nominal path", "", ""});
+  if (with_uncorrectable) {
+    all.push_back({"uncorrectable_tip", "um",
+                   "distance of the tip that the corrected axes cannot take away, believed", "",
+                   ""});
+    all.push_back({"uncorrectable_axis", "urad",
+                   "angle of the tool axis that the corrected axes cannot take away, believed", "",
+                   ""});
+  }
+  if (with_cut) {
+    all.push_back({"cutting_force", "N",
+                   "average force of the work on the cutter, in the workpiece", "XYZ", kXyz});
+    all.push_back({"structural_deflection", "um",
+                   "by which the cut bends the structure behind the scales, part of "
+                   "tool_position_true",
+                   linear, kLinear});
+  }
+  return all;
+}
+
+// Writes values one after the other, in the order of signals().
+class RowWriter {
+ public:
+  explicit RowWriter(double* row) : next_(row) {}
+  void put(double value) { *next_++ = value; }
+  void put(const Joints& Q, const std::vector<int>& joints, double unit) {
+    for (const int joint : joints) put(Q[joint] / unit);
+  }
+  void put(const Eigen::Vector3d& v, double unit) {
+    for (int i = 0; i < 3; ++i) put(v[i] / unit);
+  }
+
+ private:
+  double* next_;
+};
+
+// What a resolution of one metre is in the unit of a signal; 0: it is never rounded.
+double per_metre(const Signal& signal) {
+  const std::string& unit = signal.units;
+  constexpr double kArm = 1.0;  // m
+  constexpr double kTime = 10 * ms;
+  constexpr double kStrength = 0.1 / (1 * um);   // A/m and N
+  constexpr double kStiffness = 1.0 / (1 * um);  // N/m
+  if (unit == "mm") return 1.0 / mm;
+  if (unit == "um") return 1.0 / um;
+  if (unit == "deg") return 1.0 / (kArm * deg);
+  if (unit == "mm/s") return 1.0 / (mm * kTime);
+  if (unit == "deg/s") return 1.0 / (kArm * deg * kTime);
+  if (unit == "A" || unit == "N m") return kStrength;
+  if (unit == "N") return kStiffness;
+  return signal.scale == kIjk ? 1.0 / kArm : 0.0;
+}
+
+void apply(const RecordFormat& format, std::vector<Signal>& signals) {
+  for (Signal& signal : signals) {
+    const double most = format.resolution * per_metre(signal);
+    if (most > 0.0) signal.quantum = std::exp2(std::floor(std::log2(most)));
+    if (per_metre(signal) > 0.0 && signal.name != "s") signal.storage = format.storage;
+  }
+}
+
+// Rounds rows to what is kept of them.
+class Rounding {
+ public:
+  explicit Rounding(const Series& series) {
+    for (const Signal& signal : series.signals()) {
+      for (std::size_t c = 0; c < signal.columns(); ++c) {
+        // in the binade of the shift, the last bit of a double is one quantum
+        shift_.push_back(1.5 * 0x1p52 * signal.quantum);
+        largest_.push_back(signal.quantum > 0.0 ? 0x1p51 * signal.quantum : -1.0);
+        any_single_ |= signal.storage == Storage::float32;
+        single_.push_back(signal.storage == Storage::float32);
+      }
+    }
+  }
+  void apply(double* row) const {
+    for (std::size_t c = 0; c < shift_.size(); ++c) {
+      const double rounded = (row[c] + shift_[c]) - shift_[c];
+      row[c] = std::abs(row[c]) <= largest_[c] ? rounded : row[c];
+    }
+    for (std::size_t c = 0; any_single_ && c < single_.size(); ++c) {
+      if (single_[c]) row[c] = static_cast<double>(static_cast<float>(row[c]));
+    }
+  }
+
+ private:
+  std::vector<double> shift_, largest_;
+  std::vector<bool> single_;
+  bool any_single_ = false;
+};
+
+}  // namespace
+
+class Recorder::Rows {
+ public:
+  Rows(const MachineSettings& machine, const plant::VolumetricModel& truth,
+       const plant::VolumetricModel* imposed, const ProgramPath& path,
+       const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
+       bool rotary_displaced, std::vector<const strategies::Strategy*> correcting, bool cuts)
+      : machine_(machine),
+        truth_(truth),
+        imposed_(imposed),
+        path_(path),
+        tips_(tips),
+        rotary_displaced_(rotary_displaced),
+        correcting_(std::move(correcting)),
+        cuts_(cuts) {
+    for (int joint = 0; joint < kJoints; ++joint) {
+      if (!machine.chain.layout.has(joint)) continue;
+      (joint < kLinearJoints ? linear_ : rotary_).push_back(joint);
+    }
+    std::vector<Signal> all = signals(letters(machine, linear_), letters(machine, rotary_),
+                                      imposed != nullptr, !correcting_.empty(), cuts_);
+    apply(format, all);
+    series_ = Series(std::move(all));
+    rounding_ = Rounding(series_);
+  }
+
+  Series& series() { return series_; }
+
+  void add(const std::vector<Snapshot>& block, std::span<const double> directions) {
+    const std::size_t plays = truth_.plays().size();
+    double* row = series_.add_rows(block.size());
+    for (std::size_t first = 0; first < block.size();) {
+      const std::size_t end = find_places(block, first);
+      find_poses(directions.subspan(first * plays, (end - first) * plays));
+      for (std::size_t n = first; n < end; ++n) {
+        make_row(block[n], n - first, row);
+        rounding_.apply(row);
+        row += series_.width();
+      }
+      first = end;
+    }
+  }
+
+ private:
+  std::size_t find_places(const std::vector<Snapshot>& block, std::size_t first);
+  Joints ideal_joints(const Joints& Q_true, int tool_offset) const;
+  void find_poses(std::span<const double> directions);
+  void make_row(const Snapshot& now, std::size_t place, double* to);
+  void put_leftover(std::size_t place, RowWriter& row) const;
+
+  const MachineSettings& machine_;
+  const plant::VolumetricModel& truth_;
+  const plant::VolumetricModel* imposed_;
+  const ProgramPath& path_;
+  const std::map<int, Eigen::Vector3d>& tips_;
+  const bool rotary_displaced_;
+  const std::vector<const strategies::Strategy*> correcting_;
+  const bool cuts_;
+  const plant::VolumetricModel ideal_{machine_.chain, {}};
+  const plant::InverseKinematics inverse_{machine_.chain};
+  std::vector<int> linear_, rotary_;  // joints that the machine has
+  // of rows that follow each other with the same tool
+  Eigen::Vector3d p_ST_ = Eigen::Vector3d::Zero();
+  std::vector<std::size_t> pieces_;
+  std::vector<Joints> Q_prog_, Q_true_;
+  std::vector<ToolPose> nominal_, actual_;
+  std::vector<Eigen::Vector3d> displacement_;
+  Series series_;
+  Rounding rounding_{series_};
+};
+
+// Where the original program is, from `first` on up to a change of the tool. Returns the row of it.
+std::size_t Recorder::Rows::find_places(const std::vector<Snapshot>& block, std::size_t first) {
+  pieces_.clear();
+  Q_prog_.clear();
+  Q_true_.clear();
+  int tool = 0;
+  for (std::size_t n = first; n < block.size(); ++n) {
+    const Snapshot& now = block[n];
+    const ProgramPath::Piece& piece = path_.piece(now.piece);
+    if (n == first) tool = piece.tool_offset;
+    if (piece.tool_offset != tool) return n;
+    const bool by_turn = rotary_displaced_ && piece.s_end == piece.s_begin;
+    const Joints Q_near = by_turn ? ideal_joints(now.Q_true, piece.tool_offset) : now.Q_ref;
+    pieces_.push_back(now.piece);
+    Q_prog_.push_back(path_.joints(now.piece, now.s, machine_.chain.layout, Q_near));
+    Q_true_.push_back(now.Q_true);
+  }
+  return block.size();
+}
+
+// Where the joints of the ideal machine would stand with the tool where it is.
+Joints Recorder::Rows::ideal_joints(const Joints& Q_true, int tool_offset) const {
+  const auto tip = tips_.find(tool_offset);
+  const Eigen::Vector3d p_ST = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;
+  return inverse_.nearest(truth_.forward(Q_true, p_ST), p_ST, Q_true).Q;
+}
+
+// Where the tool is and where it should be.
+void Recorder::Rows::find_poses(std::span<const double> directions) {
+  const auto tip = tips_.find(path_.piece(pieces_.front()).tool_offset);
+  p_ST_ = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;
+  nominal_.resize(Q_prog_.size());
+  actual_.resize(Q_prog_.size());
+  ideal_.poses(Q_prog_, p_ST_, nominal_);
+  if (directions.empty()) {
+    truth_.poses(Q_true_, p_ST_, actual_);
+  } else {
+    truth_.poses(Q_true_, p_ST_, directions, actual_);
+  }
+  if (imposed_ == nullptr) return;
+  displacement_.resize(Q_prog_.size());
+  imposed_->joint_offsets(Q_prog_, p_ST_, displacement_);
+}
+
+void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to) {
+  const ProgramPath::Piece& piece = path_.piece(pieces_[place]);
+  if (cuts_) {
+    actual_[place].p_WT += plant::linear_jacobian(machine_.chain, now.Q_true) * now.deflection;
+  }
+  const ToolPose &nominal = nominal_[place], &actual = actual_[place];
+  const auto place_on_path = [&]() -> std::optional<Eigen::Vector3d> {
+    if (piece.is_tip) return actual.p_WT;
+    const auto Q = plant::inverse_fixed_rotary(machine_.chain, actual.p_WT, Q_prog_[place], p_ST_);
+    if (!Q) return std::nullopt;
+    return Q->head<3>();
+  }();
+  const double contour_error = place_on_path ? path_.distance(*place_on_path, pieces_[place])
+                                             : (actual.p_WT - nominal.p_WT).norm();
+
+  RowWriter row(to);
+  row.put(now.time);
+  row.put(now.s / mm);
+  row.put(piece.line);
+  row.put(piece.section);
+  row.put(piece.rapid ? 1.0 : 0.0);
+  const auto per_axis = [&](const Joints& Q, double unit_linear, double unit_rotary) {
+    row.put(Q, linear_, unit_linear);
+    row.put(Q, rotary_, unit_rotary);
+  };
+  per_axis(now.Q_ref, mm, deg);
+  per_axis(now.Q_cmd, mm, deg);
+  per_axis(now.Q_read, mm, deg);
+  per_axis(now.Q_meas, mm, deg);
+  per_axis(now.Q_true, mm, deg);
+  per_axis(now.Q_cmd - now.Q_read, um, deg);
+  per_axis(now.dQ_true, mm, deg);
+  per_axis(now.current, 1.0, 1.0);
+  per_axis(now.torque, 1.0, 1.0);
+  if (imposed_ != nullptr) {
+    Joints displacement = Joints::Zero();
+    displacement.head<3>() = displacement_[place];
+    row.put(displacement, linear_, um);
+  }
+  row.put(nominal.p_WT, mm);
+  row.put(actual.p_WT, mm);
+  row.put(actual.p_WT - nominal.p_WT, um);
+  row.put(nominal.k_W, 1.0);
+  row.put(actual.k_W, 1.0);
+  row.put(contour_error / um);
+  if (!correcting_.empty()) put_leftover(place, row);
+  if (!cuts_) return;
+  row.put(now.cutting_force, 1.0);
+  for (const int joint : linear_) row.put(now.deflection[joint] / um);
+}
+
+void Recorder::Rows::put_leftover(std::size_t place, RowWriter& row) const {
+  strategies::Leftover sum;
+  for (const strategies::Strategy* strategy : correcting_) {
+    const auto left = strategy->uncorrectable(Q_prog_[place]).value_or(strategies::Leftover{});
+    sum.tip += left.tip;
+    sum.axis += left.axis;
+  }
+  row.put(sum.tip / um);
+  row.put(sum.axis / urad);
+}
+
+Recorder::Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
+                   const plant::VolumetricModel* imposed, const ProgramPath& path,
+                   const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
+                   bool rotary_displaced, std::vector<const strategies::Strategy*> correcting,
+                   bool cuts)
+    : rows_(std::make_unique<Rows>(machine, truth, imposed, path, tips, format, rotary_displaced,
+                                   std::move(correcting), cuts)) {
+  filling_.snapshots.reserve(kBlockRows);
+  filling_.directions.reserve(kBlockRows * truth.plays().size());
+}
+
+Recorder::~Recorder() = default;
+
+void Recorder::reserve(std::size_t rows) { rows_->series().reserve(rows); }
+
+void Recorder::record(const Snapshot& now, std::span<const double> directions) {
+  filling_.snapshots.push_back(now);
+  filling_.directions.insert(filling_.directions.end(), directions.begin(), directions.end());
+  if (filling_.snapshots.size() == kBlockRows) hand_over();
+}
+
+void Recorder::hand_over() {
+  background_.wait();
+  std::swap(filling_, working_);
+  filling_.snapshots.reserve(kBlockRows);
+  filling_.snapshots.clear();
+  filling_.directions.reserve(working_.directions.size());
+  filling_.directions.clear();
+  background_.post([this] { rows_->add(working_.snapshots, working_.directions); });
+}
+
+Series Recorder::take() {
+  background_.wait();
+  rows_->add(filling_.snapshots, filling_.directions);
+  filling_ = {};
+  return std::move(rows_->series());
+}
+
+}  // namespace servomill::sim

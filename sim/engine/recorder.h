@@ -1,0 +1,75 @@
+/// Turns what a case knows at a record instant into a row of signals (the edge: SI becomes mm, deg,
+/// um here and nowhere else).
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "plant/geometry/volumetric.h"
+#include "sim/engine/program_path.h"
+#include "sim/model/machine.h"
+#include "sim/records/series.h"
+#include "sim/system/background.h"
+#include "strategies/strategy.h"
+
+namespace servomill::sim {
+
+/// Everything that is recorded of one instant, SI.
+struct Snapshot {
+  double time = 0.0;
+  double s = 0.0;
+  std::size_t piece = 0;           // of the programmed path
+  Joints Q_ref = Joints::Zero();   // interpolated
+  Joints Q_cmd = Joints::Zero();   // after set-point corrections
+  Joints Q_read = Joints::Zero();  // what the NC reads (virtual encoder)
+  Joints Q_meas = Joints::Zero();  // what the scale says
+  Joints Q_true = Joints::Zero();
+  Joints dQ_true = Joints::Zero();
+  Joints current = Joints::Zero();
+  Joints torque = Joints::Zero();
+  Eigen::Vector3d cutting_force = Eigen::Vector3d::Zero();  // N, on the cutter, in W
+  Eigen::Vector3d deflection = Eigen::Vector3d::Zero();     // m, of the structure in linear axes
+};
+
+/// Whoever records only copies a Snapshot. Rows are made from blocks of them in a thread of the
+/// recorder, so it waits only if that is slower than the simulation.
+class Recorder {
+ public:
+  /// All arguments must outlive it.
+  /// @param imposed  model whose displacement at the programmed position is recorded; may be null
+  /// @param rotary_displaced  the program that runs turns rotary axes elsewhere than `path` does:
+  ///                          where s stands, they are compared with the nearest programmed place
+  /// @param cuts  force of the cut and deflection are recorded; the deflection moves the tip
+  /// @param correcting  strategies of which is recorded what they cannot correct, in all
+  Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
+           const plant::VolumetricModel* imposed, const ProgramPath& path,
+           const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format = {},
+           bool rotary_displaced = false, std::vector<const strategies::Strategy*> correcting = {},
+           bool cuts = false);
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  void reserve(std::size_t rows);
+  /// @param directions  in which axes have travelled: of each of the truth's plays()
+  void record(const Snapshot& now, std::span<const double> directions = {});
+  /// All rows; once.
+  Series take();
+
+ private:
+  class Rows;
+  void hand_over();
+
+  std::unique_ptr<Rows> rows_;
+  struct Block {
+    std::vector<Snapshot> snapshots;
+    std::vector<double> directions;  // of each snapshot, one behind the other
+  };
+  Block filling_;
+  Block working_;          // what the thread turns into rows
+  Background background_;  // last: its thread uses the others
+};
+
+}  // namespace servomill::sim

@@ -1,0 +1,487 @@
+#include "sim/engine/servo_axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim {
+namespace {
+
+std::string_view name_of(controllers::AxisFaultKind fault) {
+  switch (fault) {
+    case controllers::AxisFaultKind::following_error:
+      return "following error";
+    case controllers::AxisFaultKind::standstill:
+      return "position at standstill";
+    case controllers::AxisFaultKind::encoder_difference:
+      break;
+  }
+  return "difference of scale and motor encoder";
+}
+
+std::string overspeed(std::string_view name, const plant::Encoder& encoder, double velocity) {
+  constexpr double kHzPerkHz = 1e3;
+  return fmt::format("signals of the {} at {:.4g} kHz, beyond the {:.4g} kHz of the input", name,
+                     encoder.signal_frequency(velocity) / kHzPerkHz,
+                     encoder.frequency_limit() / kHzPerkHz);
+}
+
+}  // namespace
+
+std::vector<Rate> loop_rates(const LoopPeriods& p, Tick reading_delay) {
+  const Tick phase = (p.position - reading_delay % p.position) % p.position;
+  return {{kSample, p.position, phase},
+          {kPositionLoop, p.position, 0},
+          {kVelocityLoop, p.velocity, 0},
+          {kCurrentLoop, p.current, 0}};
+}
+
+namespace {
+
+// Matrices are prepared for each stop of each: beyond that, steps are taken as they come.
+constexpr std::size_t kMostStretches = 32;
+
+// Number of a stretch with stops among those of the way, which it joins if it is new; -1 if there
+// are too many.
+int number_of(const plant::Stretch& stretch, DriveWay& way) {
+  const auto known = std::find(way.stretches.begin(), way.stretches.end(), stretch);
+  const auto number = static_cast<int>(known - way.stretches.begin());
+  if (known != way.stretches.end()) return number;
+  if (way.stretches.size() == kMostStretches) return -1;
+  way.most_stops = std::max(way.most_stops, stretch.stops.size());
+  way.stretches.push_back(stretch);
+  return number;
+}
+
+}  // namespace
+
+DriveWay drive_way(const std::vector<Instant>& schedule, std::size_t most_stops) {
+  DriveWay way;
+  const auto add_step = [&](Tick step) {
+    way.legs.push_back({step});
+    way.steps.push_back(step);
+  };
+  for (const Instant& instant : schedule) {
+    std::vector<Tick> places = instant.stops;
+    places.push_back(instant.step);
+    Tick begin = 0;
+    for (std::size_t first = 0; first < places.size();) {
+      const std::size_t last = std::min(first + most_stops, places.size() - 1);
+      plant::Stretch stretch{.step = places[last] - begin};
+      for (std::size_t n = first; n < last; ++n) stretch.stops.push_back(places[n] - begin);
+      const int number = stretch.stops.empty() ? -1 : number_of(stretch, way);
+      if (number >= 0) {
+        way.legs.push_back({stretch.step, number});
+      } else {
+        for (std::size_t n = first; n <= last; ++n) {
+          add_step(places[n] - (n == first ? begin : places[n - 1]));
+        }
+      }
+      begin = places[last];
+      first = last + 1;
+    }
+  }
+  return way;
+}
+
+namespace {
+
+std::vector<plant::FeedDriveParams> params_of(const std::vector<const MachineSettings*>& machines,
+                                              const std::vector<int>& joints) {
+  std::vector<plant::FeedDriveParams> params;
+  for (const int j : joints) {
+    for (const MachineSettings* machine : machines) {
+      params.push_back(machine->drives[static_cast<std::size_t>(j)]);
+    }
+  }
+  return params;
+}
+
+}  // namespace
+
+const ServoKernel& servo_kernel() {
+  static const ServoKernel kKernel =
+      at_simd_level(simd_level(), []<SimdLevel level>() { return make_servo_kernel<level>(); });
+  return kKernel;
+}
+
+ServoAxes::ServoAxes(std::vector<const MachineSettings*> machines, std::vector<int> joints,
+                     const std::vector<Instant>& schedule, plant::PreparedDrives* kept)
+    : machines_(std::move(machines)),
+      joints_(std::move(joints)),
+      places_(machines_.size()),
+      in_a_row_(machines_.size() == 1 && joints_.size() == kJoints),
+      blocks_of_joint_(fills_blocks() && joints_.size() == kJoints ? runs() / kLaneWidth : 0),
+      params_(params_of(machines_, joints_)),
+      way_(machines_[0]->integrator == Integrator::exact ? drive_way(schedule)
+                                                         : drive_way(schedule, 0)),
+      last_leg_(way_.legs.empty() ? 0 : way_.legs.size() - 1),
+      positions_(way_.most_stops * blocks_of(params_.size())),
+      drives_(params_, machines_[0]->nc.periods.base,
+              machines_[0]->integrator == Integrator::exact ? way_.steps : std::vector<Tick>(),
+              kept, simd_level(), way_.stretches),
+      blocks_(blocks_of(params_.size())),
+      state_(params_.size()),
+      input_(params_.size()),
+      servos_(blocks_),
+      functions_(params_.size()),
+      kernel_(servo_kernel()) {
+  for (const int j : joints_) {
+    first_lane_[static_cast<std::size_t>(j)] = axes_.size();
+    for (std::size_t run = 0; run < machines_.size(); ++run) {
+      const std::size_t l = axes_.size();
+      places_[run][static_cast<std::size_t>(j)] = {block(l), place(l), true};
+      axes_.push_back({run, j});
+    }
+  }
+  assert(std::is_sorted(joints_.begin(), joints_.end()));
+  linear_joints_ = static_cast<std::size_t>(std::count_if(
+      joints_.begin(), joints_.end(), [](int joint) { return joint < kLinearJoints; }));
+  if (machines_[0]->integrator == Integrator::cvode) {
+    cvode_.emplace(params_, machines_[0]->nc.periods.base);
+  }
+  for (std::size_t l = 0; l < axes_.size(); ++l) describe(l);
+}
+
+void ServoAxes::describe(std::size_t l) {
+  const MachineSettings& machine = machine_of(l);
+  const auto j = static_cast<std::size_t>(axes_[l].joint);
+  const AxisFunctions& functions = machine.nc.functions[j];
+  const auto set = [&](LaneArray ServoBlock::*member, double value) { at(member, l) = value; };
+  const auto encoder = [](double step) { return step > 0.0 ? 1.0 / step : 0.0; };
+  set(&ServoBlock::r, params_[l].r);
+  set(&ServoBlock::per_r, 1.0 / params_[l].r);
+  set(&ServoBlock::motor_step, machine.motor[j].step());
+  set(&ServoBlock::per_motor_step, encoder(machine.motor[j].step()));
+  set(&ServoBlock::scale_step, machine.scale[j].step());
+  set(&ServoBlock::per_scale_step, encoder(machine.scale[j].step()));
+  set(&ServoBlock::reads_scale,
+      functions.position_feedback.kind == controllers::PositionFeedback::scale ? 1.0 : 0.0);
+  set(&ServoBlock::feedback_gain, functions.position_feedback.gain);
+  set(&ServoBlock::has_winding, params_[l].has_winding() ? 1.0 : 0.0);
+  ServoBlock& servo = servos_[block(l)];
+  set_lane(servo.cascade, place(l), gains_of(machine.nc.cascade[j]));
+  const controllers::CurrentLoopGains current = gains_of(functions.current_loop);
+  servo.current.Kp[place(l)] = current.Kp;
+  servo.current.Ki_Ti[place(l)] = current.Ki_Ti;
+  servo.current.u_max[place(l)] = current.u_max;
+
+  const controllers::SupervisionParams& supervision = functions.supervision;
+  const bool rigid = params_[l].is_rigid();  // the motor turns as the slide moves
+  set(&ServoBlock::rigid, rigid ? 1.0 : 0.0);
+  set(&ServoBlock::most_following_error, supervision.following_error);
+  set(&ServoBlock::most_speed,
+      std::min(machine.scale[j].fastest(),
+               rigid ? params_[l].r * machine.motor[j].fastest() : controllers::kNoLimit));
+  set(&ServoBlock::most_motor_speed, rigid ? controllers::kNoLimit : machine.motor[j].fastest());
+  always_looked_at_.push_back(supervision.standstill < controllers::kNoLimit ||
+                              supervision.encoder_difference < controllers::kNoLimit ||
+                              machine.marks[j].has_value());
+
+  watched_ |= always_looked_at_.back() || !params_[l].is_linear();
+  if (!machine.motor[j].is_plain() || !machine.screw[j].is_zero()) own_motor_reading_.push_back(l);
+  if (!machine.scale[j].is_plain()) own_scale_reading_.push_back(l);
+  if (machine.marks[j]) marked_.push_back(l);
+  if (functions.backlash.width != 0.0) with_backlash_.push_back(l);
+  if (functions.friction.compensates()) with_friction_.push_back(l);
+}
+
+void ServoAxes::settle(const Joints& Q, const Joints& displacement, std::size_t run) {
+  displace(displacement, run);
+  for (const int j : joints_) settle(lane(run, j), Q[j], displacement[j]);
+}
+
+void ServoAxes::settle(std::size_t l, double Q, double d) {
+  const MachineSettings& machine = machine_of(l);
+  const auto j = static_cast<std::size_t>(axes_[l].joint);
+  const plant::FeedDriveParams& drive = params_[l];
+  const AxisFunctions& functions = machine.nc.functions[j];
+  const controllers::CascadeParams& cascade = machine.nc.cascade[j];
+  plant::LaneState state = plant::at_rest(drive, Q);
+  const auto current = drive.has_winding() ? controllers::standing_at(functions.current_loop,
+                                                                      state.i, drive.R * state.i)
+                                           : controllers::StandingCurrent{state.i, {}};
+  state.x -= controllers::standing_error(cascade, current.i_cmd);
+  state_.set_lane(l, state);
+  const double phi = motor_reading(l), scale = scale_reading(l, state.x, now_);
+  const double y_motor = drive.r * phi, y_scale = scale + d;
+  auto feedback = controllers::standing_at(functions.position_feedback, y_motor, y_scale);
+  const double Q_read =
+      controllers::position_feedback(functions.position_feedback, feedback, y_motor, y_scale);
+
+  ServoBlock& servo = servos_[block(l)];
+  set_lane(servo.cascade_state, place(l), controllers::standing_at(cascade, phi, current.i_cmd));
+  servo.current_state.integral[place(l)] = current.state.integral;
+  servo.current_state.u[place(l)] = current.state.u;
+  servo.current_state.excess[place(l)] = 0.0;
+  input_.blocks[block(l)].command[place(l)] = drive.has_winding() ? current.state.u : state.i;
+  input_.blocks[block(l)].active[place(l)] = true;
+  const auto set = [&](LaneArray ServoBlock::*member, double value) { at(member, l) = value; };
+  set(&ServoBlock::phi, phi);
+  set(&ServoBlock::scale, scale);
+  set(&ServoBlock::y_motor, y_motor);
+  set(&ServoBlock::y_scale, y_scale);
+  set(&ServoBlock::difference, feedback.difference);
+  set(&ServoBlock::Q_read, Q_read);
+  set(&ServoBlock::Q_cmd, Q_read);
+  for (const auto member :
+       {&ServoBlock::dQ_ff, &ServoBlock::ddQ_ff, &ServoBlock::v_add, &ServoBlock::tau_add}) {
+    set(member, 0.0);
+  }
+  Functions& own = functions_[l];
+  own = {};
+  if (const auto& marks = machine.marks[j]) {
+    own.marks.emplace(plant::ReferenceMarks(marks->params), marks->allowed);
+    own.marks->start(state.x, state.x + d);
+  }
+  own.backlash = controllers::standing_at(functions.backlash, Q_read);
+  own.supervision =
+      controllers::standing_at(functions.supervision, {Q_read, 0.0, Q_read, y_motor, y_scale});
+}
+
+void ServoAxes::displace(const Joints& displacement, std::size_t run) {
+  if (in_a_row_) {
+    row(&ServoBlock::displacement) = displacement;
+    return;
+  }
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    const Place& p = places_[run][j];
+    if (p.present) servos_[p.block].displacement[p.place] = displacement[static_cast<int>(j)];
+  }
+}
+
+void ServoAxes::displace(const JointLanes& displacement, const LaneFlags& lanes, bool rotary,
+                         std::size_t first) {
+  assert(first < runs() && first % kLaneWidth == 0);
+  if (fills_blocks()) {
+    return kernel_.displace(&servos_[block(first)], block(runs()), joints_.data(),
+                            rotary ? joints_.size() : linear_joints_, lanes, displacement);
+  }
+  each_of_eight(first, [&](std::size_t n, std::size_t j, const Place& p) {
+    if ((rotary || j < kLinearJoints) && lanes[n]) {
+      servos_[p.block].displacement[p.place] = displacement[j][n];
+    }
+  });
+}
+
+void ServoAxes::get_readings(JointLanes& Q_meas, std::size_t first) const {
+  assert(first < runs() && first % kLaneWidth == 0);
+  if (fills_blocks()) {
+    return kernel_.get_scales(&servos_[block(first)], block(runs()), joints_.data(), joints_.size(),
+                              Q_meas);
+  }
+  each_of_eight(first, [&](std::size_t n, std::size_t j, const Place& p) {
+    Q_meas[j][n] = servos_[p.block].scale[p.place];
+  });
+}
+
+void ServoAxes::follow(const AxisSetPoint& set, std::size_t run) {
+  if (in_a_row_) {
+    row(&ServoBlock::Q_cmd) = set.Q_cmd;
+    row(&ServoBlock::dQ_ff) = set.dQ_ff;
+    row(&ServoBlock::ddQ_ff) = set.ddQ_ff;
+    return;
+  }
+  if (blocks_of_joint_ > 0) {
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      ServoBlock& servo = servos_[block_of(j, run)];
+      const auto joint = static_cast<int>(j);
+      servo.Q_cmd[run % kLaneWidth] = set.Q_cmd[joint];
+      servo.dQ_ff[run % kLaneWidth] = set.dQ_ff[joint];
+      servo.ddQ_ff[run % kLaneWidth] = set.ddQ_ff[joint];
+    }
+    return;
+  }
+  for (const int j : joints_) {
+    const std::size_t l = lane(run, j);
+    at(&ServoBlock::Q_cmd, l) = set.Q_cmd[j];
+    at(&ServoBlock::dQ_ff, l) = set.dQ_ff[j];
+    at(&ServoBlock::ddQ_ff, l) = set.ddQ_ff[j];
+  }
+}
+
+void ServoAxes::inject(int joint, const Injection& injection, std::size_t run) {
+  const std::size_t l = lane(run, joint);
+  at(&ServoBlock::added_velocity, l) = injection.velocity;
+  at(&ServoBlock::added_current, l) = injection.current;
+  at(&ServoBlock::added_reading, l) = injection.reading;
+  input_.blocks[block(l)].F[place(l)] = -injection.force;
+}
+
+void ServoAxes::load(const Joints& forces, std::size_t run) {
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    const Place& p = places_[run][j];
+    if (p.present) input_.blocks[p.block].F[p.place] = -forces[static_cast<int>(j)];
+  }
+}
+
+void ServoAxes::end(std::size_t run) {
+  for (const int j : joints_) {
+    const std::size_t l = lane(run, j);
+    input_.blocks[block(l)].active[place(l)] = false;
+    // what it stands at is nobody's concern any more
+    for (const auto limit : {&ServoBlock::most_following_error, &ServoBlock::most_speed,
+                             &ServoBlock::most_motor_speed}) {
+      at(limit, l) = controllers::kNoLimit;
+    }
+  }
+}
+
+double ServoAxes::motor_reading(std::size_t l) const {
+  const MachineSettings& machine = machine_of(l);
+  const auto j = static_cast<std::size_t>(axes_[l].joint);
+  const plant::ScrewError& screw = machine.screw[j];
+  const plant::LaneState s = state_.lane(l);
+  const double phi = screw.is_zero() ? drives_.motor_angle(state_, l)
+                                     : plant::motor_angle(screw, params_[l].r, s.delta + s.x,
+                                                          machine.nc.periods.seconds(now_));
+  return machine.motor[j].read(phi, now_);
+}
+
+double ServoAxes::scale_reading(std::size_t l, double x, Tick now) const {
+  const auto j = static_cast<std::size_t>(axes_[l].joint);
+  return machine_of(l).scale[j].read(x, now);
+}
+
+void ServoAxes::read_motors() {
+  kernel_.read_motors(servos_.data(), state_.blocks.data(), blocks_);
+  for (const std::size_t l : own_motor_reading_) at(&ServoBlock::phi, l) = motor_reading(l);
+}
+
+void ServoAxes::read_scales() {
+  kernel_.read_scales(servos_.data(), state_.blocks.data(), blocks_);
+  for (const std::size_t l : own_scale_reading_) {
+    at(&ServoBlock::scale, l) = scale_reading(l, state_.blocks[block(l)].x[place(l)], now_);
+  }
+}
+
+void ServoAxes::read_own_scales_at(const LaneArray* positions, Tick now) {
+  for (const std::size_t l : own_scale_reading_) {
+    at(&ServoBlock::scale, l) = scale_reading(l, positions[block(l)][place(l)], now);
+  }
+}
+
+void ServoAxes::take_readings() {
+  read_scales();
+  read_motors();
+  kernel_.take_readings(servos_.data(), blocks_);
+  for (const std::size_t l : marked_) {
+    Functions& own = functions_[l];
+    if (own.mark_fault) continue;
+    const double x = state_.blocks[block(l)].x[place(l)];
+    own.mark_fault = own.marks->advance(x, x + at(&ServoBlock::displacement, l));
+  }
+}
+
+void ServoAxes::run_position_loops() {
+  for (const std::size_t l : with_backlash_) {
+    const AxisFunctions& functions =
+        machine_of(l).nc.functions[static_cast<std::size_t>(axes_[l].joint)];
+    const auto ramp = controllers::backlash_compensation(functions.backlash, functions_[l].backlash,
+                                                         at(&ServoBlock::Q_cmd, l));
+    // Only the motor cannot see the gap; the other loops gain the time. It is counted off the
+    // motor's reading, so that the gap is no following error.
+    if (functions.position_feedback.kind == controllers::PositionFeedback::motor) {
+      at(&ServoBlock::Q_read, l) -= ramp.offset;
+    } else {
+      at(&ServoBlock::v_add, l) = ramp.rate;
+    }
+  }
+  suspects_ = kernel_.position_loops(servos_.data(), state_.blocks.data(), blocks_);
+}
+
+void ServoAxes::run_current_loops() {
+  kernel_.current_loops(servos_.data(), state_.blocks.data(), input_.blocks.data(), blocks_);
+}
+
+void ServoAxes::run_velocity_loops() {
+  for (const std::size_t l : with_friction_) {
+    const NcSettings& nc = machine_of(l).nc;
+    const auto j = static_cast<std::size_t>(axes_[l].joint);
+    // in lag mode the axis reverses with its speed command
+    const double v = nc.cascade[j].kvf > 0.0 ? at(&ServoBlock::dQ_ff, l)
+                                             : servos_[block(l)].cascade_state.v_cmd[place(l)];
+    at(&ServoBlock::tau_add, l) =
+        controllers::friction_compensation(nc.functions[j].friction, functions_[l].friction, v);
+  }
+  read_motors();
+  kernel_.velocity_loops(servos_.data(), blocks_);
+}
+
+Joints ServoAxes::motor_angle(std::size_t run) const {
+  return each_joint(run, [&](const Place& p) {
+    const plant::DriveBlock& state = state_.blocks[p.block];
+    return (state.delta[p.place] + state.x[p.place]) * servos_[p.block].per_r[p.place];
+  });
+}
+
+Joints ServoAxes::motor_speed(std::size_t run) const {
+  return each_joint(run, [&](const Place& p) {
+    const plant::DriveBlock& state = state_.blocks[p.block];
+    const ServoBlock& servo = servos_[p.block];
+    return servo.rigid[p.place] > 0.0 ? state.v[p.place] * servo.per_r[p.place] : state.w[p.place];
+  });
+}
+
+Joints ServoAxes::measured_speed(std::size_t run) const {
+  return each_joint(run, [&](const Place& p) { return servos_[p.block].cascade_state.w[p.place]; });
+}
+
+Joints ServoAxes::speed_error(std::size_t run) const {
+  return each_joint(run, [&](const Place& p) { return servos_[p.block].cascade_state.e[p.place]; });
+}
+
+std::optional<ServoAxes::Fault> ServoAxes::supervise(std::size_t run) {
+  for (const int j : joints_) {
+    const std::size_t l = lane(run, j);
+    if (!always_looked_at_[l] && at(&ServoBlock::suspect, l) == 0.0 &&
+        plant::DriveBank::unresolved(state_, l) == 0) {
+      continue;
+    }
+    if (auto reason = fault_of(l)) return Fault{j, std::move(*reason)};
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> ServoAxes::fault_of(std::size_t l) {
+  const MachineSettings& machine = machine_of(l);
+  const auto j = static_cast<std::size_t>(axes_[l].joint);
+  const bool linear = axes_[l].joint < kLinearJoints;
+  const double unit = linear ? mm : deg;
+  const std::string_view unit_name = linear ? "mm" : "deg";
+  Functions& own = functions_[l];
+  const auto fault = controllers::supervise(
+      machine.nc.functions[j].supervision, own.supervision,
+      {at(&ServoBlock::Q_cmd, l), at(&ServoBlock::dQ_ff, l), at(&ServoBlock::Q_read, l),
+       at(&ServoBlock::y_motor, l), at(&ServoBlock::y_scale, l)});
+  if (fault) {
+    return fmt::format("{} beyond {:g} {}", name_of(fault->fault), fault->limit / unit, unit_name);
+  }
+  if (own.mark_fault) {
+    const plant::MarkFault& mark = *own.mark_fault;
+    if (mark.from == mark.to) {
+      return fmt::format(
+          "counted {} signal periods until the reference mark at {:.3f} {} came again",
+          mark.counted, mark.from / unit, unit_name);
+    }
+    return fmt::format(
+        "counted {} signal periods instead of {} between the reference marks at {:.3f} and {:.3f} "
+        "{}",
+        mark.counted, mark.expected, mark.from / unit, mark.to / unit, unit_name);
+  }
+  if (plant::DriveBank::unresolved(state_, l) > 0) {
+    return "friction too stiff for the exact step; use integrator = \"cvode\"";
+  }
+  const plant::DriveBlock& state = state_.blocks[block(l)];
+  const double v = state.v[place(l)];
+  const double w = params_[l].is_rigid() ? v / params_[l].r : state.w[place(l)];
+  if (machine.scale[j].too_fast(v)) return overspeed("scale", machine.scale[j], v);
+  if (machine.motor[j].too_fast(w)) return overspeed("motor encoder", machine.motor[j], w);
+  return std::nullopt;
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,58 @@
+/// The NC's set point of one case: interpolated reference, nominal-position filter, corrections,
+/// feed-forward. Advanced once per position period.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "controllers/path/nominal_filter.h"
+#include "controllers/path/trajectory.h"
+#include "controllers/servo/set_point_correction.h"
+#include "sim/engine/servo_axes.h"
+#include "sim/model/machine.h"
+#include "strategies/strategy.h"
+
+namespace servomill::sim {
+
+class SetPoint {
+ public:
+  SetPoint(const NcSettings& nc, const controllers::Trajectory& reference,
+           std::vector<std::unique_ptr<strategies::SetPointPart>> parts);
+
+  /// Standing at the start of the trajectory for long; corrections settled.
+  const AxisSetPoint& settle();
+  /// Time by which the filter delays the reference (s).
+  double delay() const { return delay_; }
+
+  /// Set point for what the trajectory asks for, one position period after the call before.
+  const AxisSetPoint& advance(const controllers::Trajectory::Sample& sample);
+
+ private:
+  struct Correction {
+    std::unique_ptr<strategies::SetPointPart> part;
+    controllers::SetPointCorrection in_nc;
+  };
+  struct Filters {  // one for each signal that passes
+    controllers::NominalFilter Q, dQ, ddQ, offset;
+  };
+  struct Offsets {  // of all joints (5; m, rad), by where they enter
+    Joints before_filter = Joints::Zero();
+    Joints position_command = Joints::Zero();
+    Joints feed_forward = Joints::Zero();
+    Joints& of(EntryPoint entry);
+  };
+  Offsets corrections_at(const Joints& Q_ref);
+  void feed_forward(const Joints& offset);
+
+  const controllers::Trajectory& reference_;
+  std::vector<Correction> corrections_;
+  double Tp_;
+  double delay_ = 0.0;
+  std::optional<Filters> filters_;
+  AxisSetPoint out_;
+  Joints fed_forward_ = Joints::Zero();  // corrections, one period ago
+  Joints fed_forward_rate_ = Joints::Zero();
+};
+
+}  // namespace servomill::sim

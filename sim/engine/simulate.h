@@ -1,0 +1,95 @@
+/// One case of a scenario, run: NC, drives, encoders, feedback hardware, recorder, on one clock.
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "controllers/path/trajectory.h"
+#include "plant/drives/prepared_drives.h"
+#include "plant/geometry/volumetric.h"
+#include "sim/engine/cutting.h"
+#include "sim/engine/program_path.h"
+#include "sim/model/machine.h"
+#include "sim/records/series.h"
+#include "strategies/strategy.h"
+
+namespace servomill::sim {
+
+enum class ServoModel : std::uint8_t {
+  cascade,  // loops and drives as described
+  ideal,    // the axes stand where the NC wants them, readings included: Q_true + d(Q_true) = Q_cmd
+};
+
+/// Signals pass through the hardware of the feedback strategy, whether or not it displaces them.
+struct FeedbackHardware {
+  bool connected = false;
+  Tick signal_delay = 1;  // from reading the scale to what the NC reads
+  Tick model_period = 6;  // a model evaluated at tick n acts from n + model_period on
+};
+
+/// What one case needs. References are shared with other cases; parts belong to this run.
+struct CaseInputs {
+  const MachineSettings& machine;
+  const plant::VolumetricModel& truth;         // the machine as it is
+  const plant::VolumetricModel* imposed;       // displacement to be recorded, or nullptr
+  const controllers::Trajectory& reference;    // of the program that the NC runs
+  const ProgramPath& path;                     // of the original program
+  const std::map<int, Eigen::Vector3d>& tips;  // p_ST (m) by tool offset number
+  ServoModel servo = ServoModel::cascade;
+  FeedbackHardware hardware;
+  std::vector<std::unique_ptr<strategies::SetPointPart>> set_points;
+  const strategies::Strategy* feedback = nullptr;  // the one that displaces it, if any
+  Tick record_period = 100;
+  double settle_time = 0.1;  // s, recorded after the program's end
+  RecordFormat format = {};
+  bool program_displaces_rotary = false;  // the NC runs another program than `path` also there
+  // of which is recorded what they cannot correct
+  std::vector<const strategies::Strategy*> recorded_corrections = {};
+  std::vector<std::size_t> pieces = {};   // of `path`, for each move that the NC runs
+  const CuttingTable* cutting = nullptr;  // along `path`; nullptr: in air
+  CuttingWear wear = {};
+};
+
+/// How a case ended. A machine that stops is an outcome, not an exception.
+struct Outcome {
+  bool finished = true;
+  bool interrupted = false;  // from outside
+  std::string reason;        // "axis Y: following error beyond 10 mm"
+  char axis = '-';
+  double time = 0.0;  // s
+};
+
+/// Set from outside to end a run early; a case that sees it stops as "interrupted".
+using StopFlag = std::atomic<bool>;
+
+struct CaseResult {
+  Outcome outcome;
+  Series servo;       // one row a record period
+  Series last_ticks;  // when stopped: what happened in the last position periods
+  std::vector<strategies::Saturation> saturations;  // of the feedback
+  double simulated_time = 0.0;                      // s
+  double wall_time = 0.0;                           // s, of all that ran in lockstep
+};
+
+/// Whether two cases can run in lockstep: the same axes, moved at the same instants. Everything
+/// else may differ: program, feed, strategy, any number of the machine.
+bool share_lanes(const CaseInputs& a, const CaseInputs& b);
+
+/// Runs cases in lockstep, eight axes at a time. Each result is that of the case run alone, bit for
+/// bit.
+/// @param together  at least one; share_lanes holds for each with the first. An ideal machine runs
+///                  alone
+/// @param stop      looked at once a hyperperiod
+/// @param progress  set to the simulated share, 0 to 1, as often
+/// @param kept      drives prepared for other runs, and where those of these are kept
+std::vector<CaseResult> simulate(std::span<CaseInputs* const> together, const StopFlag& stop,
+                                 std::atomic<float>& progress,
+                                 plant::PreparedDrives* kept = nullptr);
+CaseResult simulate(CaseInputs& inputs, const StopFlag& stop, std::atomic<float>& progress);
+
+}  // namespace servomill::sim

@@ -1,0 +1,51 @@
+/// The quantities of tests with a ball in the spindle and sensors on the table, of one case, from
+/// its recorded path: R-test and ball bar (ISO 10791-6).
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/evaluation/case_samples.h"
+#include "sim/metrology/ball_test.h"
+
+namespace servomill::sim {
+
+struct BallSpec;
+struct QuantitySpec;
+
+/// Every identification is made once, however many quantities ask for its errors.
+class BallQuantities {
+ public:
+  /// @param samples  must outlive this
+  explicit BallQuantities(CaseSamples& samples) : samples_(samples) {}
+
+  /// What the sensor reads, in um.
+  /// @pre quantity_info(spec.name).is_of_ball with a statistic; the case has a recording
+  BallDeviation deviation(const QuantitySpec& spec);
+
+  /// Of location_error, in unit_of_location; or NaN and why the sections do not tell.
+  struct Location {
+    double value;
+    std::string why_not;
+  };
+  Location location(const QuantitySpec& spec);
+
+ private:
+  struct Identified {
+    LocationFit fit;
+    std::string why_not;
+  };
+
+  TipPath path_of(const std::vector<std::string>& sections);
+  Identified identify(const QuantitySpec& spec);
+
+  CaseSamples& samples_;
+  std::map<std::string, Identified> identified_;  // by sections and set-up
+};
+
+/// Unit of a location error of that name in comparisons.
+std::string_view unit_of_location(const plant::ErrorName& name);
+
+}  // namespace servomill::sim

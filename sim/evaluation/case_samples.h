@@ -1,0 +1,38 @@
+/// The samples of a case that quantities look at.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/evaluation/comparison.h"
+
+namespace servomill::sim {
+
+/// Finds the rows of sections, once for all quantities.
+class CaseSamples {
+ public:
+  /// @param data  must outlive this; has a recording if rows are asked for
+  explicit CaseSamples(const CaseData& data) : data_(data) {}
+
+  const CaseData& data() const { return data_; }
+
+  /// Rows of feed motion in these sections; none named: in all.
+  const std::vector<std::size_t>& rows(const std::vector<std::string>& sections);
+
+  /// A point in the workpiece at some rows, m; empty if it was not recorded.
+  /// @param name  "tool_position_true" or "tool_position_nominal"
+  std::vector<Eigen::Vector3d> positions(std::string_view name,
+                                         const std::vector<std::size_t>& rows) const;
+
+ private:
+  std::vector<std::size_t> find_rows(const std::vector<std::string>& sections) const;
+
+  const CaseData& data_;
+  std::map<std::vector<std::string>, std::vector<std::size_t>> rows_;
+};
+
+}  // namespace servomill::sim

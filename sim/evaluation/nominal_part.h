@@ -1,0 +1,37 @@
+/// The part as it should be: a mesh that a scenario names.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/config/reader.h"
+#include "sim/input/input_files.h"
+#include "sim/metrology/probing_plan.h"
+#include "sim/metrology/triangle_mesh.h"
+
+namespace servomill::sim {
+
+/// A probe lies on the part where its nominal points are no farther from the mesh: STL files of CAD
+/// systems keep chords of arcs well within that.
+constexpr double kOffThePart = 0.1e-3;  // m
+
+/// A body in coordinates of the program.
+struct NominalPart {
+  std::string file;   // as messages name it
+  std::string bytes;  // STL
+  std::shared_ptr<const TriangleMesh> mesh;
+};
+
+/// Keys of [part]: `stl`, a file, and, in a document that needs no other file, `stl_base64`, its
+/// bytes. Nothing without `stl`.
+/// @throws InputError if the file cannot be read or bounds no body
+std::shared_ptr<const NominalPart> read_nominal_part(Reader& part, InputFiles& files);
+
+/// A fault for every probe with nominal points that are off the part, or on its surface but not
+/// facing as it does.
+std::vector<Fault> faults_of_plan(std::span<const ProbeSpec> plan, const NominalPart& part);
+
+}  // namespace servomill::sim

@@ -1,0 +1,60 @@
+#include "sim/frequency/stability.h"
+
+#include <Eigen/Eigenvalues>
+#include <vector>
+
+#include "sim/engine/servo_axes.h"
+
+namespace servomill::sim {
+
+MachineSettings linearised(const MachineSettings& machine) {
+  MachineSettings linear = machine;
+  linear.integrator = Integrator::exact;  // of a linear drive it is
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    plant::FeedDriveParams& drive = linear.drives[j];
+    drive.F_load = 0.0;
+    drive.gap = 0.0;
+    drive.friction = {};
+    drive.cogging = {};
+    linear.scale[j] = linear.motor[j] = {};
+    linear.marks[j].reset();
+    linear.screw[j] = {};
+    linear.nc.cascade[j] = controllers::without_limits(linear.nc.cascade[j]);
+    AxisFunctions& functions = linear.nc.functions[j];
+    functions.current_loop.u_max = controllers::kNoLimit;
+    functions.friction = {};
+    functions.backlash = {};
+    functions.supervision = {};
+  }
+  return linear;
+}
+
+double spectral_radius(const MachineSettings& machine, int joint, Tick reading_delay) {
+  const MachineSettings linear = linearised(machine);
+  const std::vector<Instant> schedule =
+      make_schedule(loop_rates(machine.nc.periods, reading_delay));
+  ServoAxes axes(linear, {joint}, schedule);
+  int states = 0;
+  axes.each_state(joint, [&](double&) { ++states; });
+
+  // one column for each state that is 1 at the beginning
+  Eigen::MatrixXd monodromy(states, states);
+  for (int column = 0; column < states; ++column) {
+    axes.settle(Joints::Zero(), Joints::Zero());
+    axes.follow({});
+    int k = 0;
+    axes.each_state(joint, [&](double& x) { x = k++ == column ? 1.0 : 0.0; });
+    for (const Instant& instant : schedule) {
+      if (instant.due & kSample) axes.take_readings();
+      if (instant.due & kPositionLoop) axes.run_position_loops();
+      if (instant.due & kCurrentLoop) axes.run_current_loops();
+      if (instant.due & kVelocityLoop) axes.run_velocity_loops();
+      axes.advance(instant.step);
+    }
+    int row = 0;
+    axes.each_state(joint, [&](double& x) { monodromy(row++, column) = x; });
+  }
+  return monodromy.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,16 @@
+/// Values of a machine that no machine tool has: most are bare numbers that were meant in another
+/// unit, such as stiffness = 180 for 180 N/um.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/model/machine.h"
+
+namespace servomill::sim {
+
+/// "axis.X.stiffness = 180 N/m; ...", one for each value.
+std::vector<std::string> implausible_values(const MachineSettings& machine, int joint);
+std::vector<std::string> implausible_values(const MachineSettings& machine);
+
+}  // namespace servomill::sim

@@ -1,0 +1,61 @@
+#include "sim/input/input_files.h"
+
+#include <boost/crc.hpp>
+
+#include "sim/system/read_file.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr std::size_t kMostDocuments = 100;
+
+std::uint64_t crc64(const std::string& bytes) {
+  constexpr std::uint64_t kPolynomial = 0x42F0E1EBA9EA3693;
+  boost::crc_optimal<64, kPolynomial, ~std::uint64_t{0}, ~std::uint64_t{0}, true, true> crc;
+  crc.process_bytes(bytes.data(), bytes.size());
+  return crc.checksum();
+}
+
+}  // namespace
+
+InputFiles::InputFiles(std::size_t most_bytes)
+    : texts_(most_bytes, [](const std::string& text) { return text.size(); }),
+      documents_(kMostDocuments) {}
+
+std::shared_ptr<const std::string> InputFiles::text(const std::string& path, const Place& at,
+                                                    std::string_view what) {
+  MemoKey key;
+  key.add(path);
+  return texts_.get(key, [&] {
+    const bool is_document = what == "scenario" || what == "machine";
+    std::string text =
+        read_file(path, at, what, is_document ? kMostBytesOfDocument : kMostBytesOfFile);
+    const std::uint64_t now = crc64(text);
+    const std::scoped_lock lock(mutex_);
+    if (checksums_.emplace(path, now).first->second != now) {
+      throw InputError({path}, "has changed since it was read first");
+    }
+    return text;
+  });
+}
+
+std::uint64_t InputFiles::checksum(const std::string& path, const Place& at,
+                                   std::string_view what) {
+  text(path, at, what);
+  const std::scoped_lock lock(mutex_);
+  return checksums_.at(path);
+}
+
+std::shared_ptr<const Document> InputFiles::document(const std::string& path) {
+  return document(path, *text(path, {}, "scenario"));
+}
+
+std::shared_ptr<const Document> InputFiles::document(const std::string& path,
+                                                     const std::string& text) {
+  MemoKey key;
+  key.add(path);
+  key.add(text);
+  return documents_.get(key, [&] { return Document::from_text(text, path); });
+}
+
+}  // namespace servomill::sim

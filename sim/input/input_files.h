@@ -1,0 +1,50 @@
+/// The files that a scenario names.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/config/document.h"
+#include "sim/system/memo.h"
+
+namespace servomill::sim {
+
+/// Reads every file once and keeps it, however often it is asked for, so that what happens to a
+/// file during a sweep does not matter. Beyond some bytes those asked for least recently are
+/// forgotten; they are read again, and refused if they have changed. For any number of threads.
+class InputFiles {
+ public:
+  /// @param most_bytes  of texts that are kept beside the last one
+  explicit InputFiles(std::size_t most_bytes = 200'000'000);
+
+  /// @param at    where the file was named; without a file: the complaint stands in `path`
+  /// @param what  "program", "machine": for the message
+  /// @throws InputError if it cannot be read, or has changed since it was read before
+  std::shared_ptr<const std::string> text(const std::string& path, const Place& at,
+                                          std::string_view what);
+
+  /// A number that other contents of a file do not have: CRC-64 of ECMA-182, as xz takes it.
+  /// @throws InputError as text() does
+  std::uint64_t checksum(const std::string& path, const Place& at, std::string_view what);
+
+  /// A scenario.
+  /// @throws InputError if it cannot be read or is not TOML
+  std::shared_ptr<const Document> document(const std::string& path);
+
+  /// The document that the text of a file is.
+  /// @throws InputError if it is not TOML
+  std::shared_ptr<const Document> document(const std::string& path, const std::string& text);
+
+ private:
+  Memo<std::string> texts_;
+  Memo<Document> documents_;
+  std::mutex mutex_;
+  std::unordered_map<std::string, std::uint64_t> checksums_;  // by path, of all that was read
+};
+
+}  // namespace servomill::sim

@@ -1,0 +1,13 @@
+/// Reads the table [sweep] of a scenario.
+#pragma once
+
+#include "sim/config/reader.h"
+#include "sim/model/design.h"
+
+namespace servomill::sim {
+
+/// All that sim/model/design.h describes. Faults are noted in the reader; whether the scenario has
+/// the keys is for the sweep to find out.
+SweepDesign read_sweep(Reader& table);
+
+}  // namespace servomill::sim

@@ -1,0 +1,14 @@
+/// Reads the encoders of one axis, the reference marks of its scale and the error of its screw.
+#pragma once
+
+#include "sim/config/reader.h"
+#include "sim/model/machine.h"
+
+namespace servomill::sim {
+
+/// Tables `scale`, `motor`, `marks` and `screw` of an axis, or the keys scale_step and motor_step.
+/// @param noise_seed  of the machine; each encoder gets a stream of its own
+/// @pre machine.nc.lower and upper are read
+void read_encoders(Reader& axis, int joint, std::uint64_t noise_seed, MachineSettings& machine);
+
+}  // namespace servomill::sim

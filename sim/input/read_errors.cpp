@@ -1,0 +1,248 @@
+#include "sim/input/read_errors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "plant/vocabulary/units.h"
+#include "sim/input/read_machine.h"
+
+namespace servomill::sim {
+namespace {
+
+using plant::ErrorFunction;
+using plant::ErrorName;
+
+constexpr std::string_view kDiffersFrom = "differs_from";
+constexpr double kLargestShift = 0.1;  // m, of a location error
+constexpr double kLargestAngle = 0.1;  // rad
+
+// Units of one error: of its value (um or urad) and of its axis' coordinate (mm or deg).
+struct Units {
+  bool value_is_length, travel_is_length;
+  std::string value(std::string_view what) const {
+    return fmt::format("{}_{}", what, value_is_length ? "um" : "urad");
+  }
+  std::string travel(std::string_view what) const {
+    return fmt::format("{}_{}", what, travel_is_length ? "mm" : "deg");
+  }
+  Quantity value_quantity() const { return value_is_length ? kLength : kAngle; }
+  Quantity travel_quantity() const { return travel_is_length ? kLength : kAngle; }
+};
+
+Units units_of(const ErrorName& name) { return {is_linear(name.direction), is_linear(name.axis)}; }
+
+ErrorFunction read_harmonic(Reader& table, const Units& units) {
+  const double amplitude = table.real(units.value("amplitude"), units.value_quantity());
+  const double period = table.real(units.travel("period"), units.travel_quantity(), {above(0.0)});
+  const double phase = table.real_or("phase_deg", 0.0, kAngle);
+  return period > 0.0 ? plant::harmonic(amplitude, period, phase) : ErrorFunction{};
+}
+
+ErrorFunction read_table(Reader& table, const Units& units) {
+  auto at = table.reals(units.travel("at"), units.travel_quantity());
+  auto values = table.reals(units.value("value"), units.value_quantity());
+  const auto in_unit = [](std::vector<double> all, double unit) {
+    for (double& x : all) x /= unit;
+    return all;
+  };
+  // asked in the units of the keys, so that it shows the numbers that the user wrote
+  const double travel = units.travel_is_length ? mm : deg;
+  if (const auto fault = plant::table_fault(in_unit(at, travel), in_unit(values, um))) {
+    table.fault(*fault);
+    return {};
+  }
+  return plant::linear_table(std::move(at), std::move(values));
+}
+
+// c_n in value unit per travel unit^n; SI inside.
+std::vector<double> read_coefficients(Reader& table, const std::string& key, const Units& units) {
+  auto coefficients = table.reals(key, units.value_quantity());
+  const double travel = units.travel_is_length ? mm : deg;
+  double scale = 1.0;
+  for (double& c : coefficients) {
+    c *= scale;
+    scale /= travel;
+  }
+  return coefficients;
+}
+
+ErrorFunction read_reversal(Reader& table, const Units& units) {
+  const std::string constant = units.value("width"), curve = units.value("width_polynomial");
+  std::vector<double> width = {0.0};
+  if (table.has(curve)) width = read_coefficients(table, curve, units);
+  if (table.has(constant) || !table.has(curve)) {
+    width.resize(std::max<std::size_t>(width.size(), 1));
+    width.front() += table.real(constant, units.value_quantity());
+  }
+  const double distance =
+      table.real(units.travel("distance"), units.travel_quantity(), {above(0.0)});
+  return distance > 0.0 ? plant::reversal(std::move(width), distance) : ErrorFunction{};
+}
+
+ErrorFunction read_function(Reader& table, const Units& units) {
+  ErrorFunction sum;
+  if (table.has(units.value("constant"))) {
+    sum = sum + plant::constant(table.real(units.value("constant"), units.value_quantity()));
+  }
+  if (const std::string key = units.value("polynomial"); table.has(key)) {
+    sum = sum + plant::polynomial(read_coefficients(table, key, units));
+  }
+  if (units.value_is_length && units.travel_is_length && table.has("um_per_m")) {
+    sum = sum + plant::polynomial({0.0, table.real("um_per_m", kNumber) * um});
+  }
+  if (table.has("harmonic")) {
+    if (table.is("harmonic", Value::Type::list)) {
+      for (Reader& one : table.tables("harmonic")) sum = sum + read_harmonic(one, units);
+    } else {
+      Reader one = table.table("harmonic");
+      sum = sum + read_harmonic(one, units);
+    }
+  }
+  if (table.has("table")) {
+    Reader points = table.table("table");
+    sum = sum + read_table(points, units);
+  }
+  return sum;
+}
+
+// Squareness as it is measured: "0.2 mm/m", "50 um/m".
+bool is_slope(Reader& model, std::string_view key) {
+  if (!model.is(key, Value::Type::text)) return false;
+  const ScaledText slope = scale_text(model.text(key), kNumber);
+  return slope.complaint.empty();
+}
+
+// A bare number is in m or rad: one that was meant in um or um/m would pass for kilometres.
+double read_bare_location(Reader& model, std::string_view key, const Units& units) {
+  double value = 0.0;
+  if (!units.value_is_length && is_slope(model, key)) {
+    value = scale_text(model.text(key), kNumber).si;
+  } else {
+    value = model.real(key, units.value_quantity());
+  }
+  if (std::abs(value) <= (units.value_is_length ? kLargestShift : kLargestAngle)) return value;
+  model.fault(key,
+              units.value_is_length
+                  ? "is beyond 0.1 m, more than any machine has; a number without a unit is in "
+                    "m: write \"8 um\" or { constant_um = 8.0 }"
+                  : "is beyond 0.1 rad, more than any machine has; a number without a unit is "
+                    "in rad: write \"50 urad\" or { um_per_m = 50.0 }");
+  return 0.0;
+}
+
+// A location error: a number with its unit in a text, or a table with one key.
+double read_location(Reader& model, std::string_view key, const ErrorName& name) {
+  const Units units = units_of(name);
+  if (!model.is(key, Value::Type::table)) return read_bare_location(model, key, units);
+  Reader table = model.table(key);
+  if (!units.value_is_length && table.has("um_per_m"))
+    return table.real("um_per_m", kNumber) * urad;
+  return table.real(units.value("constant"), units.value_quantity());
+}
+
+// Name of the model that this one differs from; empty: from none.
+std::string read_base(Reader& model, const std::string& name, Reader& models) {
+  if (!model.has(kDiffersFrom)) return "";
+  const std::string base = model.text(kDiffersFrom);
+  if (!model.is(kDiffersFrom, Value::Type::text)) return "";
+  const std::vector<std::string> names = models.keys();
+  if (base == name || std::find(names.begin(), names.end(), base) == names.end()) {
+    const std::vector<std::string_view> others(names.begin(), names.end());
+    model.fault(kDiffersFrom, "must be the name of another error model" +
+                                  (base == name ? "" : did_you_mean(base, others)));
+    return "";
+  }
+  if (models.table(base).has(kDiffersFrom)) {
+    model.fault(kDiffersFrom, "must name a model that differs from no other itself");
+    return "";
+  }
+  return base;
+}
+
+}  // namespace
+
+plant::ErrorFunction read_length_function(Reader& table) {
+  return read_function(table, {true, true});
+}
+
+plant::ErrorModel read_errors(Reader& model, const JointLayout& layout) {
+  plant::ErrorModel errors;
+  std::map<std::string, std::string> aliases;
+  std::set<std::string> known;
+  for (const std::string& key : model.keys()) {
+    if (key == kDiffersFrom) continue;
+    std::optional<ErrorName> name;
+    try {
+      name = plant::parse_error_name(key, layout, {});
+    } catch (const InputError& error) {
+      model.raw(key);
+      model.fault(key, error.faults().front().message);
+      continue;
+    }
+    known.insert(key);
+    if (name->is_location) {
+      errors.location(*name) = read_location(model, key, *name);
+    } else if (model.is(key, Value::Type::text)) {
+      aliases[key] = model.text(key);
+    } else {
+      Reader table = model.table(key);
+      const Units units = units_of(*name);
+      errors.component(*name) = read_function(table, units);
+      if (table.has("reversal")) {
+        Reader reversal = table.table("reversal");
+        errors.component(*name) = errors.component(*name) + read_reversal(reversal, units);
+      }
+    }
+  }
+  for (const auto& [key, other] : aliases) {
+    const auto target = plant::error_name_of(other);
+    if (!target || !known.contains(other) || aliases.contains(other) || target->is_location) {
+      model.fault(key, "must be the name of an error of this model that has a function of its own");
+      continue;
+    }
+    const auto name = *plant::error_name_of(key);
+    if (units_of(name).value_is_length != units_of(*target).value_is_length ||
+        units_of(name).travel_is_length != units_of(*target).travel_is_length) {
+      model.fault(key, "must name an error of the same unit over an axis of the same kind");
+      continue;
+    }
+    errors.component(name) = errors.component(*target);
+  }
+  return errors;
+}
+
+std::map<std::string, plant::ErrorModel> read_error_models(Reader& models,
+                                                           const JointLayout& layout) {
+  std::map<std::string, plant::ErrorModel> out;
+  std::map<std::string, std::string> base_of;
+  for (const std::string& name : models.keys()) {
+    Reader model = models.table(name);
+    base_of[name] = read_base(model, name, models);
+    out[name] = read_errors(model, layout);
+  }
+  for (const auto& [name, base] : base_of) {
+    if (!base.empty()) out[name] = out[base] + out[name];
+  }
+  return out;
+}
+
+std::map<std::string, plant::ErrorModel> read_error_file(const std::string& path,
+                                                         const JointLayout& layout) {
+  const Document document = Document::from_file(path);
+  if (document.root().find("structure") != nullptr) {  // a machine file, with its own errors
+    MachineDescription described = read_machine_description(path);
+    if (described.machine.chain.layout == layout) return std::move(described.errors);
+    throw InputError({path}, "holds the errors of a machine with other axes");
+  }
+  Reader root(document);
+  Reader models = root.table("errors");
+  auto out = read_error_models(models, layout);
+  root.finish();
+  return out;
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,369 @@
+#include "sim/input/read_machine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "plant/drives/exact_step.h"
+#include "plant/kinematics/structure.h"
+#include "plant/vocabulary/units.h"
+#include "sim/input/read_drive.h"
+#include "sim/input/read_encoder.h"
+#include "sim/input/read_errors.h"
+#include "sim/input/read_servo.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr std::array<std::string_view, 2> kPresets = {"CC422", "CC424"};
+constexpr std::array<std::string_view, 3> kFilters = {"none", "mean", "triangle"};
+constexpr std::array<std::string_view, 2> kIntegrators = {"exact", "cvode"};
+constexpr std::array<std::string_view, 2> kSenses = {"tool", "table"};
+
+struct Preset {
+  double position, velocity, current;  // s
+};
+// CC 424: Service Manual iTNC 530 (2010), p. 648, and estimates for what it does not give
+constexpr std::array<Preset, 2> kPresetPeriods = {
+    {{1.8e-3, 0.6e-3, 0.1e-3}, {0.2e-3, 0.2e-3, 0.1e-3}}};
+
+constexpr std::string_view kRetractKey = "retract_mm";
+
+constexpr double kLeastBase = 0.1 * us;  // more ticks than that no run can count
+constexpr double kLongestPeriod = 1.0;   // s
+constexpr double kFinestSolver = 1e-14;  // m; what rounding leaves of a position of 1 m is 1e-16
+constexpr double kCoarsestSolver = 1 * um;
+
+Tick period(Reader& nc, std::string_view key, double fallback, double base) {
+  const std::size_t before = nc.faults();
+  const double seconds = nc.real_or(key, fallback, kTime, {above(0.0), at_most(kLongestPeriod)});
+  if (nc.faults() > before) return 1;
+  const auto ticks = whole_ticks(seconds, base);
+  if (ticks && *ticks > 0) return *ticks;
+  if (nc.has(key)) {
+    nc.fault(key, fmt::format("must be a whole multiple of base_period_us = {:g}", base / us));
+  } else {
+    nc.fault("base_period_us",
+             fmt::format("must divide the preset's {} of {:g} us", key, seconds / us));
+  }
+  return 1;
+}
+
+LoopPeriods read_periods(Reader& nc) {
+  LoopPeriods periods;
+  const std::size_t before = nc.faults();
+  periods.base = nc.real_or("base_period_us", 10 * us, kTime, {at_least(kLeastBase)});
+  const Preset& preset = kPresetPeriods[nc.choice_or("preset", 1, kPresets)];
+  if (nc.faults() > before) return {};
+  periods.position = period(nc, "position_period_us", preset.position, periods.base);
+  periods.velocity = period(nc, "velocity_period_us", preset.velocity, periods.base);
+  periods.current = period(nc, "current_period_us", preset.current, periods.base);
+  if (!can_be_scheduled({periods.position, periods.velocity, periods.current})) {
+    nc.fault(
+        "the periods of position, velocity and current loop meet too seldom; let them be "
+        "multiples of one another");
+    return {};
+  }
+  return periods;
+}
+
+NominalFilter read_filter(Reader& nc, const LoopPeriods& periods) {
+  NominalFilter filter;
+  const std::size_t kind = nc.choice_or("nominal_filter", 0, kFilters);
+  const double length = nc.real_or("nominal_filter_ms", 0.0, kTime, {at_least(0.0), at_most(10.0)});
+  if (kind == 0) return filter;
+  filter.triangle = kind == 2;
+  filter.length = static_cast<Tick>(std::lround(length / periods.seconds(periods.position)));
+  if (filter.length < 1) nc.fault("nominal_filter", "needs nominal_filter_ms of a position period");
+  if (filter.triangle && filter.length % 2 != 0) {
+    nc.fault("nominal_filter_ms", "must be an even number of position periods for the triangle");
+  }
+  return filter;
+}
+
+// SI; far from any machine, and near enough that a path can be planned with them.
+constexpr double kLeastLimit = 1e-6, kMostLimit = 1e7;
+
+void read_dynamic_limits(Reader& axis, bool linear, int j, NcSettings& nc) {
+  const AxisQuantities& q = quantities_of(linear);
+  nc.v_max[j] = axis.real("v_max", q.velocity, {at_least(kLeastLimit), at_most(kMostLimit)});
+  nc.a_max[j] = axis.real("a_max", q.acceleration, {at_least(kLeastLimit), at_most(kMostLimit)});
+  nc.j_max[j] = axis.real("j_max", q.jerk, {at_least(kLeastLimit), at_most(kMostLimit)});
+}
+
+void read_travel(Reader& axis, bool linear, int j, NcSettings& nc) {
+  const AxisQuantities& q = quantities_of(linear);
+  const std::string_view key = linear ? "travel_mm" : "travel_deg";
+  nc.lower[j] = -std::numeric_limits<double>::infinity();
+  nc.upper[j] = std::numeric_limits<double>::infinity();
+  if (!axis.has(key)) return;  // endless
+  const std::size_t before = axis.faults();
+  const auto travel = axis.reals(key, q.position);
+  if (axis.faults() > before) return;
+  if (travel.size() != 2 || !(travel[0] < travel[1])) {
+    axis.fault(key, "must be [lower, upper] with lower < upper");
+    return;
+  }
+  nc.lower[j] = travel[0];
+  nc.upper[j] = travel[1];
+}
+
+// Lengths of which the square is a number.
+constexpr double kLeastDirection = 1e-100, kMostDirection = 1e100;
+
+// What the machine says for all of its axes.
+struct Common {
+  CommonServo servo;
+  Place Kv_place;
+  plant::FrictionKind friction_model = plant::FrictionKind::none;
+  std::uint64_t noise_seed = 0;
+};
+
+Place winding_place(Reader& axis) {
+  return axis.has("winding") ? axis.table("winding").place("bandwidth") : Place{};
+}
+
+// An axis begins at rest, with the current that its load needs.
+void refuse_unbearable_load(Reader& axis, const plant::FeedDriveParams& drive,
+                            const controllers::CascadeParams& cascade, bool linear) {
+  const double most = std::min(cascade.i_max * drive.Kt, cascade.tau_max) / drive.r;
+  if (!(std::abs(drive.F_load) > most)) return;
+  axis.fault("constant_load", fmt::format("must be <= {:g} {}, which the current limit can hold",
+                                          most, linear ? "N" : "Nm"));
+}
+
+void read_direction(Reader& axis, plant::ChainAxis& chain_axis) {
+  if (!axis.has("direction")) return;
+  const std::size_t before = axis.faults();
+  const auto direction = axis.reals("direction", kNumber);
+  if (axis.faults() > before) return;
+  if (is_linear(chain_axis.axis)) {
+    axis.fault("direction", "must not be given: only rotary axes can be inclined");
+    return;
+  }
+  const Eigen::Vector3d d =
+      direction.size() == 3 ? Eigen::Vector3d(direction.data()) : Eigen::Vector3d::Zero();
+  if (d.norm() >= kLeastDirection && d.norm() <= kMostDirection) {
+    plant::incline(chain_axis, d);
+  } else {
+    axis.fault("direction", "must be [x, y, z], not all 0; any length means the same");
+  }
+}
+
+// Where the axis lies.
+void read_axis_geometry(Reader& axis, int j, MachineSettings& machine) {
+  const auto lane = static_cast<std::size_t>(j);
+  const bool linear = j < kLinearJoints;
+  if (axis.has(kRetractKey)) axis.real(kRetractKey, kLength);  // of programs, not of a simulation
+  auto& chain_axis = machine.chain.at(*machine.chain.layout.axis[lane]);
+  if (!linear) {
+    chain_axis.sense = static_cast<plant::Sense>(axis.choice_or("sense", 0, kSenses));
+  }
+  read_direction(axis, chain_axis);
+  if (axis.has("centre_mm")) {
+    const std::size_t before = axis.faults();
+    const auto centre = axis.reals("centre_mm", kLength);
+    if (axis.faults() > before) return;
+    if (centre.size() == 3) {
+      chain_axis.centre << centre[0], centre[1], centre[2];
+    } else {
+      axis.fault("centre_mm", "must be [x, y, z]");
+    }
+  }
+}
+
+void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machine) {
+  const auto lane = static_cast<std::size_t>(j);
+  const bool linear = j < kLinearJoints;
+  const std::size_t before_drive = axis.faults();
+  machine.drives[lane] = read_drive(axis, linear, common.friction_model);
+  const bool in_sub_steps =
+      machine.integrator == Integrator::exact && !machine.drives[lane].is_linear();
+  if (axis.faults() == before_drive && in_sub_steps) {
+    const double base = machine.nc.periods.base;
+    for (const std::string& why : plant::unrepresentable(machine.drives[lane], base)) {
+      axis.fault(why + "; make it softer, shorten base_period_us or use integrator = \"cvode\"");
+    }
+  }
+  if (linear && axis.has("structural_stiffness")) {
+    const double stiffness = axis.real("structural_stiffness", kStiffness, {above(0.0)});
+    if (stiffness > 0.0) machine.structural_compliance[j] = 1.0 / stiffness;
+  }
+  read_servo(axis, common.servo, j, machine);
+  machine.nc.gain_place[lane] = {axis.has("Kv") ? axis.place("Kv") : common.Kv_place,
+                                 axis.place("velocity_bandwidth"), winding_place(axis)};
+  refuse_unbearable_load(axis, machine.drives[lane], machine.nc.cascade[lane], linear);
+  read_dynamic_limits(axis, linear, j, machine.nc);
+  read_travel(axis, linear, j, machine.nc);
+  read_axis_geometry(axis, j, machine);
+  read_encoders(axis, j, common.noise_seed, machine);  // marks lie within the travel
+}
+
+plant::MachineChain read_chain(Reader& machine) {
+  const std::size_t before = machine.faults();
+  const std::string text = machine.text("structure");
+  if (machine.faults() > before) return {};
+  try {
+    return plant::make_chain(plant::parse_structure(text, machine.place("structure")));
+  } catch (const InputError& error) {
+    for (const Fault& fault : error.faults()) machine.fault("structure", fault.message);
+    return {};
+  }
+}
+
+}  // namespace
+
+const AxisQuantities& quantities_of(bool linear) {
+  static constexpr AxisQuantities kLinear = {kLength, kVelocity, kAcceleration, kJerk,
+                                             kForce,  kMass,     kStiffness,    kDamping};
+  static constexpr AxisQuantities kRotary = {
+      kAngle,  kAngularVelocity, kAngularAcceleration, kAngularJerk,
+      kTorque, kInertia,         kTorsionalStiffness,  kTorsionalDamping};
+  return linear ? kLinear : kRotary;
+}
+
+AxisWords read_words(Reader& table, const JointLayout& layout) {
+  AxisWords words = AxisWords::Zero();
+  for (const Axis axis : kAllAxes) {
+    if (!layout.joint_of(axis)) continue;
+    const bool linear = is_linear(axis);
+    const std::string key = fmt::format("{}_{}", letter(axis), linear ? "mm" : "deg");
+    words[index_of(axis)] = table.real_or(key, 0.0, linear ? kLength : kAngle);
+  }
+  return words;
+}
+
+namespace {
+
+using ErrorModels = std::map<std::string, plant::ErrorModel>;
+
+void read_models(Reader& machine, const JointLayout& layout, ErrorModels* errors) {
+  if (!machine.has("errors")) return;
+  Reader models = machine.table("errors");
+  auto read = read_error_models(models, layout);
+  if (errors != nullptr) *errors = std::move(read);
+}
+
+// Keys that every drive needs: a file with one of them is that of a machine to simulate.
+bool describes_drives(const Document& machine) {
+  constexpr std::array<std::string_view, 4> kNeeded = {"Kt", "load", "motor_inertia", "i_max_A"};
+  const Value* axes = machine.root().find("axis");
+  if (axes == nullptr) return false;
+  return std::any_of(axes->children.begin(), axes->children.end(), [&](const Value& axis) {
+    return std::any_of(kNeeded.begin(), kNeeded.end(),
+                       [&](std::string_view key) { return axis.find(key) != nullptr; });
+  });
+}
+
+// A machine file without drives: structure, travel, limits, errors.
+MachineSettings read_geometry(Reader& table, ErrorModels* errors) {
+  MachineSettings machine;
+  machine.name = table.text_or("name", "unnamed machine");
+  table.text_or("source", "");
+  machine.chain = read_chain(table);
+  if (table.has("nc")) table.raw("nc");
+  if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
+    table.raw("axis");
+    table.raw("errors");
+    return machine;
+  }
+  machine.nc.lower.setConstant(-std::numeric_limits<double>::infinity());
+  machine.nc.upper.setConstant(std::numeric_limits<double>::infinity());
+  Reader axes = table.table_or_empty("axis");
+  for (int j = 0; j < kJoints; ++j) {
+    const std::string name(1,
+                           machine.chain.layout.has(j) ? machine.chain.layout.letter_of(j) : ' ');
+    if (!axes.has(name)) continue;
+    Reader axis = axes.table(name);
+    const std::array<std::string_view, 3> limits = {"v_max", "a_max", "j_max"};
+    const AxisQuantities& q = quantities_of(j < kLinearJoints);
+    const std::array<Quantity, 3> of = {q.velocity, q.acceleration, q.jerk};
+    Joints* const into[] = {&machine.nc.v_max, &machine.nc.a_max, &machine.nc.j_max};
+    for (std::size_t k = 0; k < limits.size(); ++k) {
+      if (!axis.has(limits[k])) continue;
+      (*into[k])[j] = axis.real(limits[k], of[k], {at_least(kLeastLimit), at_most(kMostLimit)});
+    }
+    read_travel(axis, j < kLinearJoints, j, machine.nc);
+    read_axis_geometry(axis, j, machine);
+  }
+  read_models(table, machine.chain.layout, errors);
+  return machine;
+}
+
+}  // namespace
+
+MachineDescription read_machine_description(const std::string& path,
+                                            const std::vector<std::string>& changes) {
+  Document document = Document::from_file(path);
+  for (const std::string& change : changes) document.set(change);
+  Reader root(document);
+  MachineDescription out;
+  out.has_drives = describes_drives(document);
+  out.machine = out.has_drives ? read_machine(root, &out.errors) : read_geometry(root, &out.errors);
+  const bool has_axes = out.machine.chain.layout != JointLayout{};  // not with a faulty structure
+  if (has_axes && root.has("axis") && root.table("axis").has("Z")) {
+    Reader Z = root.table("axis").table("Z");
+    if (Z.has(kRetractKey)) out.retract_Z = Z.real(kRetractKey, kLength);
+  }
+  root.finish();
+  return out;
+}
+
+MachineSettings read_machine(Reader& table, ErrorModels* errors) {
+  MachineSettings machine;
+  machine.name = table.text_or("name", "unnamed machine");
+  table.text_or("source", "");
+  machine.chain = read_chain(table);
+  Reader nc = table.table("nc");
+  machine.nc.periods = read_periods(nc);
+  machine.nc.filter = read_filter(nc, machine.nc.periods);
+  machine.nc.path_tolerance = nc.real_or("path_tolerance_um", 10 * um, kLength, {above(0.0)});
+  machine.nc.rotary_tolerance =
+      nc.real_or("rotary_tolerance_urad", 100 * urad, kAngle, {above(0.0)});
+  machine.nc.block_time =
+      nc.real_or("block_time_ms", 0.0, kTime, {at_least(0.0), at_most(kLongestPeriod)});
+  machine.nc.check_stability = nc.boolean_or("check_stability", true);
+  const double delay =
+      nc.real_or("scale_delay_us", 0.0, kTime, {at_least(0.0), at_most(kLongestPeriod)});
+  const double base = machine.nc.periods.base;
+  const auto delay_ticks = whole_ticks(delay, base);
+  if (!delay_ticks) {
+    nc.fault("scale_delay_us",
+             fmt::format("must be a whole multiple of base_period_us = {:g}", base / us));
+  }
+  machine.scale_delay = delay_ticks.value_or(0);
+
+  machine.integrator = static_cast<Integrator>(table.choice_or("integrator", 0, kIntegrators));
+  const double solver_tolerance =
+      table.real_or("solver_tolerance_nm", plant::kSolverTolerance, kLength,
+                    {at_least(kFinestSolver), at_most(kCoarsestSolver)});
+  Common common;
+  common.servo = read_common_servo(nc);
+  common.Kv_place = nc.place("Kv");
+  common.friction_model =
+      static_cast<plant::FrictionKind>(table.choice_or("friction_model", 0, friction_models()));
+  common.noise_seed =
+      static_cast<std::uint64_t>(table.integer_or("noise_seed", 0, {at_least(0.0)}));
+
+  if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
+    table.raw("axis");
+    table.raw("errors");
+    return machine;
+  }
+  Reader axes = table.table("axis");
+  for (int j = 0; j < kJoints; ++j) {
+    if (!machine.chain.layout.has(j)) continue;
+    Reader axis = axes.table(std::string(1, machine.chain.layout.letter_of(j)));
+    read_axis(axis, common, j, machine);
+    machine.drives[static_cast<std::size_t>(j)].solver_tolerance = solver_tolerance;
+  }
+  read_models(table, machine.chain.layout, errors);
+  return machine;
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,23 @@
+/// Reads the servo loops of the axes of a machine, as its NC has them.
+#pragma once
+
+#include "sim/config/reader.h"
+#include "sim/model/machine.h"
+
+namespace servomill::sim {
+
+/// What all axes have in common unless they say otherwise: keys of the table `nc`.
+struct CommonServo {
+  controllers::CascadeParams cascade;
+  controllers::PositionFeedback feedback = controllers::PositionFeedback::scale;
+  double crossover = 0.0;                 // Hz; 0: not given
+  double following_error_linear = 10e-3;  // m
+  double following_error_rotary = 0.0;    // rad
+};
+CommonServo read_common_servo(Reader& nc);
+
+/// Cascade and functions of one axis, from its table.
+/// @pre machine.drives and machine.nc.periods are read
+void read_servo(Reader& axis, const CommonServo& common, int joint, MachineSettings& machine);
+
+}  // namespace servomill::sim

@@ -1,0 +1,99 @@
+/// The points of a sweep: what the table [sweep] of a scenario describes, as a sequence of which
+/// every point is computed from its number alone.
+///
+/// ```toml
+/// [sweep]                                                # a grid: each value with each other
+/// "program.feed_override" = [0.5, 1.0]                   # a list
+/// "machine.nc.Kv" = { log = ["40 1/s", "160 1/s"], count = 5 }       # a range; or linear
+/// samples = { design = "sobol", count = 256, seed = 1 }  # random, latin_hypercube or sobol
+/// "errors.belief.EYX.harmonic.amplitude_um" = { normal = [150.0, 3.0] }    # mean, deviation
+/// "case.table.strategy.response_time_ms" = { uniform = [30.0, 50.0] }      # or log_uniform
+/// "case.table.strategy.entry" = { one_of = ["position_command", "feed_forward"] }
+///
+/// [[sweep.together]]                                     # lists that go together, one value each
+/// "machine.axis.X.v_max" = ["20 m/min", "40 m/min"]
+/// "machine.axis.Y.v_max" = ["10 m/min", "20 m/min"]
+/// ```
+/// Every point of the grid is run with every sample, the same ones for all: 2 x 5 x 2 x 256 points.
+/// The samples vary fastest, then the last dimension of the grid. Keys may be written as --set
+/// takes them or as TOML nests them; a case, a strategy, a tool is called by its name.
+/// (This example is also a test: Design.ReadsTheExampleOfItsHeader.)
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/model/sampling.h"
+
+namespace servomill::sim {
+
+/// Most points that a sweep may have: far more than a mistake, fewer than a table can hold.
+inline constexpr std::uint64_t kMostPoints = 10'000'000;
+
+/// A number with its unit as TOML has it: 60.0 or "60 1/s".
+struct WrittenNumber {
+  double value = 0.0;
+  std::string unit;  // empty: a plain number
+  bool operator==(const WrittenNumber&) const = default;
+};
+
+/// What a TOML scalar says if it is a number or a text of a number and a known unit.
+std::optional<WrittenNumber> written_number(const std::string& toml);
+
+/// The number that a TOML value is, in the unit it is written in ("60 1/s" is 60); NaN if none.
+double number_of(const std::string& toml);
+
+/// `count` values from first to last, equally far apart or in equal ratios.
+struct SweepRange {
+  double first = 0.0, last = 0.0;
+  std::uint64_t count = 0;
+  bool log = false;
+  std::string unit;
+};
+
+using ValueTexts = std::vector<std::string>;  // TOML
+
+/// How a sampled number lies: between a and b, or about the mean a with the standard deviation b.
+struct NumberDistribution {
+  enum class Kind : std::uint8_t { uniform, log_uniform, normal };
+  Kind kind = Kind::uniform;
+  double a = 0.0, b = 0.0;
+  std::string unit;
+};
+
+/// One key that a sweep varies.
+struct SweepKey {
+  std::string key;  // dotted, as --set takes it
+  Place place = {};
+  std::variant<ValueTexts, SweepRange, NumberDistribution> values;
+  bool sampled = false;       // else on the grid
+  std::size_t dimension = 0;  // of the grid or of the samples; keys of one dimension go together
+};
+
+/// What the values of one key have in common: numbers of one unit, or one of some texts.
+struct SweepColumn {
+  bool numeric = true;
+  std::string unit;
+  ValueTexts texts;  // if not numeric: all values there are, in the order of the scenario
+};
+
+struct SweepDesign {
+  std::vector<SweepKey> keys;          // in the order of the scenario
+  std::vector<std::uint64_t> grid;     // lengths of the dimensions, the last varies fastest
+  std::size_t sampled_dimensions = 0;  // of the samples
+  SampleSettings samples;
+
+  bool empty() const { return keys.empty(); }
+  /// Number of points. @pre there are not more than kMostPoints
+  std::uint64_t size() const;
+  /// A value (TOML) for each key at a point. Uses nothing but its arguments.
+  /// @pre index < size()
+  std::vector<std::string> point(std::uint64_t index) const;
+  SweepColumn column(std::size_t key) const;
+};
+
+}  // namespace servomill::sim

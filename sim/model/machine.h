@@ -1,0 +1,117 @@
+/// Everything a scenario says about a machine: plant, NC, encoders. SI, complete, checked.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "controllers/servo/backlash_compensation.h"
+#include "controllers/servo/cascade.h"
+#include "controllers/servo/current_loop.h"
+#include "controllers/servo/friction_compensation.h"
+#include "controllers/servo/position_feedback.h"
+#include "controllers/servo/supervision.h"
+#include "plant/drives/feed_drive.h"
+#include "plant/drives/screw_error.h"
+#include "plant/kinematics/chain.h"
+#include "plant/sensing/encoder.h"
+#include "plant/sensing/reference_marks.h"
+#include "plant/vocabulary/axes.h"
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/ticks.h"
+
+namespace servomill::sim {
+
+/// Periods of the loops in base ticks; every one is a whole multiple of the base period.
+struct LoopPeriods {
+  double base = 10e-6;  // s
+  Tick position = 20;
+  Tick velocity = 20;
+  Tick current = 10;
+  double seconds(Tick ticks) const { return static_cast<double>(ticks) * base; }
+  bool operator==(const LoopPeriods&) const = default;
+};
+
+/// Whether all these periods (ticks) fit into one static schedule: sim/model/schedule.h bounds its
+/// length.
+bool can_be_scheduled(const std::vector<Tick>& periods);
+
+/// Nominal-position filter of the NC: length in position periods; 0: none.
+struct NominalFilter {
+  bool triangle = false;
+  Tick length = 0;
+};
+
+/// What the NC does for one axis beside its cascade.
+struct AxisFunctions {
+  controllers::CurrentLoopParams current_loop;  // of a drive with a winding
+  controllers::PositionFeedbackParams position_feedback;
+  controllers::FrictionCompensationParams friction;
+  controllers::BacklashCompensationParams backlash;
+  controllers::SupervisionParams supervision;
+};
+
+/// Where the gains of an axis were written, for messages.
+struct GainPlaces {
+  Place Kv, velocity_bandwidth, winding_bandwidth;
+};
+
+struct NcSettings {
+  LoopPeriods periods;
+  std::array<controllers::CascadeParams, kJoints> cascade;
+  std::array<AxisFunctions, kJoints> functions;
+  Joints v_max = Joints::Zero(), a_max = Joints::Zero(), j_max = Joints::Zero();  // SI per joint
+  Joints rapid = Joints::Zero();                                                  // m/s, rad/s
+  Joints lower = Joints::Zero(), upper = Joints::Zero();                          // m, rad; travel
+  double path_tolerance = 10e-6;   // m, for G64 without P
+  double rotary_tolerance = 1e-4;  // rad
+  double block_time = 0.0;         // s, least time of a block; 0: none
+  double tolerance_share = 1.0;    // factor on tolerances of the program (G64 P)
+  NominalFilter filter;
+  std::array<GainPlaces, kJoints> gain_place;
+  bool check_stability = true;  // refuse gains with which the linear loop diverges
+};
+
+/// What moves the drives between two instants.
+enum class Integrator : std::uint8_t {
+  exact,  // plant/drives/drive_bank.h
+  cvode,  // plant/drives/cvode_bank.h: SUNDIALS at tight tolerance, the reference
+};
+
+/// Reference marks of a scale that the NC watches.
+struct MarkSettings {
+  plant::MarkParams params;
+  int allowed = 0;  // signal periods by which a count may be wrong
+};
+
+struct MachineSettings {
+  std::string name;
+  plant::MachineChain chain;
+  std::array<plant::FeedDriveParams, kJoints> drives;
+  Integrator integrator = Integrator::exact;
+  std::array<plant::Encoder, kJoints> scale;  // position encoder of the slide or table
+  std::array<plant::Encoder, kJoints> motor;  // rad
+  std::array<std::optional<MarkSettings>, kJoints> marks;
+  std::array<plant::ScrewError, kJoints> screw;
+  // m/N, of what lies between the scales of linear axes and the tip: 0: rigid
+  Eigen::Vector3d structural_compliance = Eigen::Vector3d::Zero();
+  Tick scale_delay = 0;
+  NcSettings nc;
+
+  std::array<bool, kJoints> present() const {
+    std::array<bool, kJoints> out{};
+    for (int j = 0; j < kJoints; ++j) out[static_cast<std::size_t>(j)] = chain.layout.has(j);
+    return out;
+  }
+  /// Joints that the machine has.
+  std::vector<int> joints() const {
+    std::vector<int> out;
+    for (int j = 0; j < kJoints; ++j) {
+      if (chain.layout.has(j)) out.push_back(j);
+    }
+    return out;
+  }
+};
+
+}  // namespace servomill::sim

@@ -1,0 +1,168 @@
+/// A scenario: machine, program, errors, cases and what is asked of them. Read from TOML, complete
+/// and in SI; nothing behind this point meets an input that it must doubt.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "controllers/gcode/reader.h"
+#include "controllers/gcode/tool_table.h"
+#include "plant/cutting/cutter.h"
+#include "plant/cutting/material.h"
+#include "plant/cutting/stock.h"
+#include "plant/geometry/error_model.h"
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/parameters.h"
+#include "sim/config/document.h"
+#include "sim/engine/simulate.h"
+#include "sim/metrology/cmm.h"
+#include "sim/metrology/probing_plan.h"
+#include "sim/model/design.h"
+#include "sim/model/machine.h"
+#include "strategies/registry.h"
+
+namespace servomill::sim {
+
+struct NominalPart;  // sim/evaluation/nominal_part.h
+class TriangleMesh;
+
+struct ProgramSpec {
+  std::string file;  // as messages name it
+  std::string text;
+  std::map<std::string, std::string> subroutines;  // texts of NAME.ngc beside the program, by NAME
+  std::map<std::string, double> parameters;        // "#101" -> value
+  controllers::Reader reader = controllers::Reader::any;
+  double feed_override = 1.0;
+  AxisWords work_offset = AxisWords::Zero();  // G54, m, rad, machine coordinates
+  AxisWords start = AxisWords::Zero();        // m, rad, in work coordinates
+  Place start_place;                          // for a start outside the travel
+  controllers::ToolTable tools;
+  std::map<int, plant::Cutter> cutters;  // of the tools with a diameter, by number
+};
+
+struct StrategySpec {
+  const strategies::Entry* entry = nullptr;
+  Parameters parameters;
+  strategies::Sign sign = strategies::Sign::correct;
+  std::string model;                                     // name of the believed error model
+  Place place;                                           // for what the strategy itself refuses
+  std::map<std::string, Place, std::less<>> key_places;  // of the parameters that are given
+};
+
+struct CaseSpec {
+  std::string name;
+  AxisWords work_offset = AxisWords::Zero();  // m, rad; added to that of the program
+  std::vector<StrategySpec> strategies;
+  bool feedback_hardware = false;
+  ServoModel servo = ServoModel::cascade;
+  std::optional<std::string> truth;        // in place of that of the scenario; empty: no errors
+  bool cutting = false;                    // feels forces of the cut
+  CuttingWear wear;                        // then
+  std::optional<MachineSettings> machine;  // where the case overrides keys of the machine
+
+  /// Tells if one of its strategies passes its signals through the feedback hardware.
+  bool needs_feedback_hardware() const;
+};
+
+/// What a quantity asks of a ball in the spindle and sensors on the table.
+struct BallSpec {
+  std::vector<Eigen::Vector3d> bar_centres;    // m, in the workpiece: of a ball bar, for each of
+                                               // the sections; none: a nest of three sensors
+  bool tip_is_known = false;                   // the ball lies where the program has the tip
+  std::optional<plant::ErrorName> error = {};  // location_error: which
+};
+
+/// What a quantity asks of the probed part.
+struct PartSpec {
+  std::vector<std::string> probes;  // features, each the name of a [[probe]]
+  bool minimum_zone = true;         // of the fit, where there is a choice; else least squares
+  std::shared_ptr<const TriangleMesh> nominal;  // of a best fit; none: to the faces at the probes
+};
+
+/// One line of the comparison, for one or several cases.
+struct QuantitySpec {
+  std::string name;       // one of quantity_names()
+  char axis = '\0';       // X, Y, Z, ...; '\0' where the quantity has none
+  std::string statistic;  // max, rms, mean, range
+  std::vector<std::string> cases;
+  std::string base;                   // case compared with, for differences
+  std::vector<std::string> sections;  // of the program; empty: all
+  Place sections_place;
+  std::string reference;  // the paper's number with unit, or empty
+  std::string kind;       // identified, predicted, chosen, bound or empty
+  std::optional<BallSpec> ball = {};
+  std::optional<PartSpec> part = {};
+};
+
+/// What becomes of recorded signals.
+struct RecordSpec {
+  RecordFormat format = {.resolution = 0.001e-9};
+  int compression = 1;            // of the result file, kNoCompression to kMostCompression
+  bool uncorrectable = false;     // what strategies cannot correct
+  double max_size = 8e9;          // bytes of the signals of all cases, as estimated before a run
+  double max_duration = 86400.0;  // s, of the motion of a case
+};
+
+/// What cutting costs.
+struct CuttingSpec {
+  plant::CuttingCoefficients coefficients;
+  CuttingWear wear;
+  Place place;
+};
+
+struct Scenario {
+  std::string name;  // file name without folder and extension
+  std::string title, source;
+  MachineSettings machine;
+  ProgramSpec program;
+  std::map<std::string, plant::ErrorModel> errors;
+  std::string truth;    // model of the machine's true errors; empty: none
+  std::string imposed;  // model whose displacement at the programmed position is recorded; or empty
+  FeedbackHardware hardware;
+  plant::Stock stock;                       // in work coordinates of the program
+  std::shared_ptr<const NominalPart> part;  // likewise; or none
+  std::optional<CuttingSpec> cutting;
+  std::vector<CaseSpec> cases;
+  std::vector<ProbeSpec> probes;  // measured on the part of every case
+  Cmm cmm;
+  Tick record_period = 100;
+  RecordSpec record;
+  double settle_time = 0.1;  // s
+  std::vector<QuantitySpec> quantities;
+  SweepDesign sweep;
+
+  std::string text, machine_text;  // as read
+  std::string resolved;            // one TOML document with the machine and all changes in it
+  std::string swept_files;         // that only the sweep names (sim/sweep/sweep.h)
+
+  const CaseSpec* find_case(std::string_view case_name) const;
+  /// The machine that a case runs on. Axes and periods are those of `machine` for all cases.
+  const MachineSettings& machine_of(const CaseSpec& one) const {
+    return one.machine ? *one.machine : machine;
+  }
+  /// Delay (s) of the readings of a case by the feedback hardware; none of an ideal servo,
+  /// which has no loops to read them.
+  std::optional<double> signal_delay_of(const CaseSpec& one) const;
+};
+
+/// Reads a scenario and the files that it names (paths relative to it).
+/// @param changes  what --set says, in order
+/// @throws InputError with all faults of a file at once
+Scenario read_scenario(const std::string& path, const std::vector<std::string>& changes = {});
+
+/// The same from a resolved document (as stored in a result file), program text included.
+Scenario read_resolved_scenario(const std::string& resolved, const std::string& name);
+
+struct ScenarioDocument;
+class InputFiles;
+/// What both have in common: the document with the machine in it (sim/input/scenario_document.h).
+/// @param files  where the program is looked for
+Scenario read_document(ScenarioDocument scenario, const std::string& name, InputFiles& files);
+
+/// Only a machine, for `check`.
+MachineSettings read_machine_file(const std::string& path);
+
+}  // namespace servomill::sim

@@ -1,0 +1,241 @@
+#include "sim/preparation/preparation_cache.h"
+
+#include <algorithm>
+
+namespace servomill::sim {
+namespace {
+
+std::size_t weight_of(const std::vector<Move>& moves) { return moves.size() + 1; }
+
+// An arc is one move and hundreds of phases and stretches.
+std::size_t weight_of(const PlannedMotion& motion) {
+  std::size_t weight = weight_of(*motion.moves);
+  for (const auto& chain : motion.trajectory.chains()) {
+    weight += chain.law.phases.size() + chain.limits.size();
+  }
+  return weight;
+}
+
+void add(MemoKey& key, const controllers::ToolTable& tools) {
+  key.add(tools.size());
+  for (const auto& [number, tool] : tools.entries()) {
+    const auto& [tool_number, pocket, offset, diameter, front_angle, back_angle, orientation] =
+        tool;
+    key.add(tool_number);
+    key.add(pocket);
+    key.add(offset);
+    key.add(diameter);
+    key.add(front_angle);
+    key.add(back_angle);
+    key.add(orientation);
+  }
+}
+
+void add(MemoKey& key, const plant::ErrorFunction& function) {
+  const auto& [polynomial, harmonics, tables, reversals] = function;
+  const auto add_all = [&key](const std::vector<double>& values) {
+    key.add(values.size());
+    for (const double value : values) key.add(value);
+  };
+  add_all(polynomial);
+  key.add(harmonics.size());
+  for (const auto& [amplitude, period, phase] : harmonics) {
+    key.add(amplitude);
+    key.add(period);
+    key.add(phase);
+  }
+  key.add(tables.size());
+  for (const auto& [s, error] : tables) {
+    add_all(s);
+    add_all(error);
+  }
+  key.add(reversals.size());
+  for (const auto& [width, distance] : reversals) {
+    add_all(width);
+    key.add(distance);
+  }
+}
+
+void add(MemoKey& key, const controllers::FilterChain& filters) {
+  const auto& [sections, count] = filters;
+  key.add(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto& [b0, b1, b2, a1, a2] = sections[n];
+    for (const double coefficient : {b0, b1, b2, a1, a2}) key.add(coefficient);
+  }
+}
+
+}  // namespace
+
+namespace {
+
+std::map<int, Eigen::Vector3d> tips_of(const std::vector<Move>& moves,
+                                       const controllers::ToolTable& tools) {
+  std::map<int, Eigen::Vector3d> tips = {{0, Eigen::Vector3d::Zero()}};
+  for (const Move& move : moves) {
+    if (const auto* tool = tools.find(move.tool_offset)) {
+      tips[move.tool_offset] = -tool->offset.head<3>();
+    }
+  }
+  return tips;
+}
+
+bool controls_tip(const Move& move) {
+  return is_motion(move.kind) && move.tool_control != ToolControl::none;
+}
+
+}  // namespace
+
+const Move* InterpretedProgram::first_tip_move() const {
+  const auto found = std::find_if(moves.begin(), moves.end(), controls_tip);
+  return found == moves.end() ? nullptr : &*found;
+}
+
+const Move* InterpretedProgram::first_shifted_feed() const {
+  const auto is_shifted_feed = [](const Move& move) {
+    return (move.kind == MoveKind::feed || move.kind == MoveKind::arc) && move.is_shifted;
+  };
+  const auto found = std::find_if(moves.begin(), moves.end(), is_shifted_feed);
+  return found == moves.end() ? nullptr : &*found;
+}
+
+InterpretedProgram::InterpretedProgram(std::vector<Move> moves_in, std::vector<Fault> warnings_in,
+                                       const controllers::ProgramSetup& setup)
+    : moves(std::move(moves_in)),
+      warnings(std::move(warnings_in)),
+      tips(tips_of(moves, setup.tools)),
+      path(moves, setup.start, setup.machine, tips) {
+  const AxisWords& start = setup.start;
+  // the tip of the first tool that the program works with: the one that a strategy believes in
+  const auto works = [](const Move& move) { return is_motion(move.kind) && move.tool_offset != 0; };
+  const auto first = std::find_if(moves.begin(), moves.end(), works);
+  if (first != moves.end()) first_tip = tips.at(first->tool_offset);
+  for (const Axis axis : kAllAxes) {
+    const auto leaves = [&](const Move& move) {
+      if (is_linear(axis) && controls_tip(move)) return false;  // those follow the tip
+      return is_motion(move.kind) && move.end_machine[index_of(axis)] != start[index_of(axis)];
+    };
+    const auto leaving = std::find_if(moves.begin(), moves.end(), leaves);
+    if (leaving != moves.end()) first_line[static_cast<std::size_t>(axis)] = leaving->line;
+  }
+}
+
+PreparationCache::PreparationCache()
+    : programs(kMoves, [](const InterpretedProgram& p) { return weight_of(p.moves); }),
+      rewritten(kMoves, [](const RewrittenProgram& p) { return weight_of(p.moves); }),
+      motions(kMoves, [](const PlannedMotion& m) { return weight_of(m); }),
+      circles(kMoves, [](const SectionsOfMotion& s) { return weight_of(*s.motion); }),
+      cuttings(kRows, [](const PlannedCutting& c) { return c.table.rows().size() + 1; }),
+      models(kModels),
+      strategies(kModels),
+      spectral_radii(kRadii) {}
+
+void add(MemoKey& key, const JointLayout& layout) {
+  const auto& [axes] = layout;
+  for (const auto& axis : axes) {
+    key.add(axis.has_value());
+    if (axis) key.add(*axis);
+  }
+}
+
+void add(MemoKey& key, const plant::MachineChain& chain) {
+  const auto& [axes, layout] = chain;
+  key.add(axes.size());
+  for (const auto& [axis, side, joint, centre, sense, R_MA, is_inclined] : axes) {
+    key.add(axis);
+    key.add(side);
+    key.add(joint);
+    key.add(centre);
+    key.add(sense);
+    for (int i = 0; i < 3; ++i) key.add(Eigen::Vector3d(R_MA.col(i)));
+    key.add(is_inclined);
+  }
+  add(key, layout);
+}
+
+void add(MemoKey& key, const plant::ErrorModel& errors) {
+  for (const auto& of_axis : errors.components) {
+    for (const plant::ErrorFunction& function : of_axis) add(key, function);
+  }
+  for (const AxisWords& location : errors.locations) key.add(location);
+}
+
+void add(MemoKey& key, const controllers::ProgramSetup& setup) {
+  const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, reader,
+               start, block_delete, subroutine_file, most_jumps, machine] = setup;
+  key.add(stored.size());
+  for (const auto& [number, value] : stored) {
+    key.add(number);
+    key.add(value);
+  }
+  key.add(parameters.size());
+  for (const auto& [name, value] : parameters) {
+    key.add(name);
+    key.add(value);
+  }
+  for (const AxisWords& offset : work_offset) key.add(offset);
+  for (const double rotation : work_rotation) key.add(rotation);
+  key.add(work_system);
+  add(key, tools);
+  key.add(tool);
+  key.add(static_cast<int>(reader));
+  key.add(start);
+  key.add(block_delete);
+  key.add(most_jumps);  // texts of subroutines are of the program
+  key.add(machine != nullptr);
+  if (machine == nullptr) return;
+  add(key, machine->chain());
+  key.add(machine->inverse().settings().lower);
+  key.add(machine->inverse().settings().upper);
+  key.add(machine->axis_tolerance());
+}
+
+void add(MemoKey& key, const controllers::JointLimits& limits) {
+  const auto& [v, a, j] = limits;
+  key.add(v);
+  key.add(a);
+  key.add(j);
+}
+
+void add(MemoKey& key, const controllers::PathOptions& options) {
+  const auto& [tolerance, exact_tolerance, exact_corner, rotary_tolerance, rotary_radius,
+               feed_override, rapid_override, tolerance_share, block_time] = options;
+  for (const double value :
+       {tolerance, exact_tolerance, exact_corner, rotary_tolerance, rotary_radius, feed_override,
+        rapid_override, tolerance_share, block_time}) {
+    key.add(value);
+  }
+}
+
+void add_linear_axis(MemoKey& key, const MachineSettings& linear, int joint) {
+  const auto j = static_cast<std::size_t>(joint);
+  const auto& [base, position, velocity, current] = linear.nc.periods;
+  key.add(base);
+  for (const Tick period : {position, velocity, current}) key.add(period);
+  {
+    const auto& [kind, r, J, M, k, c, gap, b_motor, b_load, Kt, i_max, T_i, L, R, Ke, F_load,
+                 friction, cogging, solver_tolerance] = linear.drives[j];
+    key.add(kind);
+    for (const double value : {r, J, M, k, c, gap, b_motor, b_load, Kt, i_max, T_i, L, R, Ke,
+                               F_load, solver_tolerance}) {
+      key.add(value);
+    }
+  }
+  {
+    const auto& [Kv, kvf, kaf, Kp, Ki, r, Kt, J, i_max, Tv, v_max, tau_max, di_max, filters] =
+        linear.nc.cascade[j];
+    for (const double value : {Kv, kvf, kaf, Kp, Ki, r, Kt, J, i_max, Tv, v_max, tau_max, di_max}) {
+      key.add(value);
+    }
+    add(key, filters);
+  }
+  const auto& [current_loop, position_feedback, friction, backlash, supervision] =
+      linear.nc.functions[j];
+  const auto& [Kp, Ki, u_max, Ti] = current_loop;
+  for (const double value : {Kp, Ki, u_max, Ti}) key.add(value);
+  const auto& [kind, gain] = position_feedback;
+  key.add(kind);
+  key.add(gain);
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,112 @@
+/// What preparing many similar cases can share: the points of a sweep differ in little.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "controllers/gcode/program_setup.h"
+#include "controllers/path/trajectory.h"
+#include "plant/drives/prepared_drives.h"
+#include "plant/geometry/volumetric.h"
+#include "sim/engine/cutting.h"
+#include "sim/engine/program_path.h"
+#include "sim/model/machine.h"
+#include "sim/preparation/circular_sections.h"
+#include "sim/system/memo.h"
+#include "strategies/strategy.h"
+
+namespace servomill::sim {
+
+/// Moves of a program, shared by all that was made of them.
+using SharedMoves = std::shared_ptr<const std::vector<Move>>;
+
+/// A program as the NC of a case reads it, before any strategy.
+struct InterpretedProgram {
+  /// @param setup  with which the moves were read
+  InterpretedProgram(std::vector<Move> moves, std::vector<Fault> warnings,
+                     const controllers::ProgramSetup& setup);
+
+  /// The first move that controls the tip; nullptr: none does.
+  const Move* first_tip_move() const;
+
+  /// The first feed in coordinates that the program has shifted; nullptr: none is.
+  const Move* first_shifted_feed() const;
+
+  std::vector<Move> moves;
+  std::vector<Fault> warnings;
+  std::map<int, Eigen::Vector3d> tips;                  // p_ST (m) by tool offset number
+  Eigen::Vector3d first_tip = Eigen::Vector3d::Zero();  // m, of the first tool that works
+  ProgramPath path;
+  std::array<int, kAxisWords> first_line{};  // in which an axis leaves the start; 0: none
+};
+
+/// The moves that a strategy made of others, as the NC reads them from its text.
+struct RewrittenProgram {
+  SharedMoves original;
+  std::shared_ptr<const strategies::Strategy> strategy;
+  std::vector<Move> moves;
+  std::string text;
+};
+
+/// The planned motion of some moves.
+struct PlannedMotion {
+  SharedMoves moves;
+  controllers::Trajectory trajectory;
+  double blocks = 0.0;  // of motion
+  std::vector<controllers::SlowedMotion> slowed;
+};
+
+/// Sections of a planned program as circular tests see them, by name.
+struct SectionsOfMotion {
+  std::shared_ptr<const InterpretedProgram> program;
+  std::shared_ptr<const PlannedMotion> motion;
+  std::map<std::string, CircularSection> sections;
+};
+
+/// The force of the cut along a program.
+struct PlannedCutting {
+  std::shared_ptr<const InterpretedProgram> program;
+  CuttingTable table;
+  std::vector<Fault>
+      warnings;  // rapid moves through material, shanks in it; of every case that cuts it so
+};
+
+/// One for all points of a sweep, for any number of threads. What is taken from it is what would
+/// have been computed without, bit for bit: the keys hold every input of a result. Bounded: what
+/// was not used for longest is forgotten.
+struct PreparationCache {
+  static constexpr std::size_t kMoves = 200'000;   // kept in each form: some 100 MB
+  static constexpr std::size_t kRows = 1'000'000;  // of forces along programs: some 100 MB
+  static constexpr std::size_t kModels = 1'000;
+  static constexpr std::size_t kRadii = 20'000;
+  static constexpr std::size_t kDrives = 500;
+
+  PreparationCache();
+
+  Memo<InterpretedProgram> programs;
+  Memo<RewrittenProgram> rewritten;
+  Memo<PlannedMotion> motions;
+  Memo<SectionsOfMotion> circles;
+  Memo<PlannedCutting> cuttings;
+  Memo<plant::VolumetricModel> models;
+  Memo<strategies::Strategy> strategies;
+  Memo<double> spectral_radii;
+  plant::PreparedDrives drives{kDrives};
+};
+
+// Inputs as parts of keys, complete: a member that is added to one of these does not compile here.
+void add(MemoKey& key, const plant::MachineChain& chain);
+void add(MemoKey& key, const plant::ErrorModel& errors);
+void add(MemoKey& key, const controllers::ProgramSetup& setup);
+void add(MemoKey& key, const controllers::JointLimits& limits);
+void add(MemoKey& key, const controllers::PathOptions& options);
+void add(MemoKey& key, const JointLayout& layout);
+
+/// Everything that the linear loops of one axis depend on (sim/frequency/stability.h).
+/// @param linear  linearised(machine)
+void add_linear_axis(MemoKey& key, const MachineSettings& linear, int joint);
+
+}  // namespace servomill::sim

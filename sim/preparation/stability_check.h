@@ -1,0 +1,16 @@
+/// Refuses gains with which an axis diverges, and says which one to lower.
+#pragma once
+
+#include "sim/model/machine.h"
+
+namespace servomill::sim {
+
+struct PreparationCache;
+
+/// Checks every axis of a machine, unless nc.check_stability says otherwise.
+/// @param reading_delay  ticks between the scale and what the position loop reads
+/// @param cache          may be nullptr
+/// @throws InputError with one fault for each unstable axis
+void check_stability(const MachineSettings& machine, Tick reading_delay, PreparationCache* cache);
+
+}  // namespace servomill::sim

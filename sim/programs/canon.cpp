@@ -1,0 +1,157 @@
+#include "sim/programs/canon.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "controllers/gcode/canon_json.h"
+#include "controllers/gcode/cl_data.h"
+#include "controllers/gcode/interpreter.h"
+#include "controllers/gcode/parameter_file.h"
+#include "sim/config/document.h"
+#include "sim/input/implausible.h"
+#include "sim/input/subroutine_files.h"
+#include "sim/model/scenario.h"
+#include "sim/preparation/prepared_case.h"
+#include "sim/run/run.h"
+#include "sim/sweep/sweep.h"
+#include "sim/system/read_file.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr std::size_t kWrittenAtOnce = 1U << 16;  // bytes
+
+void warn_of(const MachineSettings& machine, const std::string& path,
+             std::vector<Fault>* warnings) {
+  if (warnings == nullptr) return;
+  for (std::string& value : implausible_values(machine)) {
+    warnings->push_back({{path}, std::move(value)});
+  }
+}
+
+// What the cases' programs hold beyond LinuxCNC's rules; the cases mostly run the same one.
+void add_program_warnings(const Scenario& scenario, std::vector<Fault>& warnings) {
+  for (const CaseSpec& spec : scenario.cases) {
+    std::vector<Fault> found;
+    read_program(scenario, spec, &found);
+    for (Fault& one : found) {
+      const bool is_known = std::any_of(warnings.begin(), warnings.end(), [&](const Fault& other) {
+        return other.place == one.place && other.message == one.message;
+      });
+      if (!is_known) warnings.push_back(std::move(one));
+    }
+  }
+}
+
+void check_toml(const std::string& path, const std::vector<std::string>& changes,
+                std::vector<Fault>* warnings) {
+  const Document document = Document::from_file(path);
+  if (document.root().find("structure") != nullptr) {
+    const MachineSettings machine = read_machine_file(path);
+    warn_of(machine, path, warnings);
+    check_machine(machine);
+    return;
+  }
+  const Scenario scenario = read_scenario(path, changes);
+  warn_of(scenario.machine, path, warnings);
+  check_scenario(scenario);
+  if (warnings != nullptr) add_program_warnings(scenario, *warnings);
+  if (!scenario.sweep.empty()) Sweep(path, changes).check();
+}
+
+bool holds_cutter_locations(std::string_view path) {
+  return path.ends_with(".cls") || path.ends_with(".apt") || path.ends_with(".csv");
+}
+
+controllers::Reader reader_of(const std::string& name) {
+  const auto reader = controllers::reader_named(name);
+  if (reader) return *reader;
+  throw InputError({"--reader " + name},
+                   fmt::format("must be one of {}{}", fmt::join(controllers::kReaders, ", "),
+                               did_you_mean(name, controllers::kReaders)));
+}
+
+}  // namespace
+
+controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
+                                        const std::string& program_file) {
+  controllers::ProgramSetup setup;
+  if (!inputs.tool_table.empty()) {
+    setup.tools = controllers::ToolTable::parse(read_file(inputs.tool_table, {}, "tool table"),
+                                                inputs.tool_table);
+  }
+  if (!inputs.parameter_file.empty()) {
+    setup.stored = controllers::parse_parameter_file(
+        read_file(inputs.parameter_file, {}, "parameter file"), inputs.parameter_file);
+    setup.work_system = controllers::work_system_of(setup.stored);
+  }
+  if (!inputs.machine.empty()) {
+    setup.machine = tool_centre_point(read_machine_file(inputs.machine));
+  }
+  for (const std::string& parameter : inputs.parameters) {
+    const std::size_t equals = parameter.find('=');
+    const double value =
+        equals == std::string::npos ? std::nan("") : number_of(parameter.substr(equals + 1));
+    if (!std::isfinite(value)) {
+      throw InputError({"--parameter " + parameter}, "must be #N=NUMBER, such as '#101=1394'");
+    }
+    setup.parameters[parameter.substr(0, equals)] = value;
+  }
+  setup.reader = reader_of(inputs.reader);
+  setup.block_delete = inputs.block_delete;
+  setup.most_jumps = inputs.most_jumps;
+  for (const std::string& folder : inputs.subroutine_folders) {
+    if (!std::filesystem::is_directory(folder))
+      throw InputError({"--subs " + folder}, "is no folder");
+  }
+  setup.subroutine_file = subroutine_files(program_file, inputs.subroutine_folders);
+  return setup;
+}
+
+std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& inputs,
+                         const std::function<void(std::string_view)>& write) {
+  controllers::Interpreter interpreter(controllers::ProgramText::of_file(program_file),
+                                       program_setup(inputs, program_file));
+  std::string lines;
+  const auto flush = [&] {
+    write(lines);
+    lines.clear();
+  };
+  try {
+    while (const Move* move = interpreter.next()) {
+      controllers::add_canon_json(*move, lines);
+      lines += '\n';
+      if (lines.size() >= kWrittenAtOnce) flush();
+    }
+  } catch (const InputError& error) {
+    write(lines);
+    write(controllers::canon_error_json(error.what()) + '\n');
+    throw;
+  }
+  flush();
+  return interpreter.warnings();
+}
+
+std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,
+                              const ProgramInputs& inputs, std::vector<Fault>* warnings) {
+  try {
+    if (path.ends_with(".toml")) {
+      check_toml(path, changes, warnings);
+      return {};
+    }
+    if (holds_cutter_locations(path)) {
+      controllers::read_cl_data(read_file(path, {}, "cutter location file"), path);
+      return {};
+    }
+    return controllers::check_program(controllers::ProgramText::of_file(path),
+                                      program_setup(inputs, path), warnings);
+  } catch (const InputError& error) {
+    return error.faults();
+  }
+}
+
+}  // namespace servomill::sim

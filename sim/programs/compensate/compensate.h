@@ -1,0 +1,60 @@
+/// Any milling program, corrected for the errors of the machine that runs it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/programs/canon.h"
+#include "sim/programs/compensate/dialect.h"
+#include "sim/programs/compensate/path_record.h"
+#include "sim/programs/compensate/summary.h"
+#include "strategies/compensation.h"
+
+namespace servomill::sim {
+
+struct CompensateRequest {
+  std::string program_file, machine_file;
+  std::string error_file;            // of error models, or empty: those of the machine's file
+  std::string model;                 // its name; empty: the only one
+  std::vector<std::string> changes;  // "KEY=VALUE", of the machine
+  double tolerance = 1e-6;           // m
+  double max_block = 0.0;            // m, where the correction varies; 0: no limit
+  bool splits_rapids = false;
+  strategies::DisplacedAxes axes = strategies::DisplacedAxes::linear;
+  Dialect dialect = Dialect::linuxcnc;
+  std::string program_name;         // other dialects: as the file is called, without extension
+  int program_number = 0;           // Fanuc: O; 0: not given
+  double resolution = 0.0;          // m, of positions in other dialects; 0: the usual one
+  double smoothing = 0.0;           // m, tolerance of the control's smoothing; 0: as the control is
+  std::optional<double> retract_Z;  // m, machine coordinate; absent: that of the machine's file
+  std::optional<int> preset;        // Heidenhain: number of the preset
+  ProgramInputs inputs;             // of the program; `machine` is the one above
+  std::vector<std::string> work_offsets;  // "X=10,Y=-5" (G54) or "G55:X=10,R=30"; mm, deg
+  std::vector<std::string> tool_lengths;  // "1=50": tool 1 is 50 mm long
+  std::string start;                      // "X=0,Y=0": machine coordinates; or empty
+  bool records = false;                   // the path
+};
+
+struct Compensated {
+  std::string program;
+  Summary summary;
+  std::vector<std::string> report;  // what it changed and assumed, one line each
+  std::vector<Fault> warnings;
+  std::string json;
+  std::string machine;  // its name
+  PathRecord record;    // where it was asked for
+};
+
+/// The program is read back as its control would read it and compared with the original.
+/// @throws InputError, also where they differ
+Compensated compensate(const CompensateRequest& request);
+
+struct VerificationReport;
+
+/// The comparison alone, of any text that is to be the compensated program of a request.
+/// @throws InputError that shows the line of the original and that of the written program
+VerificationReport verify_compensated(const CompensateRequest& request, const std::string& written);
+
+}  // namespace servomill::sim

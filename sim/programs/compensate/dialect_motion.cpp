@@ -1,0 +1,376 @@
+// Moves of a corrected program in the words of another control.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "controllers/gcode/canned_cycles.h"
+#include "controllers/gcode/modal_state.h"
+#include "controllers/gcode/request.h"
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+#include "sim/programs/compensate/dialect_writer.h"
+
+namespace servomill::sim {
+
+using controllers::Group;
+
+namespace {
+
+constexpr double kShortestShare = 1e-3;     // of a move, for the time of blocks that lead to it
+constexpr double kLeastSweep = 1e-3 * deg;  // of an arc, and of what it lacks of a full circle
+constexpr double kSamePlace = 1e-9;         // m: the same digits
+constexpr double kMostRadiusError = 5e-6;   // m, between begin and end of an arc
+constexpr double kMostTurnOff = 0.25 * std::numbers::pi;  // rad: farther off, an arc goes round
+
+}  // namespace
+
+// G28 and G30 go to places that LinuxCNC has stored: on another control only "up" is meant.
+void DialectWriter::write_reference(const Move& move, const Block& block, bool is_last) {
+  const controllers::Request& request = *block.request;
+  const bool is_G28 = request.code(Group::g_non_modal) == 280;
+  for (const Axis axis : kAllAxes) {
+    if (axis != Axis::Z && !request.has(letter(axis))) continue;
+    if (axis == Axis::Z && request.has('Z')) continue;
+    throw Unsayable{fmt::format(
+        "{} of other axes than Z goes to places that LinuxCNC has stored; write G53 G0 X... Y...",
+        is_G28 ? "G28" : "G30")};
+  }
+  if (block.state->is_incremental && request['Z'] != 0.0) {
+    throw Unsayable{"goes home by way of an increment; name Z0 under G91"};
+  }
+  if (!is_last) {
+    if (block.state->is_incremental) return;
+    restate_axes(move, block);
+    return write_step(block, walk_.next(move, block, false));
+  }
+  restate_spindle_and_coolant();
+  printer_->end_smoothing();
+  bool is_at_reference = false;
+  if (is_G28) {
+    is_at_reference = printer_->reference_Z();
+  } else {
+    printer_->retract();
+    printer_->assume(
+        fmt::format("Z{:g} of the machine serves where the original goes to the second "
+                    "reference position (G30)",
+                    settings_.retract_Z / mm));
+  }
+  height_.reset();
+  if (!is_at_reference) height_ = settings_.retract_Z;
+  out_known_[static_cast<std::size_t>(index_of(Axis::Z))] = false;
+  walk_.arrive_elsewhere(move);
+}
+
+void DialectWriter::write_path_mode(const Block& block, const Move& move) {
+  const std::string path =
+      fmt::format("{} {}", static_cast<int>(move.path_mode), move.path_tolerance);
+  // a canned cycle follows its path exactly, whatever is in force
+  const bool is_of_cycle =
+      block.request != nullptr && controllers::is_canned_cycle(block.request->motion_code());
+  const bool is_exact = says_path_ && !is_of_cycle && move.path_mode != PathMode::continuous;
+  if (is_exact) printer_->end_smoothing();
+  if (path != path_ && says_path_ && !is_of_cycle) {
+    // the tolerance of smoothing takes the place of G64's
+    const double tolerance = settings_.smoothing > 0.0 ? 0.0 : move.path_tolerance;
+    printer_->path_mode(move.path_mode, tolerance);
+    path_ = path;
+  }
+  if (!is_exact && move.kind != MoveKind::rapid) printer_->begin_smoothing();
+}
+
+DialectMotion DialectWriter::motion_of(const Block& block, const Step& step) const {
+  const Move& move = *step.move;
+  DialectMotion motion;
+  motion.is_rapid = move.kind == MoveKind::rapid;
+  motion.is_place = step.is_place;
+  motion.work_system = move.work_offset;
+  motion.length = move.tool_offset;
+  motion.tool = tool_;
+  AxisWords across = block.state->tool_offset;
+  across[index_of(Axis::Z)] = 0.0;
+  if (!motion.is_place && !across.isZero(0.0)) {
+    throw Unsayable{
+        fmt::format("moves with offsets of tool {} in other axes than Z", move.tool_offset)};
+  }
+  return motion;
+}
+
+void DialectWriter::set_feed(DialectMotion& motion, const Step& step,
+                             const FittedBlock& fitted) const {
+  const Move& move = *step.move;
+  motion.feed_mode = FeedMode::units_per_minute;
+  if (motion.is_rapid) return;
+  const double turned = step.programmed.turns_axes()
+                            ? (step.programmed.end - step.programmed.begin).tail<3>().norm()
+                            : 0.0;
+  const double length = step.programmed.length();
+  const bool has_linear = std::any_of(motion.words.begin(), motion.words.end(),
+                                      [](const auto& word) { return is_linear(word.first); });
+  if (turned > 0.0 && (has_linear || move.feed_mode == FeedMode::inverse_time)) {
+    if (move.feed_mode == FeedMode::units_per_revolution) {
+      throw Unsayable{"feeds rotary axes per revolution of the spindle (G95)"};
+    }
+    const double share = std::max(fitted.t_end - fitted.t_begin, kShortestShare);
+    motion.feed_mode = FeedMode::inverse_time;
+    motion.feed = move.feed * minute / ((length > 0.0 ? length : turned) * share);
+    return;
+  }
+  const Axis axis = length > 0.0 ? Axis::X : Axis::C;
+  if (move.feed_mode == FeedMode::units_per_revolution) {
+    motion.feed_mode = move.feed_mode;
+    motion.feed = move.value / printer_->unit(axis);
+  } else {
+    motion.feed = move.feed * minute / printer_->unit(axis);
+  }
+}
+
+// As the control reads it.
+AxisWords DialectWriter::on_grid(const AxisWords& target) const {
+  AxisWords out = target;
+  for (const Axis axis : kAllAxes) {
+    const int i = index_of(axis);
+    const double grid = std::pow(10.0, -printer_->decimals(axis)), unit = printer_->unit(axis);
+    out[i] = std::round(target[i] / unit / grid) * grid * unit;
+  }
+  return out;
+}
+
+// Places of the machine have to be there to the digit.
+void DialectWriter::check_place(const Step& step, const AxisWords& on_grid) const {
+  constexpr double kExact = 1e-12;  // m, rad
+  for (const Axis axis : kAllAxes) {
+    const int i = index_of(axis);
+    const double target = step.move->end_machine[i];
+    if (!step.is_commanded[static_cast<std::size_t>(i)] || std::abs(on_grid[i] - target) < kExact) {
+      continue;
+    }
+    throw Unsayable{
+        fmt::format("goes to {}{:.7g} of the machine, which has more digits than the "
+                    "resolution of {:g} um (--resolution)",
+                    letter(axis), target / printer_->unit(axis), settings_.resolution / um)};
+  }
+}
+
+// Those that change, and of those without a known position all that the move names.
+DialectWriter::Words DialectWriter::words_of(const Step& step, const AxisWords& target,
+                                             const AxisWords& at) const {
+  Words out;
+  for (const Axis axis : kAllAxes) {
+    const int i = index_of(axis);
+    const auto k = static_cast<std::size_t>(i);
+    const double unit = printer_->unit(axis), grid = std::pow(10.0, -printer_->decimals(axis));
+    const bool is_feed = step.move->kind != MoveKind::rapid;
+    const bool moves = out_known_[k] ? std::abs(target[i] - at[i]) > 0.5 * grid * unit
+                                     : step.is_commanded[k] || is_feed;
+    if (moves && walk_.has(axis)) out.emplace_back(axis, target[i] / unit);
+  }
+  return out;
+}
+
+std::optional<DialectArc> DialectWriter::arc_of(const Step& step, const FittedBlock& fitted,
+                                                const AxisWords& origin, const AxisWords& from,
+                                                const AxisWords& to) const {
+  if (std::abs(fitted.arc->turns) != 1) return std::nullopt;
+  const ArcSweep& programmed = *step.programmed.arc;
+  // a rotated work system takes a plane with Z out of those of two axes
+  if (programmed.c != 2 && step.programmed.frame.sin != 0.0) return std::nullopt;
+  AxisWords centre = AxisWords::Zero();
+  centre.head<3>() = fitted.arc->centre;
+  centre = step.programmed.frame.machine(centre) - origin;
+  const double unit = printer_->unit(Axis::X), grid = std::pow(10.0, -printer_->decimals(Axis::X));
+  const auto in_plane = [&](const AxisWords& p) {
+    return Eigen::Vector2d(p[programmed.a], p[programmed.b]);
+  };
+  const Eigen::Vector2d begin = in_plane(from), end = in_plane(to);
+  const Eigen::Vector2d d = (((in_plane(centre) - begin) / unit / grid).array().round()) * grid;
+  const Eigen::Vector2d a = -d * unit, b = end - begin + a;  // from the centre
+  if (std::abs(a.norm() - b.norm()) > kMostRadiusError) return std::nullopt;
+  // start = end is a full circle: the digits must not make one, nor miss one
+  const double wanted = programmed.sweep * (fitted.t_end - fitted.t_begin);
+  const double full = 2.0 * std::numbers::pi, sign = wanted > 0.0 ? 1.0 : -1.0;
+  double sweep = sign * std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+  if (sweep < 0.0) sweep += full;
+  // a helix of Heidenhain's ends off the grid: a circle after it would not be closed
+  const bool is_closed = (end - begin).cwiseAbs().maxCoeff() < kSamePlace;
+  if (is_closed) sweep = full;
+  if (!is_closed && (sweep < kLeastSweep || sweep > full - kLeastSweep)) return std::nullopt;
+  if (std::abs(sweep - std::abs(wanted)) > kMostTurnOff) return std::nullopt;
+  DialectArc arc;
+  arc.is_counter_clockwise = sign > 0.0;
+  arc.from_begin[programmed.a] = d.x();
+  arc.from_begin[programmed.b] = d.y();
+  arc.centre = from.head<3>() / unit + arc.from_begin;
+  arc.path = ArcSweep(from.head<3>() / unit, to.head<3>() / unit, arc.centre, programmed.c,
+                      sign > 0.0 ? 1 : -1);
+  arc.sweep = sign * sweep;
+  const double round = a.norm() * sweep, rise = to[programmed.c] - from[programmed.c];
+  arc.share = rise == 0.0 ? 1.0 : round / std::hypot(round, rise);
+  return arc;
+}
+
+// True if every arc of the step can be written as one.
+bool DialectWriter::takes_arcs(const DialectMotion& motion, const Step& step,
+                               const AxisWords& origin) const {
+  AxisWords at = walk_.out() - origin;
+  for (const FittedBlock& fitted : step.blocks) {
+    const AxisWords target = on_grid(step.programmed.frame.machine(fitted.end) - origin);
+    DialectMotion one = motion;
+    one.words = words_of(step, target, at);
+    if (fitted.arc) {
+      one.arc = arc_of(step, fitted, origin, at, target);
+      if (!one.arc || !printer_->takes_arc(one)) return false;
+      name_end(one, target);
+    }
+    const AxisWords begin = at;
+    for (const auto& [axis, value] : one.words) at[index_of(axis)] = target[index_of(axis)];
+    if (!fitted.arc) continue;
+    printer_->turn_by_angle(one, begin, at);
+    if ((at - target).head<3>().norm() > settings_.resolution) return false;
+  }
+  return true;
+}
+
+// @param height  of the end, machine coordinate (m)
+void DialectWriter::write_rapid(DialectMotion motion, double height) {
+  const auto Z = std::find_if(motion.words.begin(), motion.words.end(),
+                              [](const auto& word) { return word.first == Axis::Z; });
+  if (Z == motion.words.end() || motion.words.size() == 1) return printer_->motion(motion);
+  DialectMotion up = motion;
+  up.words = {*Z};
+  motion.words.erase(Z);
+  const bool rises = height_ && height > *height_;
+  printer_->motion(rises ? up : motion);
+  printer_->motion(rises ? motion : up);
+}
+
+// Both words of the plane, so that a circle has an end, too.
+void DialectWriter::name_end(DialectMotion& motion, const AxisWords& target) const {
+  const bool rises = motion.rises();
+  motion.words.clear();
+  for (const Axis axis : {Axis::X, Axis::Y, Axis::Z}) {
+    if (index_of(axis) == motion.arc->path.c && !rises) continue;
+    motion.words.emplace_back(axis, target[index_of(axis)] / printer_->unit(axis));
+  }
+}
+
+// Those that the move does not bring to a position of its own; rotary axes first.
+std::vector<Axis> DialectWriter::lost_axes(const Move& move, const Block& block) const {
+  std::vector<Axis> out, unnamed;
+  for (const bool is_of_linear : {false, true}) {
+    for (const Axis axis : kAllAxes) {
+      if (axis == Axis::Z || is_linear(axis) != is_of_linear || !walk_.has(axis)) continue;
+      const bool is_polar = is_of_linear && block.request != nullptr && block.request->has_polar();
+      const bool is_named =
+          is_polar || (block.request != nullptr && block.request->has(letter(axis)));
+      const bool is_given = is_named && !block.state->is_incremental;
+      if (!is_lost_[static_cast<std::size_t>(index_of(axis))] || is_given) continue;
+      (walk_.programmed(axis) ? out : unnamed).push_back(axis);
+    }
+  }
+  if (unnamed.empty()) return out;
+  std::string axes;
+  for (const Axis axis : unnamed)
+    axes += fmt::format("{}{}", axes.empty() ? "" : ", ", letter(axis));
+  throw InputError(
+      {file_, move.line},
+      fmt::format("moves Z while the position of {0} is not known: the tool change may have moved "
+                  "it, and no block names it; name {0} in a rapid between M6 and this line, or the "
+                  "start with --start",
+                  axes));
+}
+
+// A tool change leaves axes wherever its macro takes them: Z goes down where the program has them.
+void DialectWriter::restate_axes(const Move& move, const Block& block) {
+  const bool is_cycle =
+      block.request != nullptr && controllers::is_canned_cycle(block.request->motion_code());
+  const bool names_Z = block.request != nullptr && block.request->has('Z') && !is_cycle;
+  const std::optional<double> before = walk_.programmed(Axis::Z);
+  const double end = move.end_machine[index_of(Axis::Z)];
+  const bool changes_Z = before && std::abs(end - *before) > kSamePlace;
+  if (!names_Z && !changes_Z) return;
+  const std::vector<Axis> lost = lost_axes(move, block);
+  if (lost.empty()) return;
+  restate_spindle_and_coolant();
+  for (std::size_t begin = 0, end_of = 0; begin < lost.size(); begin = end_of) {
+    const auto is_like_first = [&](Axis axis) {
+      return is_linear(axis) == is_linear(lost[begin]) &&
+             system_[static_cast<std::size_t>(index_of(axis))] ==
+                 system_[static_cast<std::size_t>(index_of(lost[begin]))];
+    };
+    while (end_of < lost.size() && is_like_first(lost[end_of])) ++end_of;
+    write_restated({lost.begin() + static_cast<std::ptrdiff_t>(begin),
+                    lost.begin() + static_cast<std::ptrdiff_t>(end_of)});
+  }
+}
+
+// @param axes  written last in the same coordinates
+void DialectWriter::write_restated(const std::vector<Axis>& axes) {
+  const int system = system_[static_cast<std::size_t>(index_of(axes.front()))];
+  DialectMotion motion;
+  motion.is_rapid = true;
+  motion.is_place = system == 0;
+  motion.work_system = std::max(system, 1);
+  motion.tool = tool_;
+  AxisWords origin = AxisWords::Zero(), target = AxisWords::Zero();
+  if (!motion.is_place) origin = settings_.work_offset[static_cast<std::size_t>(system - 1)];
+  for (const Axis axis : axes) target[index_of(axis)] = *walk_.programmed(axis);
+  target = on_grid(target - origin);
+  for (const Axis axis : axes) {
+    const int i = index_of(axis);
+    const auto k = static_cast<std::size_t>(i);
+    motion.words.emplace_back(axis, target[i] / printer_->unit(axis));
+    walk_.restate(axis, target[i] + origin[i]);
+    out_known_[k] = true;
+    is_lost_[k] = false;
+  }
+  printer_->motion(motion);
+}
+
+void DialectWriter::write_step(const Block& block, const Step& given) {
+  restate_spindle_and_coolant();
+  DialectMotion motion = motion_of(block, given);
+  AxisWords origin = AxisWords::Zero();  // of work coordinates without rotation and shift
+  if (!motion.is_place) {
+    // what the program has made of the offset is in the numbers
+    origin = settings_.work_offset[static_cast<std::size_t>(motion.work_system - 1)] +
+             block.state->tool_offset;
+  }
+  if (motion.is_place) printer_->end_smoothing();
+  if (!motion.is_place) write_path_mode(block, *given.move);
+  const bool keeps_arcs = takes_arcs(motion, given, origin);
+  if (!keeps_arcs && given.programmed.arc && given.programmed.arc->c != 2) ++arcs_to_lines_;
+  const Step step = keeps_arcs ? given : walk_.without_arcs(given);
+  AxisWords at = walk_.out() - origin;
+  for (const FittedBlock& fitted : step.blocks) {
+    const AxisWords target = on_grid(step.programmed.frame.machine(fitted.end) - origin);
+    motion.words = words_of(step, target, at);
+    motion.arc.reset();
+    if (fitted.arc) {
+      motion.arc = arc_of(step, fitted, origin, at, target);
+      name_end(motion, target);
+    }
+    if (motion.is_place) check_place(step, target);
+    if (motion.words.empty()) continue;
+    set_feed(motion, step, fitted);
+    if (motion.is_rapid) {
+      write_rapid(motion, target[index_of(Axis::Z)] + origin[index_of(Axis::Z)]);
+    } else {
+      printer_->motion(motion);
+    }
+    const AxisWords begin = at;
+    for (const auto& [axis, value] : motion.words) {
+      at[index_of(axis)] = target[index_of(axis)];
+      const auto k = static_cast<std::size_t>(index_of(axis));
+      out_known_[k] = true;
+      is_lost_[k] = false;
+      system_[k] = motion.is_place ? 0 : motion.work_system;
+      if (axis == Axis::Z) height_ = target[index_of(Axis::Z)] + origin[index_of(Axis::Z)];
+    }
+    if (motion.arc) printer_->turn_by_angle(motion, begin, at);
+  }
+  walk_.arrive(step, at + origin);
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,207 @@
+// Fanuc, Series 0i-MB and 30i: Operator's Manuals B-63844EN/02 and B-63944EN.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "controllers/gcode/number_text.h"
+#include "sim/programs/compensate/iso_dialect.h"
+
+namespace servomill::sim {
+namespace {
+
+using controllers::fixed_text;
+
+constexpr std::size_t kMostNumbered = 9999;  // blocks; in longer programs every 1000th
+constexpr double kMostPosition = 99999.999;  // eight digits on IS-B (M)
+constexpr double kLongestDwell = 99999.999;  // s, B-63844EN/02, dwell
+
+class Fanuc final : public IsoDialect {
+ public:
+  using IsoDialect::IsoDialect;
+
+  // G20 and G21 change origin offsets and compensation: the unit of the program stays (B-63944EN
+  // p. 192).
+  bool set_inches(bool is_inch) override {
+    is_inch_ = is_inch;
+    return true;
+  }
+
+  void begin(const std::vector<std::string>& header) override {
+    put(fmt::format("O{:04} ({})", settings_.program_number, plain(settings_.name, true)));
+    for (const std::string& line : header) comment(line);
+    put(is_inch_ ? "G20" : "G21");  // in a block of its own: B-63944EN p. 192
+    put("G17 G40 G80 G90 G94");
+    put("G69");
+    put("G15");
+    put("G50");
+    put("G50.1 X0. Y0. Z0.");
+    put(retract_text());
+  }
+  void put_comment(std::string_view text) override { put(fmt::format("({})", plain(text, true))); }
+
+  // In a block of its own; its tolerance is the control's (B-63944EN, contour control of G5.1; M)
+  void put_smoothing(bool is_on) override {
+    put(is_on ? "G5.1 Q1" : "G5.1 Q0");
+    warn(fmt::format("G5.1 Q1 has no tolerance: set the control's to {:g} mm",
+                     settings_.smoothing / mm));
+  }
+
+  bool takes_arc(const DialectMotion& motion) const override {
+    if (!motion.arc->is_in_XY()) return false;
+    return !motion.names(Axis::Z) || modes_.length == motion.length;
+  }
+  // B-63943EN-1/02 p. 1654: type A acts along Z, type B along one of X, Y and Z. That the length
+  // stays on Z when the plane changes after its G43 was found for a control like it only
+  // (Milltronics, system information, p. 253).
+  std::string_view why_lines() const override {
+    return "the tool length may follow a change of the plane (No. 5001#1, TLB, may be 1)";
+  }
+
+  void motion(const DialectMotion& motion) override {
+    check_positions(motion, kMostPosition);
+    assume_ways(motion);
+    if (motion.is_place) return place(motion);
+    if (modes_.work_system != motion.work_system) work_system(motion.work_system);
+    std::string prefix;
+    if (motion.names(Axis::Z)) {
+      if (motion.length == 0 && modes_.length != 0) cancel_length(motion);
+      // G53, G28 and G30 cancel the length while G43 stays displayed (B-63844EN/02 p. 204); with
+      // EVO, No. 5001#6, = 0 only a new G43 H restores it (M)
+      if (modes_.length != motion.length) {
+        prefix = fmt::format("G43 H{}", motion.length);
+        assume(fmt::format("H{} holds the length of tool {}", motion.length, motion.tool));
+      }
+      modes_.length = motion.length;
+    }
+    if (!motion.arc || motion.arc->share == 1.0) return put(motion_text(motion, prefix));
+    DialectMotion helix = motion;
+    helix.feed *= motion.arc->share;  // F is the rate along the arc (M)
+    put(motion_text(helix, prefix));
+  }
+
+  void retract() override {
+    put(retract_text());
+    modes_.code = "G0";
+    modes_.length = 0;
+  }
+
+  bool reference_Z() override {
+    put("G91 G28 Z0.");
+    put("G90");
+    modes_.length.reset();
+    return true;
+  }
+
+  void path_mode(PathMode mode, double tolerance) override {
+    if (mode == PathMode::exact_path) throw Unsayable{"asks for G61 as LinuxCNC means it"};
+    if (tolerance > 0.0)
+      warn("G64 P: the tolerance is left out; smoothing is G5.1's on this control");
+    put(mode == PathMode::exact_stop ? "G61" : "G64");
+  }
+  void preselect(int tool) override { put(fmt::format("T{}", tool)); }
+  void tool(int number, double, int system) override {
+    put(fmt::format("T{} M6", number));
+    assume("T and M6 in one block change the tool, T first");
+    forget_modes();
+    modes_.feed_mode = FeedMode::units_per_minute;
+    modes_.work_system = system;
+    put(fmt::format("G90 {} G17 G94 G40 G80", system_code(system)));
+  }
+  // X of G4 counts revolutions under G95 where DWL, No. 3405#1, is 1 (M)
+  void dwell(double seconds) override {
+    if (seconds > kLongestDwell) throw Unsayable{fmt::format("dwells for {:g} s", seconds)};
+    std::string text;
+    if (modes_.feed_mode != FeedMode::units_per_minute) {
+      text = "G94";
+      modes_.feed_mode = FeedMode::units_per_minute;
+      modes_.F.reset();
+    }
+    add_word(text, "G4 X" + number(fixed_text(seconds, 3)));
+    put(text);
+  }
+
+  std::string text() const override {
+    std::string out = "%\n";
+    std::size_t blocks = 0;
+    for (const std::string& line : lines_) blocks += is_numbered(line) ? 1 : 0;
+    const std::size_t step = blocks > kMostNumbered ? 1000 : 1;
+    std::size_t n = 0;
+    for (const std::string& line : lines_) {
+      if (is_numbered(line) && n++ % step == 0) out += fmt::format("N{} ", (n - 1) / step + 1);
+      out += line + "\n";
+    }
+    return out + "%\n";
+  }
+
+ private:
+  // What no block can say of the way to its end.
+  void assume_ways(const DialectMotion& motion) {
+    // B-63844EN/02 p. 48
+    if (motion.is_rapid && motion.names(Axis::X) && motion.names(Axis::Y)) {
+      assume("rapids in X and Y meet nothing, also off their line (No. 1401#1, LRP, may be 0)");
+    }
+    for (const Axis axis : {Axis::A, Axis::B, Axis::C}) {
+      const auto i = static_cast<std::size_t>(index_of(axis) - kLinearJoints);
+      if (!motion.names(axis) || !settings_.is_endless[i]) continue;
+      assume(
+          fmt::format("{} counts beyond 360 deg and does not roll over (No. 1008#0, ROA, is 0; M)",
+                      letter(axis)));
+    }
+  }
+
+  static bool is_numbered(const std::string& line) {
+    return line.front() != 'O' && line.front() != '(';
+  }
+
+  // G49 alone moves Z by the old length where length works by axis motion, TOS, No. 5006#6, = 0
+  // (M); with G53 it is cancelled safely (B-63844EN/02 p. 204).
+  std::string retract_text() const {
+    const double Z = settings_.retract_Z / unit(Axis::Z);
+    return "G90 G49 G53 G0 Z" + number(fixed_text(Z, decimals(Axis::Z)));
+  }
+
+  // By way of the retracted height, which no cut can take.
+  void cancel_length(const DialectMotion& motion) {
+    if (!motion.is_rapid || motion.words.size() > 1) {
+      throw Unsayable{"cancels the tool length (G49) on the way; let Z retract first"};
+    }
+    retract();
+  }
+
+  void place(const DialectMotion& motion) {
+    if (!motion.is_rapid) throw Unsayable{"feeds in machine coordinates; G53 is a rapid"};
+    assume("machine coordinates count from the same zero as in the original");
+    const bool has_Z = motion.names(Axis::Z);
+    modes_.code.reset();
+    put(motion_text(motion, has_Z ? "G90 G49 G53" : "G53"));
+    if (has_Z) {
+      modes_.length = 0;
+    } else if (modes_.length != 0) {
+      modes_.length.reset();
+    }
+  }
+
+  static std::string system_code(int system) {
+    if (system > 6) throw Unsayable{"selects G59.1 ... G59.3"};
+    return fmt::format("G{}", 53 + system);
+  }
+  void work_system(int system) {
+    put(system_code(system));
+    modes_.work_system = system;
+  }
+
+  // A number without point counts in increments.
+  std::string number(std::string text) const override {
+    return text.find('.') == std::string::npos ? text + "." : text;
+  }
+  std::string speed(double rpm) const override { return fmt::format("{:.0f}", std::round(rpm)); }
+};
+
+}  // namespace
+
+std::unique_ptr<DialectPrinter> make_fanuc(const DialectSettings& settings,
+                                           std::vector<std::string>& lines) {
+  return std::make_unique<Fanuc>(settings, lines);
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,328 @@
+#include "sim/programs/compensate/linuxcnc_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "controllers/gcode/canned_cycles.h"
+#include "controllers/gcode/lexer.h"
+#include "controllers/gcode/modal_state.h"
+#include "controllers/gcode/number_text.h"
+#include "controllers/gcode/request.h"
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+#include "sim/programs/compensate/motion_printer.h"
+#include "sim/programs/compensate/woven_line.h"
+
+namespace servomill::sim {
+
+using controllers::Code;
+using controllers::ExecutedBlock;
+using controllers::Group;
+
+namespace {
+
+constexpr double kStanding = 1e-12;  // m, rounding of offsets
+
+// Whether a feed of the block moves rotary axes and no linear one.
+bool turns_alone(const ExecutedBlock& block) {
+  return std::any_of(block.moves.begin(), block.moves.end(), [](const Move& move) {
+    return move.kind == MoveKind::feed && !(move.s_end > move.s_begin);
+  });
+}
+
+// What means something else in a program without subroutines, or where the axes stand elsewhere.
+void refuse_what_changes_its_meaning(const ExecutedBlock& block) {
+  const controllers::Request& request = *block.request;
+  const auto fail = [&](Group group, std::string message) {
+    throw InputError({*block.file, block.line, request.of(group).column}, std::move(message));
+  };
+  if (request.code(Group::m_spindle) >= 700 && block.call_depth > 0) {
+    fail(Group::m_spindle,
+         fmt::format("M{} in a subroutine: what it saves belongs to the call, and subroutines are "
+                     "unrolled",
+                     request.code(Group::m_spindle) / 10));
+  }
+  const int code = request.code(Group::g_non_modal);
+  if (code == 281 || code == 301) {
+    fail(Group::g_non_modal,
+         fmt::format("{} would store the corrected place as that of the machine",
+                     controllers::code_name('G', code)));
+  }
+  if (request.code(Group::g_tool_length) == 431 && request.motion.code != nullptr) {
+    fail(Group::g_tool_length, "G43.1 beside a motion: both take the axis words");
+  }
+  const controllers::ModalState& state = *block.state;
+  if (state.compensation.acts() && state.feed_mode == FeedMode::inverse_time &&
+      request.motion_code() > 0) {
+    throw InputError({*block.file, block.line, request.motion.column},
+                     "inverse time (G93) under cutter compensation cannot be unrolled: its moves "
+                     "are of other lengths; use G94");
+  }
+  if (state.feed_mode == FeedMode::units_per_revolution && request.motion_code() > 0 &&
+      turns_alone(block)) {
+    throw InputError({*block.file, block.line, request.motion.column},
+                     "rotary axes alone at a feed per revolution (G95) cannot keep their time; use "
+                     "G94");
+  }
+  if (state.feed_mode == FeedMode::units_per_revolution && state.spindle_speed == 0.0 &&
+      controllers::is_canned_cycle(request.motion_code())) {
+    throw InputError({*block.file, block.line, request.motion.column},
+                     "a cycle under G95 while the spindle speed is zero has no feed");
+  }
+  const int L = static_cast<int>(std::lround(request['L']));
+  const bool sets_position = code == 100 && L == 20;
+  const auto P = static_cast<int>(std::lround(request['P']));
+  if (sets_position && P != 0 && P != block.state->work_system) {
+    fail(Group::g_non_modal,
+         fmt::format("G10 L20 P{} of a work system that is not in force cannot be corrected", P));
+  }
+}
+
+// A radius says the same as long as its ends are where they were.
+void keep_radius(const WovenLine& line, const Step& step, const AxisWords& at, double grid,
+                 MotionWords& words) {
+  if (!line.has_word('R') || !line.is_constant_word('R') || step.blocks.size() != 1) return;
+  const double half = kHalf * grid;
+  if ((at - step.programmed.begin).cwiseAbs().maxCoeff() > half ||
+      (step.blocks[0].end - step.programmed.end).cwiseAbs().maxCoeff() > half) {
+    return;
+  }
+  words.kept += 'R';
+  std::erase_if(words.words, [](const auto& word) {
+    return word.first == 'I' || word.first == 'J' || word.first == 'K';
+  });
+}
+
+}  // namespace
+
+LinuxCncWriter::LinuxCncWriter(Walk& walk, Summary& summary, int decimals)
+    : walk_(walk), summary_(summary), decimals_(decimals) {}
+LinuxCncWriter::~LinuxCncWriter() = default;
+
+void LinuxCncWriter::put(std::string_view text) {
+  text_ += text;
+  text_ += end_of_line_;
+}
+
+void LinuxCncWriter::put(const WovenLine& line) {
+  std::string text;
+  for (const std::string& word : line.words) text += word;
+  if (text.size() > controllers::kLongestLine) {
+    throw InputError({line.file, line.number},
+                     fmt::format("becomes a line of {} characters; at most {} are allowed",
+                                 text.size(), controllers::kLongestLine));
+  }
+  if (!text.empty() || line.text.empty()) put(text);
+}
+
+// A '%' opens the program if it is its first line.
+bool LinuxCncWriter::take_percent(const Block& block) {
+  if (block.block == nullptr || !block.block->percent) return false;
+  put(block.text);
+  if (is_first_) header_at_ = text_.size();
+  is_open_ = is_first_;
+  is_first_ = false;
+  return true;
+}
+
+void LinuxCncWriter::write(const Block& given) {
+  Block block = given;
+  const bool has_return = !block.text.empty() && block.text.back() == '\r';
+  if (has_return) block.text.remove_suffix(1);
+  if (has_return && text_.empty() && waiting_.empty()) end_of_line_ = "\r\n";  // the first line
+  if (take_percent(block)) return;
+  if (block.text.find_first_not_of(" \t") != std::string_view::npos) is_first_ = false;
+  if (is_skipped(block)) {
+    summary_.unrolled = true;
+    return;
+  }
+  WovenLine line = line_of(block, summary_);
+  if (has_o_word(line) || block.is_repeated || block.call_depth > 0) summary_.unrolled = true;
+  if (has_o_word(line)) {
+    drop_o_words(line);
+    if (!block.moves.empty() && block.moves.back().kind == MoveKind::end) put("M2");  // M99
+    if (is_empty(line)) return;
+  } else if (block.block != nullptr && block.block->deleted) {
+    return put(fmt::format("; {}", block.text));
+  }
+  refuse_slash(line);
+  if (block.request != nullptr) {
+    refuse_what_changes_its_meaning(block);
+    const int cutter = block.request->code(Group::g_cutter_compensation);
+    if (cutter > 400) {
+      summary_.has_cutter_compensation = compensates_cutter_ = true;
+      for (std::size_t i = 0; i < line.pieces.size(); ++i) {
+        const char c = line.pieces[i].letter;
+        const bool goes = c == 'D' || (c == 'L' && cutter % 10 == 1) ||
+                          (line.codes[i] != nullptr && line.codes[i]->tenths == cutter &&
+                           line.codes[i]->group == Group::g_cutter_compensation);
+        if (goes) drop(line, i);
+      }
+      if (is_empty(line)) return;
+    }
+    const bool is_place = is_place_of_machine(block);
+    line.letters = motion_letters(block);
+    line.is_cycle = controllers::is_canned_cycle(block.request->motion_code());
+    line.is_motion = block.request->motion.code != nullptr && !is_place &&
+                     std::any_of(kAllAxes.begin(), kAllAxes.end(),
+                                 [&](Axis axis) { return block.request->has(letter(axis)); });
+    line.is_motion = line.is_motion || block.request->has_polar();
+    shift_position(block, line);
+  }
+  waiting_.push_back(std::move(line));
+  move(block);
+  if (block.request != nullptr && block.request->code(Group::g_cutter_compensation) == 400) {
+    compensates_cutter_ = false;
+  }
+  if (!compensates_cutter_) release_until(0);
+}
+
+// Where the machine stands is another place now: what says it has to say so.
+void LinuxCncWriter::shift_position(const Block& block, WovenLine& line) const {
+  const int code = block.request->code(Group::g_non_modal);
+  const int L = static_cast<int>(std::lround((*block.request)['L']));
+  const bool sets = code == 920 || (code == 100 && (L == 20 || L == 10 || L == 11));
+  if (!sets) return;
+  const controllers::ModalState& state = *block.state;
+  const AxisWords off = state.unrotated(walk_.out() - state.to_machine(state.position));
+  for (std::size_t i = 0; i < line.pieces.size(); ++i) {
+    if (line.pieces[i].kind != PieceKind::word) continue;
+    const auto axis = axis_of(line.pieces[i].letter);
+    if (!axis) continue;
+    const double d = off[index_of(*axis)] / unit_of(index_of(*axis), state.unit);
+    if (d == 0.0) continue;
+    constexpr int kDecimals = 9;
+    const double value = line.value(line.pieces[i].letter) + d;
+    line.words[i] =
+        fmt::format("{}{}", line.pieces[i].letter, controllers::fixed_text(value, kDecimals));
+  }
+}
+
+// Everything that waits before the line of that number, and not that line; all with 0.
+void LinuxCncWriter::release_until(int line) {
+  while (!waiting_.empty() && (line == 0 || waiting_.front().number != line)) {
+    release(waiting_.front());
+    waiting_.pop_front();
+  }
+}
+
+// Without motion, or with what has been woven in.
+void LinuxCncWriter::release(WovenLine& line) {
+  if (!line.is_released) {
+    if (line.is_motion && compensates_cutter_) drop_motion(line);
+    put(line);
+  }
+  line.is_released = true;
+  if (!line.behind.empty()) put(line.behind);
+  line.behind.clear();
+}
+
+void LinuxCncWriter::note_motion_code(const WovenLine& line) {
+  for (const Code* code : line.codes) {
+    if (code == nullptr || code->group != Group::g_motion) continue;
+    motion_ = code->tenths <= 30 ? controllers::code_name('G', code->tenths) : "";
+  }
+}
+
+void LinuxCncWriter::move(const Block& block) {
+  const bool is_place = block.request != nullptr && is_place_of_machine(block);
+  const bool cycles = !waiting_.empty() && waiting_.back().is_cycle;
+  bool has_moved = false;
+  for (const Move& one : block.moves) {
+    if (is_motion(one.kind)) {
+      has_moved = true;
+      move(one, block, is_place);
+    } else if (has_moved && cycles) {  // everything else the line says
+      put_cycle_step(one, block);
+    }
+  }
+  if (!has_moved && !waiting_.back().is_motion) note_motion_code(waiting_.back());
+}
+
+void LinuxCncWriter::put_cycle_step(const Move& one, const Block& block) {
+  if (one.kind == MoveKind::dwell) {
+    put(fmt::format("G4 P{}", controllers::significant_text(one.value)));
+  } else if (one.kind == MoveKind::spindle) {
+    put(one.direction > 0 ? "M3" : one.direction < 0 ? "M4" : "M5");
+  } else if (one.kind == MoveKind::stop && block.request->code(Group::m_stop) < 0) {  // of G88
+    put(fmt::format("M{}", one.number));
+  }
+}
+
+void LinuxCncWriter::move(const Move& one, const Block& block, bool is_place) {
+  const bool waits = std::any_of(waiting_.begin(), waiting_.end(),
+                                 [&](const WovenLine& line) { return line.number == one.line; });
+  if (waits) release_until(one.line);
+  WovenLine& line = waits ? waiting_.front() : waiting_.back();
+  const Step step = walk_.next(one, block);
+  if (step.is_corrected) return write_step(step, line, waits && !line.is_released);
+  // the words of the line are those of the move
+  walk_.arrive(step, step.programmed.frame.machine(step.blocks.back().end));
+  if (is_place) return;
+  note_motion_code(line);
+  if (motion_ != "G0") insert(line, "G0");
+  motion_ = "G0";
+}
+
+void LinuxCncWriter::write_step(const Step& step, WovenLine& line, bool is_woven_in) {
+  const Move& one = *step.move;
+  const bool is_rapid = one.kind == MoveKind::rapid;
+  const bool is_inverse = line.feed_mode == FeedMode::inverse_time;
+  const bool only_turns = !is_rapid && !is_inverse && step.programmed.length() < kStanding &&
+                          line.feed_mode == FeedMode::units_per_minute &&
+                          step.programmed.turns_axes();
+  const double angle = (step.programmed.end - step.programmed.begin).tail<3>().norm();
+  bool leaves_inverse = false;
+  AxisWords at = step.begin;
+  for (const FittedBlock& block : step.blocks) {
+    const bool weaves = is_woven_in && !line.is_released;
+    MotionPrinter printer(line, weaves ? &line : nullptr, decimals_);
+    MotionWords words = printer.print(block, is_rapid, at);
+    if (!weaves && !block.arc && words.words.empty()) continue;
+    if (weaves && block.arc) keep_radius(line, step, at, std::pow(10.0, -decimals_) * mm, words);
+    const double share = block.t_end - block.t_begin;
+    const bool moves_linear = printer.end().head<3>() != at.head<3>();
+    if (is_inverse && !is_rapid) {
+      const double way = (printer.end() - at).head<3>().norm();
+      printer.feed(words,
+                   share > 0.0 ? line.value('F') / share : one.feed * minute / std::max(way, 1e-9));
+    } else if (only_turns && moves_linear) {
+      words.prefix = "G93";
+      leaves_inverse = true;
+      printer.feed(words, one.feed * minute / (angle * std::max(share, 1e-3)));
+    } else if (leaves_inverse) {
+      printer.feed(words, one.feed * minute / (angle * std::max(share, 1e-3)));
+    }
+    const bool needs_code = motion_ != words.code;
+    if (weaves) {
+      if (step.blocks.size() > 1 || line.is_cycle || leaves_inverse) take_behind(line);
+      weave(line, words, needs_code);
+      put(line);
+      line.is_released = true;
+    } else {
+      put(words.text(needs_code));
+    }
+    motion_ = words.code;
+    at = printer.end();
+  }
+  if (leaves_inverse) {
+    put(fmt::format("G94 F{}",
+                    controllers::significant_text(line.feed_linear * minute / line.unit)));
+  }
+  walk_.arrive(step, step.programmed.frame.machine(at));
+}
+
+std::string LinuxCncWriter::finish(const std::vector<std::string>& header) {
+  release_until(0);
+  std::string comment;
+  for (const std::string& one : header) {
+    comment += controllers::remark(one) + end_of_line_;
+  }
+  text_.insert(header_at_, comment);
+  if (is_open_) put("%");
+  return std::move(text_);
+}
+
+}  // namespace servomill::sim

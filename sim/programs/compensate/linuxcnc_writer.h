@@ -1,0 +1,62 @@
+/// Weaves corrected moves into the text of a program for LinuxCNC: what is not motion stays as it
+/// stands, word by word.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "sim/programs/compensate/program_writer.h"
+#include "sim/programs/compensate/walk.h"
+
+namespace servomill::sim {
+
+struct WovenLine;
+
+/// Positions are written in the units, the distance mode and the work coordinates that the program
+/// has there: blocks that change them stay. Words whose value does not change keep their spelling.
+/// - A line with one block of motion keeps its form; lines that follow it hold motion only. Codes
+///   that act behind the motion (M0, M1, M2, M30, M60) come behind the last.
+/// - Expressions become numbers, lines with O-words go, canned cycles and cutter compensation
+///   become their moves.
+/// - G92 and G10 L10, L11, L20 say where the machine is: they are told where it now stands.
+/// - A line that starts with '/' and moves or changes modes is refused: what follows relies on it.
+///   One that the interpreter leaves out becomes a comment.
+/// - Rotary axes alone keep their time where X, Y and Z now move by micrometres (G93 for
+///   the block).
+class LinuxCncWriter final : public ProgramWriter {
+ public:
+  /// @param decimals  of millimetres; inches get two more, so that they are no coarser
+  LinuxCncWriter(Walk& walk, Summary& summary, int decimals);
+  ~LinuxCncWriter() override;
+
+  void write(const controllers::ExecutedBlock& block) override;
+  std::string finish(const std::vector<std::string>& header) override;
+
+ private:
+  using Block = controllers::ExecutedBlock;
+
+  void put(std::string_view text);
+  void put(const WovenLine& line);
+  bool take_percent(const Block& block);
+  void move(const Block& block);
+  void move(const Move& one, const Block& block, bool is_place);
+  void put_cycle_step(const Move& one, const Block& block);
+  void release_until(int line);
+  void release(WovenLine& line);
+  void write_step(const Step& step, WovenLine& line, bool is_woven_in);
+  void shift_position(const Block& block, WovenLine& line) const;
+  void note_motion_code(const WovenLine& line);
+
+  Walk& walk_;
+  Summary& summary_;
+  int decimals_;
+  std::string text_, end_of_line_ = "\n";
+  std::size_t header_at_ = 0;
+  bool is_first_ = true, is_open_ = false;  // no line yet; behind a '%'
+  std::string motion_;                      // code in force in the output; empty: none
+  bool compensates_cutter_ = false;
+  std::deque<WovenLine> waiting_;  // lines whose motion may still come
+};
+
+}  // namespace servomill::sim

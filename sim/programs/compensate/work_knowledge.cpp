@@ -1,0 +1,210 @@
+#include "sim/programs/compensate/work_knowledge.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "controllers/gcode/modal_state.h"
+#include "controllers/gcode/parameters.h"
+#include "controllers/gcode/request.h"
+#include "plant/vocabulary/units.h"
+#include "sim/model/design.h"
+#include "sim/programs/compensate/compensate.h"
+#include "sim/programs/compensate/walk.h"
+
+namespace servomill::sim {
+
+using controllers::ProgramSetup;
+
+AxisValues axis_values(const std::string& option, std::string_view text, const JointLayout& layout,
+                       bool takes_rotation) {
+  AxisValues out;
+  const Place place{option + " " + std::string(text)};
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t end = std::min(text.find(',', from), text.size());
+    const std::string_view item = text.substr(from, end - from);
+    from = end + 1;
+    const double value =
+        item.size() > 2 && item[1] == '=' ? number_of(std::string(item.substr(2))) : std::nan("");
+    const bool is_rotation = takes_rotation && !item.empty() && (item[0] == 'R' || item[0] == 'r');
+    const auto axis = item.empty() ? std::nullopt : axis_of(item.front());
+    if (!std::isfinite(value) || (!axis && !is_rotation)) {
+      throw InputError(place, "must be positions in mm and deg, such as X=10,Y=-5.5");
+    }
+    if (is_rotation) {
+      out.rotation = value * deg;
+      out.has_rotation = true;
+      continue;
+    }
+    if (!layout.joint_of(*axis)) {
+      throw InputError(place, fmt::format("the machine has no axis {}", letter(*axis)));
+    }
+    out.words[index_of(*axis)] = value * (is_linear(*axis) ? mm : deg);
+    out.given[static_cast<std::size_t>(index_of(*axis))] = true;
+  }
+  return out;
+}
+
+namespace {
+
+constexpr std::size_t kSystems = kWorkSystems.size();
+
+// Axes of a second --work-offset of the same system are added, another value of one is refused.
+void add_work_offset(const std::string& text, const JointLayout& layout,
+                     std::array<std::optional<AxisValues>, kSystems>& given) {
+  const std::size_t colon = text.find(':');
+  const std::string name = colon == std::string::npos ? "G54" : text.substr(0, colon);
+  const auto found = std::find(kWorkSystems.begin(), kWorkSystems.end(), name);
+  if (found == kWorkSystems.end()) {
+    throw InputError({"--work-offset " + text},
+                     fmt::format("'{}' is none of {}", name, fmt::join(kWorkSystems, ", ")));
+  }
+  const AxisValues values = axis_values(
+      "--work-offset", std::string_view(text).substr(colon == std::string::npos ? 0 : colon + 1),
+      layout, true);
+  auto& known = given[static_cast<std::size_t>(found - kWorkSystems.begin())];
+  if (!known) {
+    known = values;
+    return;
+  }
+  const auto contradict = [&](char what, double a, double b, double unit) {
+    throw InputError({"--work-offset " + text}, fmt::format("{} of {} is {:g} here and {:g} before",
+                                                            what, name, a / unit, b / unit));
+  };
+  for (const Axis axis : kAllAxes) {
+    const int i = index_of(axis);
+    const auto k = static_cast<std::size_t>(i);
+    if (!values.given[k]) continue;
+    if (known->given[k] && known->words[i] != values.words[i]) {
+      contradict(letter(axis), values.words[i], known->words[i], is_linear(axis) ? mm : deg);
+    }
+    known->given[k] = true;
+    known->words[i] = values.words[i];
+  }
+  if (!values.has_rotation) return;
+  if (known->has_rotation && known->rotation != values.rotation) {
+    contradict('R', values.rotation, known->rotation, deg);
+  }
+  known->has_rotation = true;
+  known->rotation = values.rotation;
+}
+
+// "1=50": in place of the length of the tool table.
+void add_tool_length(const std::string& text, controllers::ToolTable& tools) {
+  const Place place{"--tool-length " + text};
+  const std::size_t equals = text.find('=');
+  const double number =
+      equals == std::string::npos ? std::nan("") : number_of(text.substr(0, equals));
+  const double length =
+      equals == std::string::npos ? std::nan("") : number_of(text.substr(equals + 1));
+  if (!std::isfinite(length) || !(number >= 1.0) || number != std::floor(number) ||
+      number > 99999.0) {
+    throw InputError(place, "must be NUMBER=LENGTH with the length in mm, such as 1=50");
+  }
+  controllers::ToolEntry tool;
+  if (const auto* known = tools.find(static_cast<int>(number))) tool = *known;
+  tool.number = static_cast<int>(number);
+  tool.offset[index_of(Axis::Z)] = length * mm;
+  tools.replace(tool);
+}
+
+}  // namespace
+
+WorkKnowledge read_work_knowledge(const CompensateRequest& request, const JointLayout& layout) {
+  WorkKnowledge known;
+  known.setup = program_setup(request.inputs, request.program_file);
+  if (!request.inputs.parameter_file.empty()) {
+    for (int system = 1; system <= controllers::kWorkSystems; ++system) {
+      known.work_systems.insert(system);
+    }
+  }
+  std::array<std::optional<AxisValues>, kSystems> given;
+  for (const std::string& text : request.work_offsets) add_work_offset(text, layout, given);
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    if (!given[k]) continue;
+    known.setup.work_offset[k] = given[k]->words;
+    known.setup.work_rotation[k] = given[k]->rotation;
+    known.work_systems.insert(static_cast<int>(k) + 1);
+  }
+  for (const std::string& text : request.tool_lengths) add_tool_length(text, known.setup.tools);
+  return known;
+}
+
+void refuse_unknown_system(const controllers::ExecutedBlock& block,
+                           const CompensateRequest& request, WorkKnowledge& knowledge) {
+  std::set<int>& known = knowledge.work_systems;
+  if (block.request == nullptr) return;
+  const auto& words = *block.request;
+  const int system = block.state->work_system;
+  if (words.code(controllers::Group::g_non_modal) == 100 && words.has('P')) {  // G10 says it
+    const int P = static_cast<int>(std::lround(words['P']));
+    known.insert(P == 0 ? system : P);
+  }
+  const bool moves = std::any_of(block.moves.begin(), block.moves.end(),
+                                 [](const Move& move) { return is_motion(move.kind); });
+  if (known.contains(system) || !knowledge.depends_on_place || !moves) return;
+  if (is_place_of_machine(block)) return;
+  const auto& chosen = words.of(controllers::Group::g_work_system);
+  const auto name = kWorkSystems[static_cast<std::size_t>(system - 1)];
+  throw InputError(
+      {request.program_file, block.line, chosen.column},
+      fmt::format("where {0} lies in the machine is not known, and with it the errors; "
+                  "--work-offset {0}:X=...,Y=...,Z=... or --parameter-file names it (0 may be "
+                  "given, it is not assumed)",
+                  name));
+}
+
+std::string words_text(const AxisWords& words, const JointLayout& layout) {
+  std::string out;
+  for (const Axis axis : kAllAxes) {
+    if (!layout.joint_of(axis)) continue;
+    out += fmt::format("{}{}{:g}", out.empty() ? "" : " ", letter(axis),
+                       words[index_of(axis)] / (is_linear(axis) ? mm : deg));
+  }
+  return out;
+}
+
+WorkSystemPlace place_of(const controllers::ProgramSetup& setup, int system) {
+  const auto k = static_cast<std::size_t>(system - 1);
+  const auto stored = [&](int number) {
+    const auto found = setup.stored.find(number);
+    return found == setup.stored.end() ? 0.0 : found->second;
+  };
+  WorkSystemPlace place{setup.work_offset[k], setup.work_rotation[k]};
+  for (const Axis axis : kAllAxes) {
+    const int i = index_of(axis);
+    if (place.offset[i] != 0.0) continue;
+    place.offset[i] =
+        stored(controllers::parameter::work_offset(system) + i) * (is_linear(axis) ? mm : deg);
+  }
+  if (place.rotation == 0.0) {
+    place.rotation = stored(controllers::parameter::work_rotation(system)) * deg;
+  }
+  return place;
+}
+
+// Irregular places: no period of an error fits all of them.
+bool depends_on_place(const Correction& correction, const Joints& lower, const Joints& upper) {
+  constexpr int kPlaces = 64;
+  constexpr double kSame = 1e-9, kReach = 0.5;  // m, rad; m, rad about zero where nothing is given
+  const JointLayout& layout = correction.layout();
+  std::optional<AxisWords> first;
+  for (int n = 0; n < kPlaces; ++n) {
+    Joints Q = Joints::Zero();
+    for (int j = 0; j < kJoints; ++j) {
+      if (!layout.has(j)) continue;
+      const double a = std::isfinite(lower[j]) ? lower[j] : -kReach;
+      const double b = std::isfinite(upper[j]) ? upper[j] : kReach;
+      const double share = std::fmod((n + 1) * std::sqrt(2.0 + 3.0 * j), 1.0);
+      Q[j] = a + share * (b - a);
+    }
+    const AxisWords d = correction.at(layout.words(Q));
+    if (!first) first = d;
+    if ((d - *first).cwiseAbs().maxCoeff() > kSame) return true;
+  }
+  return false;
+}
+
+}  // namespace servomill::sim

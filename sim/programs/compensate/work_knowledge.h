@@ -1,0 +1,60 @@
+/// Work offsets and tool lengths, as far as the user has given them.
+#pragma once
+
+#include <array>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "controllers/gcode/interpreter.h"
+#include "controllers/gcode/program_setup.h"
+#include "sim/programs/compensate/correction.h"
+
+namespace servomill::sim {
+
+struct CompensateRequest;
+
+inline constexpr std::array<std::string_view, 9> kWorkSystems = {
+    "G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"};
+
+/// "X=10,C=90" in mm and deg; `rotation` takes R.
+struct AxisValues {
+  AxisWords words = AxisWords::Zero();
+  std::array<bool, kAxisWords> given{};
+  double rotation = 0.0;  // rad
+  bool has_rotation = false;
+};
+
+/// @param option  its name, for messages
+AxisValues axis_values(const std::string& option, std::string_view text, const JointLayout& layout,
+                       bool takes_rotation);
+
+/// State of the control before the program, and the work systems of known place.
+struct WorkKnowledge {
+  controllers::ProgramSetup setup;
+  std::set<int> work_systems;    // 1 ... 9
+  bool depends_on_place = true;  // the errors are not the same everywhere
+};
+
+WorkKnowledge read_work_knowledge(const CompensateRequest& request, const JointLayout& layout);
+
+/// Moves in a work system of unknown place would be corrected for another place. G10 makes a system
+/// known.
+/// @throws InputError
+void refuse_unknown_system(const controllers::ExecutedBlock& block,
+                           const CompensateRequest& request, WorkKnowledge& knowledge);
+
+/// Place of a work system: of the request, else of the parameter file. m, rad
+struct WorkSystemPlace {
+  AxisWords offset = AxisWords::Zero();
+  double rotation = 0.0;
+};
+WorkSystemPlace place_of(const controllers::ProgramSetup& setup, int system);
+
+/// "X1 Y2", mm and deg, of the axes that the machine has.
+std::string words_text(const AxisWords& words, const JointLayout& layout);
+
+/// True if the correction differs between places of the travel.
+bool depends_on_place(const Correction& correction, const Joints& lower, const Joints& upper);
+
+}  // namespace servomill::sim

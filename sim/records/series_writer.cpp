@@ -1,0 +1,129 @@
+#include "sim/records/series_writer.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace servomill::sim {
+namespace {
+
+// Room for what the library notes about a new chunk; a node of its index is about half of it.
+constexpr std::size_t kBytesPerChunk = 8192;
+
+constexpr std::size_t kNeighbours = 8;  // doubles of a cache line
+
+constexpr std::size_t kValuesPerThread = 65536;  // fewer are encoded before a thread has started
+
+std::size_t place_of(const std::vector<ColumnLabels>& labels, const std::string& name) {
+  const auto at = std::find_if(labels.begin(), labels.end(),
+                               [&name](const ColumnLabels& l) { return l.name == name; });
+  assert(at != labels.end());
+  return static_cast<std::size_t>(at - labels.begin());
+}
+
+}  // namespace
+
+SeriesWriter::SeriesWriter(Hdf5Group group, SeriesLayout layout)
+    : group_(std::move(group)), layout_(std::move(layout)) {
+  // all datasets, with their scales
+  std::vector<Hdf5Dataset> scales;
+  for (const ColumnLabels& labels : layout_.labels) {
+    scales.push_back(group_.labels(labels.name, labels.letters, labels.long_name));
+  }
+  add_channel({layout_.index, layout_.index_meaning, "", Storage::float64}, scales);
+  for (const Channel& channel : layout_.channels) add_channel(channel, scales);
+
+  // all memory
+  filling_.resize(layout_.chunk_rows * width_);
+  writing_.resize(filling_.size());
+  chunks_.resize(width_);
+  for (std::size_t begin = 0; begin < width_; begin += kNeighbours) {
+    const std::size_t end = std::min(begin + kNeighbours, width_);
+    neighbours_.push_back({begin, end, std::vector<double>((end - begin) * layout_.chunk_rows),
+                           ChunkEncoder(layout_.compression)});
+  }
+  group_.flush_file();
+}
+
+SeriesWriter::~SeriesWriter() {
+  if (finished_) return;
+  try {
+    finish();
+  } catch (...) {
+    // whoever wants to know calls finish()
+  }
+}
+
+void SeriesWriter::add_channel(const Channel& channel, std::vector<Hdf5Dataset>& scales) {
+  const bool has_columns = !channel.labels.empty();
+  const std::size_t labels = has_columns ? place_of(layout_.labels, channel.labels) : 0;
+  const std::size_t columns = has_columns ? layout_.labels[labels].letters.size() : 1;
+  Hdf5Dataset dataset = group_.extendible(channel.name, columns, has_columns, layout_.chunk_rows,
+                                          channel.storage, layout_.compression, channel.meaning);
+  if (datasets_.empty()) {
+    dataset.make_scale(channel.name);
+  } else {
+    dataset.attach_scale(datasets_.front().dataset, 0);
+  }
+  if (has_columns) {
+    dataset.attach_scale(scales[labels], 1);
+    dataset.attribute("columns", layout_.labels[labels].letters);  // for readers without scales
+  }
+  datasets_.push_back({std::move(dataset), width_, columns});
+  storage_.insert(storage_.end(), columns, channel.storage);
+  width_ += columns;
+}
+
+std::size_t SeriesWriter::offset_of(std::string_view channel) const {
+  for (std::size_t i = 0; i < layout_.channels.size(); ++i) {
+    if (layout_.channels[i].name == channel) return datasets_[i + 1].offset;
+  }
+  assert(channel == layout_.index);
+  return 0;
+}
+
+void SeriesWriter::append(std::span<const double> row) {
+  assert(row.size() == width_ && !finished_);
+  std::copy(row.begin(), row.end(), filling_.begin() + static_cast<std::ptrdiff_t>(rows_ * width_));
+  if (++rows_ == layout_.chunk_rows) hand_over();
+}
+
+void SeriesWriter::finish() {
+  finished_ = true;
+  if (rows_ > 0) hand_over();
+  background_.wait();
+}
+
+void SeriesWriter::hand_over() {
+  const std::size_t rows = std::exchange(rows_, 0);
+  background_.wait();
+  std::swap(filling_, writing_);
+  background_.post([this, rows] { write_block(writing_, rows); });
+}
+
+void SeriesWriter::encode(Neighbours& columns, const std::vector<double>& block, std::size_t rows) {
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double* from = block.data() + row * width_;
+    double* to = columns.gathered.data() + row;
+    for (std::size_t c = columns.begin; c < columns.end; ++c, to += rows) *to = from[c];
+  }
+  const double* values = columns.gathered.data();
+  for (std::size_t c = columns.begin; c < columns.end; ++c, values += rows) {
+    columns.encoder.encode({values, rows}, layout_.chunk_rows, storage_[c], chunks_[c]);
+  }
+}
+
+void SeriesWriter::write_block(const std::vector<double>& block, std::size_t rows) {
+  const auto useful = static_cast<unsigned>(1 + rows * width_ / kValuesPerThread);
+  for_each_index(neighbours_.size(), std::min(thread_count(layout_.threads), useful),
+                 [&](std::size_t i) { encode(neighbours_[i], block, rows); });
+  std::size_t bytes = width_ * kBytesPerChunk;
+  for (const auto& chunk : chunks_) bytes += chunk.size();
+  group_.reserve(bytes);
+  for (Dataset& one : datasets_) {
+    one.dataset.append(rows, std::span(chunks_).subspan(one.offset, one.columns));
+  }
+  group_.flush_file();
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,104 @@
+/// Datasets of one group that grow together, row by row.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/records/hdf5_file.h"
+#include "sim/system/background.h"
+
+namespace servomill::sim {
+
+/// Names of the columns: `{"axis_linear", "XYZ", "linear axis"}`; one letter a column.
+struct ColumnLabels {
+  std::string name;
+  std::string letters;
+  std::string long_name;
+};
+
+/// One dataset: a number a row, or as many as its labels have letters.
+struct Channel {
+  std::string name;
+  Meaning meaning;
+  std::string labels;  // name of its ColumnLabels; empty: one number a row
+  Storage storage = Storage::float64;
+};
+
+/// What a SeriesWriter records. The index is the dimension that all share and the first number of a
+/// row; a list of probed points would have {"point", {"1", "number of the point"}}.
+struct SeriesLayout {
+  std::string index = "time";
+  Meaning index_meaning = {"s", "time"};
+  std::vector<ColumnLabels> labels;
+  std::vector<Channel> channels;
+  std::size_t chunk_rows = 16384;
+  int compression = 1;   // kNoCompression to kMostCompression
+  unsigned threads = 0;  // that compress; 0: one a core; the file does not depend on it
+};
+
+/// The file must outlive the writer.
+///
+/// A row is a flat list of numbers: the index, then the channels in the order of the layout.
+/// Whoever appends rows only copies them: a thread of the writer compresses and writes a block
+/// while the next one fills. There are no more than these two.
+class SeriesWriter {
+ public:
+  /// @pre  every name is there once, every `labels` of a channel exists
+  /// @throws SystemError
+  SeriesWriter(Hdf5Group group, SeriesLayout layout);
+  /// Writes the rest, as far as that is still possible.
+  ~SeriesWriter();
+  SeriesWriter(const SeriesWriter&) = delete;
+  SeriesWriter& operator=(const SeriesWriter&) = delete;
+
+  std::size_t row_width() const { return width_; }
+  /// Place in a row of the first number of the channel.
+  std::size_t offset_of(std::string_view channel) const;
+
+  /// Adds a row. Neither allocates nor throws, except when it completes a block of `chunk_rows`:
+  /// that is handed over, when the one before is written, flushed and outlives a kill of the
+  /// process. (Unless the kill comes while the library splits the index of a dataset, as it does
+  /// every 64 chunks or so: that spoils this dataset.)
+  /// @throws SystemError if a block before could not be written; the file ends with the one before
+  ///         that, and every later call throws the same
+  void append(std::span<const double> row);
+
+  /// Writes the rows of a block that is not full and waits for it. Nothing can be added afterwards.
+  /// @throws SystemError as append
+  void finish();
+
+ private:
+  struct Dataset {
+    Hdf5Dataset dataset;
+    std::size_t offset;  // in a row
+    std::size_t columns;
+  };
+  // Columns whose numbers share the cache lines of a row: encoded by one thread.
+  struct Neighbours {
+    std::size_t begin, end;
+    std::vector<double> gathered;  // column by column
+    ChunkEncoder encoder;
+  };
+
+  void add_channel(const Channel& channel, std::vector<Hdf5Dataset>& scales);
+  void hand_over();
+  void write_block(const std::vector<double>& block, std::size_t rows);
+  void encode(Neighbours& columns, const std::vector<double>& block, std::size_t rows);
+
+  Hdf5Group group_;
+  SeriesLayout layout_;
+  std::vector<Dataset> datasets_;  // the index first
+  std::vector<Storage> storage_;   // of each column
+  std::vector<Neighbours> neighbours_;
+  std::vector<std::vector<std::uint8_t>> chunks_;  // of the block, column by column
+  std::size_t width_ = 0;
+  std::vector<double> filling_, writing_;  // chunk_rows x width
+  std::size_t rows_ = 0;                   // in the block that fills
+  bool finished_ = false;
+  Background background_;  // last: its thread uses the others
+};
+
+}  // namespace servomill::sim

@@ -1,0 +1,73 @@
+/// Several points of a sweep, run together.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/engine/simulate.h"
+#include "sim/evaluation/comparison.h"
+#include "sim/model/scenario.h"
+#include "sim/run/run.h"
+
+namespace servomill::sim {
+
+/// How a point of a sweep ended. The numbers stand in result files.
+enum class PointStatus : std::uint8_t {
+  not_run = 0,  // or interrupted
+  done = 1,
+  stopped = 2,  // ran, but in some case the machine stopped
+  refused = 3,  // the input is wrong there
+  failed = 4,   // the program or the system failed there
+};
+inline constexpr std::size_t kPointStatuses = 5;
+
+/// "not_run", "done", ...
+std::string_view name_of(PointStatus status);
+
+/// What became of one point.
+struct BatchResult {
+  PointStatus status = PointStatus::not_run;
+  std::string reason;                  // why it is not `done`, in one line
+  std::vector<ComparisonRow> rows;     // of what ran: `done` or `stopped`
+  std::vector<CaseOutput> cases = {};  // with their signals, where they are kept
+};
+
+/// What to keep of the cases of a batch.
+enum class Keep : std::uint8_t { comparison, series };
+
+/// A point of a batch, by its place there, that has ended.
+struct EndedPoint {
+  std::size_t place = 0;
+  BatchResult result;
+};
+
+/// Rows of recorded signals, of all its runs together, that each of some threads may hold: a
+/// quarter of the machine's memory is theirs, up to kMostRows (some 2 GB) a thread: eight long
+/// points fill the lanes.
+double rows_at_once(unsigned threads);
+inline constexpr double kMostRows = 4e6;
+
+struct BatchControl {
+  Keep keep = Keep::comparison;
+  PreparationCache* cache = nullptr;  // what preparing points shares, with other batches too
+  double rows = kMostRows;            // that may be held; one point is always run
+};
+
+/// Prepares and runs all cases of all points on the calling thread, in lockstep where they share
+/// lanes (sim/engine/simulate.h). The result of a point depends on that point alone, bit for bit.
+/// What is wrong with a point is part of its result; nothing is thrown but what `ended` throws.
+/// @param stop      points that have not ended when it is set are never told of
+/// @param progress  set to the share done of the batch, 0 to 1
+/// @param ended     called on this thread with points as soon as they have ended, each once
+void run_batch(std::span<const Scenario> points, const StopFlag& stop, std::atomic<float>& progress,
+               const std::function<void(std::vector<EndedPoint>&&)>& ended,
+               const BatchControl& control = {});
+
+/// All faults in one line; without their places where these are keys of a sweep.
+std::string in_one_line(const InputError& error);
+
+}  // namespace servomill::sim

@@ -1,0 +1,129 @@
+/// Error budget of a case: what each cause has of a residual, found by running the scenario again
+/// without it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/run/run.h"
+
+namespace servomill::sim {
+
+/// What a residual can come from. Taking a cause away (of the case and of the case that it is
+/// compared with) means:
+enum class Cause : std::uint8_t {
+  lag,             // loops and drives: axes stand where the NC wants them (servo = "ideal")
+  table,           // points of compensation tables, lines for several axes, their ends: the error
+                   // itself (form = "exact")
+  delay,           // response, dead time and update of tables, signal delay and model period of the
+                   // feedback hardware, delay of the scales: 0, and one base tick for the model
+  saturation,      // limits of virtual displacements: out of reach
+  one_step,        // errors evaluated where displacing changes them: iterations = "converged"
+  identification,  // strategies believe in the truth (or, without one, in the imposed model), and
+                   // in the origin of the case (rewritten_for = "case")
+  friction,        // dry friction, backlash, cogging, and what the NC does against them: none
+  measurement,     // errors, noise, steps, marks of encoders, errors of screws: none
+  cutting,         // the case runs in air
+  interpolation,   // chords of rewritten programs and path tolerances a hundredth, no
+                   // nominal-position filter, no block time
+  uncorrected,     // errors of the machine that no strategy of the case corrects: none
+  uncorrectable,   // stays without all others: what the axes of the strategies cannot do, and
+                   // the hundredth of tolerances
+  imposed,         // likewise: what strategies bring out on purpose
+};
+inline constexpr std::size_t kCauses = 13;
+struct CauseInfo {
+  std::string_view name;  // "lag", "table", ...
+  std::string_view help;
+};
+const CauseInfo& info_of(Cause cause);
+
+/// One cause of a residual.
+struct BudgetPart {
+  Cause cause = Cause::lag;
+  bool present = false;        // the case has it; else all is 0
+  double at_place = 0.0;       // um, signed, where the residual is largest
+  double rms = 0.0;            // um, along the path
+  std::vector<double> signal;  // um
+};
+
+/// With R the residual along the path, R(-c) that of a run without the causes c and R(c) that of a
+/// run with no others, at equal arc length (where the tip stands, at an equal share of what rotary
+/// axes turn meanwhile); m = measurement, i = interpolation, l = lag, d = delay:
+///
+///     part(rest) = R()                                                                     (1)
+///     part(i)    = R(i) - R()                                                              (2)
+///     part(l)    = R(i, l) - R(i)                                                          (3)
+///     part(d)    = R(i, l, d) - R(i, l)                                                    (4)
+///     part(m)    = R - R(-m)                                                               (5)
+///     part(c)    = R(-m) - R(-m, -c)                    for all others                     (6)
+///     remainder  = R - sum of the parts
+///                = R(-m) - R(i, l, d) - sum of (6)                                         (7)
+///
+/// Everything goes through interpolation, loops and delays. Without them, a cause would not come
+/// out as it does: R(-l) differs from R by what the loops make of all causes, which (6) counts with
+/// those. So (2) to (4) ask what they do to the program alone, one after the other as the signal
+/// goes, and (6) what a cause adds to the outcome. Where loops are linear and causes add to what
+/// they are given, the parts then add up. Following errors, say, begin behind the interpolation:
+/// it has no part in them, although other tolerances make other speeds, and those other errors.
+///
+/// (6) takes causes away one at a time and not one after the other: parts do then not depend on an
+/// order, and what two of them do together is in both, or in none. So it shows in the remainder
+/// (which is 0 where there is but one); removed in turn, parts would add up exactly and the last
+/// ones would hide it. m is taken away first, since the steps of encoders (some 20 nm) would be in
+/// every other difference.
+///
+/// The rest (1) is `imposed` where a strategy moves the tool on purpose (generates errors, bends
+/// the path) and the quantity does not take that off, else `uncorrectable` where one knows errors,
+/// else `uncorrected`: the imposed displacement that imposed_curve_residual wants and nobody brings
+/// out.
+struct Budget {
+  QuantitySpec quantity;         // of one case; a signal along the path (has_path_signal)
+  std::vector<double> s;         // mm, of the original path
+  std::vector<double> turned;    // as in PathSignal
+  std::vector<double> residual;  // um
+  std::size_t place = 0;         // index of its largest value
+  std::array<BudgetPart, kCauses> parts;
+  std::vector<double> remainder;  // um
+  double remainder_rms = 0.0;
+  std::string note;  // why there is none: "case table stopped: ..."
+
+  double residual_at_place() const { return residual.at(place); }
+  double remainder_at_place() const { return remainder.at(place); }
+  double sum_at_place() const { return residual_at_place() - remainder_at_place(); }
+  double residual_rms() const;
+};
+
+/// Whether each case has this quantity, asked for or not: tool_deviation, following_error.
+bool is_of_any_case(std::string_view quantity);
+
+/// What a scenario's quantities ask for that has a budget, each case of each once: brought_out and
+/// response_time stand for imposed_curve_residual; statistics do not matter.
+/// @param also      quantities of any case; where the scenario has none of that name, of all cases
+///                  and linear axes
+/// @param sections  of the program, in place of those of the quantities; none: as they are, and
+///                  all of it for `also`
+/// @pre is_of_any_case(also)
+std::vector<QuantitySpec> budget_quantities(const Scenario& scenario,
+                                            std::span<const std::string> also = {},
+                                            const std::vector<std::string>& sections = {});
+
+struct BudgetControl {
+  unsigned threads = 0;  // 0: one a core
+  const StopFlag* stop = nullptr;
+  std::function<void(double)> progress;  // share done, 0 to 1
+};
+
+/// Budgets of quantities, in their order; runs each case with and without each cause that it has.
+/// @param quantities  of one case each, as budget_quantities gives them
+/// @return empty if it was stopped
+/// @throws InputError before anything is simulated
+std::vector<Budget> find_budgets(const Scenario& scenario, std::span<const QuantitySpec> quantities,
+                                 const BudgetControl& control = {});
+
+}  // namespace servomill::sim

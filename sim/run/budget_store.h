@@ -1,0 +1,27 @@
+/// Error budgets on disk, for figures and other programs.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "sim/records/hdf5_file.h"
+#include "sim/run/budget.h"
+
+namespace servomill::sim {
+
+/// A file of the kind "budget": /budget/NNN with s, residual, remainder and one signal for each
+/// cause that the case has; attributes case, quantity, axis, sections, base, place, and of each
+/// signal at_place and rms.
+/// @throws InputError if the file cannot be had under that name, SystemError
+class BudgetStore {
+ public:
+  BudgetStore(const std::string& path, bool force, const Scenario& scenario);
+  void add(const Budget& budget);
+  void commit() { file_.commit(); }
+
+ private:
+  OutputFile file_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace servomill::sim

@@ -1,0 +1,45 @@
+/// What there is to say about a case that has run: lines for the user, most with a line of the
+/// program.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/evaluation/part_fit.h"
+#include "sim/model/scenario.h"
+#include "sim/preparation/preparation_cache.h"
+#include "strategies/strategy.h"
+
+namespace servomill::sim {
+
+/// A case as it was prepared.
+struct NotedCase {
+  const Scenario& scenario;
+  const CaseSpec& spec;
+  const InterpretedProgram& program;
+  const PlannedMotion& motion;
+  const PlannedCutting* cutting;  // nullptr: it ran in air
+  std::span<const std::shared_ptr<const strategies::Strategy>> strategies;  // those of spec
+};
+
+/// What the NC put right or could not do as programmed.
+/// @param held  displacements that strategies could not make in full
+std::vector<std::string> notes_of_run(const NotedCase& one,
+                                      std::span<const strategies::Saturation> held);
+
+/// What strategies of this case cannot correct, one line for each (sim/run/uncorrected.h).
+std::vector<std::string> notes_of_uncorrectable(const NotedCase& one);
+
+/// Where the program goes beyond the points of compensation tables, one line for each end.
+std::vector<std::string> notes_of_left_tables(const NotedCase& one);
+
+/// Lays what was probed on the nominal part.
+/// @param notes  takes why that cannot be done, or how uncertain it is
+std::optional<PartFit> lay_on_nominal(const std::string& case_name, const NominalPart& part,
+                                      std::span<const ProbedFeature> probes,
+                                      std::vector<std::string>& notes);
+
+}  // namespace servomill::sim

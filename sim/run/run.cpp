@@ -1,0 +1,85 @@
+#include "sim/run/run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "sim/preparation/stability_check.h"
+#include "sim/system/background.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr auto kProgressPeriod = std::chrono::milliseconds(20);  // an interrupt waits for it, too
+
+}  // namespace
+
+RunEstimate check_scenario(const Scenario& scenario) {
+  return estimate(scenario, prepare_cases(scenario), 1);
+}
+
+void check_machine(const MachineSettings& machine) {
+  check_stability(machine, machine.scale_delay, nullptr);
+}
+
+RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
+  const auto begin = std::chrono::steady_clock::now();
+  static const StopFlag kNever = false;
+  const StopFlag& stop = control.stop != nullptr ? *control.stop : kNever;
+  std::vector<PreparedCase> prepared = prepare_cases(scenario, control.cache);
+  if (control.prepared) control.prepared(estimate(scenario, prepared, control.threads));
+
+  // cases are independent: which thread runs which makes no difference to the result
+  const std::size_t count = prepared.size();
+  std::vector<CaseOutput> outputs(count);
+  std::vector<std::atomic<float>> progress(count);
+  std::vector<std::atomic<bool>> done(count);
+  std::vector<std::exception_ptr> failures(count);
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        outputs[i] = prepared[i].run(stop, progress[i]);
+      } catch (...) {
+        failures[i] = std::current_exception();
+      }
+      done[i] = true;
+    }
+  };
+  const unsigned threads = thread_count(control.threads);
+  std::vector<std::jthread> pool;
+  for (unsigned t = 0; t < std::min<std::size_t>(threads, count); ++t) pool.emplace_back(work);
+
+  // should the result not be writable, no further case begins
+  struct NoMore {
+    std::atomic<std::size_t>& next;
+    std::size_t count;
+    ~NoMore() { next = count; }
+  };
+  const NoMore no_more{next, count};
+  for (std::size_t i = 0; i < count;) {
+    if (!done[i]) {
+      std::this_thread::sleep_for(kProgressPeriod);
+    } else {
+      if (failures[i]) std::rethrow_exception(failures[i]);
+      if (control.case_done) control.case_done(outputs[i]);
+      ++i;
+    }
+    if (control.progress) {
+      double sum = 0.0;
+      for (const auto& share : progress) sum += share;
+      control.progress(sum / static_cast<double>(count));
+    }
+  }
+  pool.clear();
+
+  RunOutput out;
+  std::vector<CaseData> data;
+  for (const CaseOutput& output : outputs) data.push_back(output.data());
+  out.comparison = compare(scenario.quantities, data);
+  out.cases = std::move(outputs);
+  out.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+}  // namespace servomill::sim

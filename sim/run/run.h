@@ -1,0 +1,41 @@
+/// A scenario, run: every case prepared, simulated on all cores, compared.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sim/preparation/estimate.h"
+#include "sim/preparation/prepared_case.h"
+
+namespace servomill::sim {
+
+struct RunControl {
+  unsigned threads = 0;  // 0: as many as there are cores
+  const StopFlag* stop = nullptr;
+  PreparationCache* cache = nullptr;  // shared with other runs, may be null
+  // every fault of the input is found, and what the run takes is known; called once
+  std::function<void(const RunEstimate&)> prepared;
+  std::function<void(double)> progress;  // share done, 0 to 1; called from one thread
+  std::function<void(const CaseOutput&)>
+      case_done;  // called from one thread, in order of the cases
+};
+
+struct RunOutput {
+  std::vector<CaseOutput> cases;
+  std::vector<ComparisonRow> comparison;
+  double wall_time = 0.0;  // s
+};
+
+/// @throws InputError before anything is simulated
+RunOutput run_scenario(const Scenario& scenario, const RunControl& control);
+
+/// Prepares every case as for a run, and returns what it would take on one thread.
+/// @throws InputError with the faults of all cases
+RunEstimate check_scenario(const Scenario& scenario);
+
+/// Checks what reading a machine leaves open: whether its loops are stable.
+/// @throws InputError
+void check_machine(const MachineSettings& machine);
+
+}  // namespace servomill::sim

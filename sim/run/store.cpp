@@ -1,0 +1,287 @@
+#include "sim/run/store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "plant/vocabulary/simd.h"
+#include "sim/records/series_writer.h"
+#include "sim/run/build_identity.h"
+#include "sim/run/store_errors.h"
+#include "sim/run/store_probes.h"
+#include "sim/system/output_name.h"
+#include "sim/version.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr const char* kUnfinished = "unfinished";  // group of a case until it is complete
+
+// Chunks of equal length, so that the last one holds little that is nothing.
+std::size_t chunk_rows(std::size_t rows) {
+  constexpr std::size_t kMostRows = 16384;
+  const std::size_t chunks = std::max<std::size_t>(1, (rows + kMostRows - 1) / kMostRows);
+  return std::max<std::size_t>(1, (rows + chunks - 1) / chunks);
+}
+
+SeriesLayout layout_of(const Series& series, const std::string& index) {
+  SeriesLayout layout;
+  layout.index = index;
+  layout.chunk_rows = chunk_rows(series.rows());
+  for (const Signal& signal : series.signals()) {
+    if (signal.name == index) {
+      layout.index_meaning = {signal.units, signal.long_name};
+      continue;
+    }
+    if (!signal.labels.empty() &&
+        std::none_of(layout.labels.begin(), layout.labels.end(),
+                     [&](const ColumnLabels& known) { return known.name == signal.scale; })) {
+      layout.labels.push_back({signal.scale, signal.labels, signal.scale});
+    }
+    layout.channels.push_back(
+        {signal.name, {signal.units, signal.long_name}, signal.scale, signal.storage});
+  }
+  return layout;
+}
+
+void write_row(Hdf5Group& group, const ComparisonRow& row) {
+  group.attribute("case", row.case_name);
+  group.attribute("quantity", row.quantity);
+  group.attribute("axis", row.axis);
+  group.attribute("statistic", row.statistic);
+  group.attribute("sections", row.sections);
+  group.attribute("reference", row.reference);
+  group.attribute("kind", row.kind);
+  if (!row.note.empty()) group.attribute("note", row.note);
+}
+
+// Columns of one group read back in the order in which they were written.
+std::unique_ptr<Series> read_series(const InputFile& file, const std::string& group) {
+  std::vector<Signal> signals;
+  std::vector<std::vector<double>> columns;
+  std::size_t rows = 0;
+  for (const std::string& name : file.datasets(group)) {
+    const std::string path = group + "/" + name;
+    if (name.starts_with("axis") || name == "xyz" || name == "ijk") continue;  // labels
+    const auto shape = file.shape(path);
+    if (shape.empty() || shape.size() > 2 || (!signals.empty() && shape[0] != rows)) {
+      throw InputError({file.path()},
+                       fmt::format("'{}' is not as long as the signals before it", path));
+    }
+    std::string labels;
+    if (shape.size() == 2) labels = file.text(path, "columns");
+    rows = shape.at(0);
+    signals.push_back({name, file.text(path, "units"), file.text(path, "long_name"), labels, ""});
+    columns.push_back(file.values(path));
+  }
+  auto series = std::make_unique<Series>(std::move(signals));
+  series->reserve(rows);
+  for (std::size_t row = 0; row < rows; ++row) {
+    double* to = series->add_row();
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const std::size_t width = series->signals()[c].columns();
+      to = std::copy_n(columns[c].data() + row * width, width, to);
+    }
+  }
+  return series;
+}
+
+// Signals that a case has only if it feels the cut: another one of the same run may be in air.
+constexpr std::array<std::string_view, 2> kOfCutting = {"cutting_force", "structural_deflection"};
+
+// What every comparison needs, and what the other cases have.
+void check_signals(const InputFile& file, const std::string& group, const Series& series,
+                   const Series& first) {
+  std::vector<std::string> needed = {"s", "rapid", "section"};
+  for (const Signal& signal : first.signals()) {
+    const bool may_miss =
+        std::find(kOfCutting.begin(), kOfCutting.end(), signal.name) != kOfCutting.end();
+    if (!may_miss) needed.push_back(signal.name);
+  }
+  for (const std::string& name : needed) {
+    const auto& has = series.signals();
+    if (std::any_of(has.begin(), has.end(), [&](const Signal& one) { return one.name == name; })) {
+      continue;
+    }
+    throw InputError({file.path()}, fmt::format("has no '{}/{}'", group, name));
+  }
+}
+
+// Of the ideal machine of a case.
+plant::MachineChain chain_of(const Scenario& scenario, const std::string& name) {
+  const CaseSpec* one = scenario.find_case(name);
+  return (one != nullptr ? scenario.machine_of(*one) : scenario.machine).chain;
+}
+
+// Delay by the feedback hardware of a case.
+std::optional<double> signal_delay_of(const Scenario& scenario, const std::string& name) {
+  const CaseSpec* one = scenario.find_case(name);
+  return one != nullptr ? scenario.signal_delay_of(*one) : std::nullopt;
+}
+
+void check_schema(const InputFile& file, const std::string& path, const std::string& kind) {
+  if (!file.has_attribute("/", "schema_version")) {
+    throw InputError({path}, "is not a result file of servomill");
+  }
+  if (file.has_attribute("/", "kind") && file.text("/", "kind") != kind) {
+    throw InputError({path}, fmt::format("holds a {}, not a {}", file.text("/", "kind"), kind));
+  }
+  const auto version = static_cast<int>(file.number("/", "schema_version"));
+  if (version != kSchemaVersion) {
+    throw InputError({path}, fmt::format("has schema version {}; this program reads version {}",
+                                         version, kSchemaVersion));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> split_lines(const std::string& text) {
+  std::vector<std::string> lines(1);
+  for (const char c : text) {
+    if (c == '\n') {
+      lines.emplace_back();
+    } else {
+      lines.back() += c;
+    }
+  }
+  return lines;
+}
+
+void write_build(Hdf5Group& root) {
+  root.attribute("servomill_version", kVersion);
+  root.attribute("servomill_build", build_identity());
+}
+
+std::string build_of(const InputFile& file) {
+  const char* name =
+      file.has_attribute("/", "servomill_build") ? "servomill_build" : "servomill_version";
+  return file.text("/", name);
+}
+
+void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view kind) {
+  root.attribute("Conventions", "CF-1.8");
+  write_build(root);
+  root.attribute("schema_version", kSchemaVersion);
+  root.attribute("kind", kind);
+  root.attribute("simd_level", name_of(simd_level()));
+  root.attribute("scenario", scenario.name);
+  root.attribute("title", scenario.title);
+  root.attribute("source", scenario.source);
+  Hdf5Group inputs = root.group("inputs");
+  inputs.attribute("scenario", scenario.text);
+  inputs.attribute("machine", scenario.machine_text);
+  inputs.attribute("program", scenario.program.text);
+  inputs.attribute("resolved", scenario.resolved);
+}
+
+RunStore::RunStore(const std::string& path, bool force, const Scenario& scenario, unsigned threads)
+    : file_(writable_name(path, force), force),
+      compression_(scenario.record.compression),
+      threads_(threads) {
+  Hdf5Group root = file_.root();
+  write_inputs(root, scenario, "run");
+  write_errors(root, scenario);
+  std::size_t longest_name = 0;
+  for (const CaseSpec& one : scenario.cases) longest_name = std::max(longest_name, one.name.size());
+  root.group_with_room("cases", scenario.cases.size(), longest_name);
+  root.group_with_room(kUnfinished, 1, longest_name);
+  root.flush_file();
+}
+
+void RunStore::write_series(Hdf5Group group, const Series& series) const {
+  SeriesLayout layout = layout_of(series, "time");
+  layout.compression = compression_;
+  layout.threads = threads_;
+  SeriesWriter writer(std::move(group), std::move(layout));
+  for (std::size_t row = 0; row < series.rows(); ++row) {
+    writer.append({series.row(row), series.width()});
+  }
+  writer.finish();
+}
+
+void RunStore::add(const CaseOutput& one) {
+  Hdf5Group root = file_.root();
+  const std::string unfinished = fmt::format("{}/{}", kUnfinished, one.name);
+  Hdf5Group group = root.group(unfinished);
+  write_series(group.group("servo"), one.result.servo);
+  if (one.result.last_ticks.rows() > 0) {
+    write_series(group.group("last_ticks"), one.result.last_ticks);
+  }
+  if (!one.probes.empty()) write_probes(group.group("probes"), one.probes, one.part_fit);
+  group.attribute("outcome", one.result.outcome.reason);
+  group.attribute("duration_s", one.duration);
+  group.attribute("blocks", one.blocks);
+  group.attribute("sections", fmt::format("{}", fmt::join(one.sections, "\n")));
+  if (!one.program.empty()) group.attribute("program", one.program);
+  group.attribute("finished", one.result.outcome.finished ? 1 : 0);
+  // A kill meanwhile spoils nothing but this case; from now on it is one of the complete ones.
+  root.flush_file();
+  root.move(unfinished, "cases/" + one.name);
+  root.flush_file();
+}
+
+void RunStore::commit(const std::vector<ComparisonRow>& comparison) {
+  file_.root().remove(kUnfinished);
+  Hdf5Group table = file_.root().group("comparison");
+  for (std::size_t i = 0; i < comparison.size(); ++i) {
+    Hdf5Group group = table.group(fmt::format("{:03}", i));
+    write_row(group, comparison[i]);
+    group.scalar("value", comparison[i].value, {comparison[i].unit, comparison[i].quantity});
+  }
+  file_.commit();
+}
+
+StoredRun read_run(const std::string& path) {
+  const InputFile file(path);
+  check_schema(file, path, "run");
+  StoredRun run;
+  run.scenario_name = file.text("/", "scenario");
+  run.title = file.text("/", "title");
+  const Scenario scenario =
+      read_resolved_scenario(file.text("/inputs", "resolved"), path + ":/inputs");
+  run.quantities = scenario.quantities;
+  for (const std::string& name : file.groups("/cases")) {
+    const std::string group = "/cases/" + name;
+    // cut off while it was written: no complete case
+    if (!file.has("/comparison") && !file.has_attribute(group, "finished")) continue;
+    run.series.push_back(read_series(file, group + "/servo"));
+    check_signals(file, group + "/servo", *run.series.back(), *run.series.front());
+    run.probes.push_back(std::make_unique<std::vector<ProbedFeature>>(
+        read_probed(file, group + "/probes", scenario.probes)));
+    const std::vector<ProbedFeature>& probes = *run.probes.back();
+    run.cases.push_back({name, run.series.back().get(), split_lines(file.text(group, "sections")),
+                         file.number(group, "duration_s"), file.number(group, "blocks"),
+                         file.number(group, "finished") != 0.0, chain_of(scenario, name),
+                         probes.empty() ? nullptr : &probes, signal_delay_of(scenario, name)});
+  }
+  return run;
+}
+
+bool is_hdf5(const std::string& path) {
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  std::array<char, kSignature.size()> begin{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin.data(), begin.size());
+  return file && std::string_view(begin.data(), begin.size()) == kSignature;
+}
+
+std::string writable_name(const std::string& path, bool force) {
+  namespace fs = std::filesystem;
+  if (path.empty()) throw InputError({"--output"}, "the name of the result file is empty");
+  std::string target = output_target(path, existing_of(force));
+  std::error_code ignored;
+  const std::string partial = target + ".partial";
+  if (!force) refuse_partial(partial);
+  for (const std::string& name : {target, partial}) {
+    if (!fs::exists(name, ignored) || fs::is_empty(name, ignored) || is_hdf5(name)) continue;
+    throw InputError({name}, "exists and is no result file; --force does not overwrite others");
+  }
+  return target;
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,104 @@
+#include "sim/run/store_errors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr std::size_t kLeastSamples = 401, kMostSamples = 8001;
+constexpr double kApart = 2.5 * mm;    // places on a longer axis; of a rotary one mm read as deg
+constexpr double kEndless = 500 * mm;  // of a linear axis without travel, to either side of zero
+constexpr double kTurn = 360 * deg;
+
+// Places at which the errors of an axis are written.
+struct Range {
+  double lower = 0.0, upper = 0.0;  // m, rad
+};
+
+// All of the travel, one turn of a rotary axis: that around zero where it has it.
+Range range_of(const NcSettings& nc, int joint) {
+  const double lower = nc.lower[joint], upper = nc.upper[joint];
+  if (joint >= kLinearJoints) {
+    const double begin = std::clamp(-0.5 * kTurn, lower, std::max(lower, upper - kTurn));
+    return {begin, std::min(upper, begin + kTurn)};
+  }
+  if (std::isfinite(lower)) return {lower, std::isfinite(upper) ? upper : lower + 2.0 * kEndless};
+  return {std::isfinite(upper) ? upper - 2.0 * kEndless : -kEndless,
+          std::isfinite(upper) ? upper : kEndless};
+}
+
+std::vector<double> places_in(const Range& range, bool linear) {
+  const double apart = linear ? kApart : kApart / mm * deg;
+  const auto steps = static_cast<std::size_t>(
+      std::ceil(std::min((range.upper - range.lower) / apart, double{kMostSamples})));
+  std::vector<double> out(std::clamp(steps + 1, kLeastSamples, kMostSamples));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(out.size() - 1);
+    out[i] = range.lower + (range.upper - range.lower) * share;
+  }
+  return out;
+}
+
+void write_components(Hdf5Group& root, const std::string& path, const plant::ErrorModel& model,
+                      Axis axis, const NcSettings& nc, int joint) {
+  const auto& components = model.components[static_cast<std::size_t>(index_of(axis))];
+  if (std::all_of(components.begin(), components.end(),
+                  [](const auto& f) { return f.is_zero(); })) {
+    return;
+  }
+  Hdf5Group group = root.group(fmt::format("{}/{}", path, letter(axis)));
+  const std::vector<double> q = places_in(range_of(nc, joint), is_linear(axis));
+  const auto over_axis = [&](auto value_at, double unit) {
+    std::vector<double> values(q.size());
+    std::transform(q.begin(), q.end(), values.begin(),
+                   [&](double at) { return value_at(at) / unit; });
+    return values;
+  };
+  group.list("position", over_axis([](double at) { return at; }, is_linear(axis) ? mm : deg),
+             {is_linear(axis) ? "mm" : "deg", fmt::format("position of {}", letter(axis))});
+  for (const Axis direction : kAllAxes) {
+    const auto& f = components[static_cast<std::size_t>(index_of(direction))];
+    if (f.is_zero()) continue;
+    const char* unit = is_linear(direction) ? "um" : "urad";  // um is urad
+    const std::string error = plant::to_string({direction, axis, false});
+    group.list(error, over_axis([&](double at) { return f.value(at); }, um),
+               {unit, "error " + error}, "position");
+    if (f.reversals.empty()) continue;
+    group.list(error + "_width", over_axis([&](double at) { return f.width(at); }, um),
+               {unit, error + " travelling up minus travelling down"}, "position");
+  }
+}
+
+void write_locations(Hdf5Group& root, const std::string& path, const plant::ErrorModel& model) {
+  for (const Axis axis : kAllAxes) {
+    for (const Axis direction : kAllAxes) {
+      const plant::ErrorName name{direction, axis, true};
+      const double value = model.location(name);
+      if (value == 0.0) continue;
+      root.group(path + "/locations")
+          .scalar(plant::to_string(name), value / um,
+                  {is_linear(direction) ? "um" : "urad", "location error " + to_string(name)});
+    }
+  }
+}
+
+}  // namespace
+
+void write_errors(Hdf5Group& root, const Scenario& scenario) {
+  const JointLayout& layout = scenario.machine.chain.layout;
+  for (const auto& [name, model] : scenario.errors) {
+    const std::string path = "errors/" + name;
+    for (const Axis axis : kAllAxes) {
+      const auto joint = layout.joint_of(axis);
+      if (joint) write_components(root, path, model, axis, scenario.machine.nc, *joint);
+    }
+    write_locations(root, path, model);
+  }
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,14 @@
+/// Error models in result files, for figures and for people.
+#pragma once
+
+#include "sim/model/scenario.h"
+#include "sim/records/hdf5_file.h"
+
+namespace servomill::sim {
+
+/// Writes all error models of a scenario below /errors: MODEL/AXIS/ has the component errors of an
+/// axis over its travel, MODEL/locations/ the location errors, each by its name of ISO 230-1. What
+/// is zero is left out.
+void write_errors(Hdf5Group& root, const Scenario& scenario);
+
+}  // namespace servomill::sim

@@ -1,0 +1,121 @@
+#include "sim/run/store_probes.h"
+
+#include <fmt/format.h>
+
+#include <numeric>
+
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim {
+namespace {
+
+std::vector<double> in_um(std::vector<double> values) {
+  for (double& value : values) value /= um;
+  return values;
+}
+
+std::vector<double> from_um(std::vector<double> values) {
+  for (double& value : values) value *= um;
+  return values;
+}
+
+std::vector<double> counted(std::size_t count) {
+  std::vector<double> out(count);
+  std::iota(out.begin(), out.end(), 0.0);
+  return out;
+}
+
+void write_fit(Hdf5Group& group, std::span<const Arrow> arrows) {
+  std::vector<double> places, deviations;
+  for (const Arrow& arrow : arrows) {
+    for (int i = 0; i < 3; ++i) places.push_back(arrow.place[i] / mm);
+    for (int i = 0; i < 3; ++i) deviations.push_back(arrow.deviation[i] / um);
+  }
+  group.table("fit_place", 3, places,
+              {"mm", "point of the nominal part nearest to the probed one after best fit"}, "point",
+              "xyz");
+  group.table("fit_deviation", 3, deviations,
+              {"um", "probed point minus nominal part after best fit"}, "point", "xyz");
+}
+
+void write_motion(Hdf5Group& group, const BestFit& fit) {
+  const Eigen::AngleAxisd turn(fit.motion.linear());
+  const Eigen::Vector3d shift = fit.motion.translation() / um;
+  const Eigen::Vector3d rotation = turn.angle() / urad * turn.axis();
+  group.attribute("fit_shift_um", std::span<const double>(shift.data(), 3));
+  group.attribute("fit_rotation_urad", std::span<const double>(rotation.data(), 3));
+  group.attribute("fit_rms_um", fit.rms / um);
+}
+
+void write_feature(Hdf5Group& group, const ProbedFeature& found) {
+  group.attribute("kind", name_of(found.feature.kind));
+  group.list("point", counted(found.deviation.size()), {"1", "number of the point"});
+  group.list("repetition", counted(found.measured.size()), {"1", "number of the repetition"});
+  group.labels("xyz", "XYZ", "xyz");
+  group.labels("ijk", "IJK", "ijk");
+  std::vector<double> nominal, normal, measured;
+  for (const plant::ProbeTarget& target : found.feature.targets) {
+    for (int i = 0; i < 3; ++i) nominal.push_back(target.point[i] / mm);
+    for (int i = 0; i < 3; ++i) normal.push_back(target.normal[i]);
+  }
+  for (const std::vector<double>& once : found.measured) {
+    measured.insert(measured.end(), once.begin(), once.end());
+  }
+  group.table("nominal", 3, nominal, {"mm", "nominal point in the work frame"}, "point", "xyz");
+  group.table("normal", 3, normal, {"1", "normal out of the part in the work frame"}, "point",
+              "ijk");
+  group.list("deviation", in_um(found.deviation),
+             {"um", "surface minus nominal along the normal, without error of the CMM"}, "point");
+  group.table("measured", found.deviation.size(), in_um(std::move(measured)),
+              {"um", "probed minus nominal along the normal"}, "repetition", "point");
+  group.list("sigma", in_um(standard_deviation_of(found.measured)),
+             {"um", "standard deviation of the repetitions"}, "point");
+  if (found.imposed.empty()) return;
+  group.list("imposed", in_um(found.imposed),
+             {"um", "displacement along the normal that the imposed errors ask for"}, "point");
+}
+
+ProbedFeature read_feature(const InputFile& file, const std::string& group,
+                           const ProbeSpec& probe) {
+  ProbedFeature out{probe.name, probe.feature, from_um(file.values(group + "/deviation")), {}, {}};
+  const std::size_t points = probe.feature.targets.size();
+  const auto shape = file.shape(group + "/measured");
+  if (out.deviation.size() != points || shape.size() != 2 || shape[0] == 0 || shape[1] != points) {
+    throw InputError({file.path()},
+                     fmt::format("'{}' has not the {} points of the scenario", group, points));
+  }
+  const std::vector<double> all = from_um(file.values(group + "/measured"));
+  for (std::size_t r = 0; r < shape[0]; ++r) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(r * points);
+    out.measured.emplace_back(first, first + static_cast<std::ptrdiff_t>(points));
+  }
+  if (file.has(group + "/imposed")) out.imposed = from_um(file.values(group + "/imposed"));
+  if (!out.imposed.empty() && out.imposed.size() != points) {
+    throw InputError({file.path()}, fmt::format("'{}/imposed' has not {} points", group, points));
+  }
+  return out;
+}
+
+}  // namespace
+
+void write_probes(Hdf5Group group, std::span<const ProbedFeature> features,
+                  const std::optional<PartFit>& fit) {
+  if (fit) write_motion(group, fit->fit);
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    Hdf5Group of_feature = group.group(features[i].name);
+    write_feature(of_feature, features[i]);
+    if (fit) write_fit(of_feature, fit->arrows[i]);
+  }
+}
+
+std::vector<ProbedFeature> read_probed(const InputFile& file, const std::string& group,
+                                       std::span<const ProbeSpec> plan) {
+  std::vector<ProbedFeature> out;
+  if (!file.has(group)) return out;
+  for (const ProbeSpec& probe : plan) {
+    out.push_back(read_feature(file, group + "/" + probe.name, probe));
+  }
+  return out;
+}
+
+}  // namespace servomill::sim

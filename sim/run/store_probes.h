@@ -1,0 +1,39 @@
+/// Probed features in result files.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/evaluation/part_fit.h"
+#include "sim/evaluation/probed_part.h"
+#include "sim/records/hdf5_file.h"
+
+namespace servomill::sim {
+
+/// A group for each feature:
+///
+///     point, repetition                 numbers of the points and of the repetitions, from 0
+///     nominal  (point, xyz)        mm   in the work frame
+///     normal   (point, ijk)        1    out of the part
+///     deviation (point)            um   along the normal, without error of the CMM; NaN: missed
+///     measured (repetition, point) um   along the normal
+///     sigma    (point)             um   standard deviation of the repetitions
+///     imposed  (point)             um   displacement along the normal that is asked for, if any
+///     fit_place (point, xyz)       mm   point of the nominal part nearest to the measured one
+///     after
+///                                       best fit, where there is a nominal part
+///     fit_deviation (point, xyz)   um   the measured one minus that
+///
+/// and the attribute `kind`. Attributes of the group itself, of the best fit (measured -> nominal):
+/// `fit_shift_um` (of the work zero), `fit_rotation_urad` (rotation vector), `fit_rms_um`.
+void write_probes(Hdf5Group group, std::span<const ProbedFeature> features,
+                  const std::optional<PartFit>& fit);
+
+/// Reads them back, in the order of the plan; nothing if there is no such group.
+/// @throws InputError if what is there does not fit the plan
+std::vector<ProbedFeature> read_probed(const InputFile& file, const std::string& group,
+                                       std::span<const ProbeSpec> plan);
+
+}  // namespace servomill::sim

@@ -1,0 +1,54 @@
+/// From an error model to the compensation tables of an NC, with what they leave.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/model/machine.h"
+#include "sim/tables/compensation_tables.h"
+#include "sim/tables/left_over.h"
+
+namespace servomill::sim {
+
+struct TableRequest {
+  struct AxisRequest {
+    bool wanted = true;               // a table over this axis
+    std::optional<double> reference;  // m, rad; absent: middle of travel (linear), 0 (rotary)
+    std::optional<double> from, to;   // m, rad; absent: travel of the machine
+  };
+  TableFormat format = TableFormat::linuxcnc;
+  std::string model;                       // name of the error model, for the reader
+  double tool_length = 0.0;                // m, from the spindle nose to the tip
+  std::optional<double> spacing;           // m; absent: the smallest round one that fits
+  std::optional<double> rotary_spacing;    // rad
+  std::optional<std::size_t> most_points;  // absent: what the format takes
+  int comp_file_type = 0;                  // of LinuxCNC: 0 positions, 1 trims
+  std::array<AxisRequest, kJoints> axes;
+};
+
+struct TableExport {
+  TableRequest request;
+  std::string machine;
+  TableSource source;
+  std::vector<TableLine> lines;           // one for each axis of the machine
+  std::vector<CompensationTable> tables;  // rounded as written
+  std::vector<OmittedTable> omitted;      // of second order in the errors
+  Joints base = Joints::Zero();           // m, rad: displacement that the reference would need
+  std::vector<LeftOver> left;
+  Volume volume;
+  std::vector<std::string> coarse;  // what points lie too far apart for
+
+  const FormatRules& rules() const { return rules_of(request.format); }
+  char letter(int joint) const { return source.chain.layout.letter_of(joint); }
+};
+
+/// @throws InputError if points are too many, an axis has no travel, the reference lies outside it,
+///         or the format can hold nothing of this model
+TableExport export_tables(const MachineSettings& machine, const plant::ErrorModel& errors,
+                          const TableRequest& request);
+
+/// What the tables hold and leave, for the reader: lines of text without line ends.
+std::vector<std::string> report(const TableExport& tables);
+
+}  // namespace servomill::sim

@@ -1,0 +1,125 @@
+#include "sim/engine/program_path.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr double kRounding = 1e-17;  // m, of coordinates of some 10 mm
+
+AxisWords at(double x_mm, double y_mm, double c_deg = 0.0) {
+  AxisWords words = AxisWords::Zero();
+  words[0] = x_mm * mm;
+  words[1] = y_mm * mm;
+  words[5] = c_deg * deg;
+  return words;
+}
+
+Move move_to(const AxisWords& end, int line, double s_begin_mm, double s_end_mm) {
+  Move move;
+  move.line = line;
+  move.end = move.end_machine = end;
+  move.s_begin = s_begin_mm * mm;
+  move.s_end = s_end_mm * mm;
+  return move;
+}
+
+Move message(const std::string& text) {
+  Move move;
+  move.kind = MoveKind::message;
+  move.text = text;
+  return move;
+}
+
+constexpr double kQuarter = 5.0 * std::numbers::pi;  // mm, a quarter of a circle of R 10
+
+// A rapid along X, a line along Y, a turn of C, a quarter circle back along -X and +Y.
+std::vector<Move> some_moves() {
+  std::vector<Move> moves = {move_to(at(10, 0), 1, 0, 10),
+                             message("one"),
+                             move_to(at(10, 20), 3, 10, 30),
+                             message("two"),
+                             move_to(at(10, 20, 90), 5, 30, 30),
+                             message("one"),
+                             move_to(at(0, 30, 90), 7, 30, 30 + kQuarter)};
+  moves[0].kind = MoveKind::rapid;
+  moves[6].kind = MoveKind::arc;
+  moves[6].centre_machine = moves[6].arc.centre = Eigen::Vector3d(0.0, 20.0 * mm, 0.0);
+  moves[6].tool_offset = 4;
+  return moves;
+}
+ProgramPath some_path() { return ProgramPath(some_moves(), at(0, 0)); }
+
+void expect_at(const AxisWords& is, const AxisWords& wanted) {
+  EXPECT_LT((is - wanted).cwiseAbs().maxCoeff(), kRounding) << is.transpose();
+}
+
+TEST(ProgramPath, IsMadeOfTheMotionOfTheProgram) {
+  const ProgramPath path = some_path();
+  ASSERT_EQ(path.size(), 4U);
+  EXPECT_NEAR(path.length(), (30 + kQuarter) * mm, kRounding);
+  EXPECT_EQ(path.piece(0).line, 1);
+  EXPECT_TRUE(path.piece(0).rapid);
+  EXPECT_FALSE(path.piece(1).rapid);
+  EXPECT_EQ(path.piece(3).tool_offset, 4);
+}
+
+// A section is a name: the program may return to it.
+TEST(ProgramPath, NamesTheSectionsOfTheProgram) {
+  const ProgramPath path = some_path();
+  EXPECT_EQ(path.sections(), (std::vector<std::string>{"", "one", "two"}));
+  EXPECT_EQ(path.piece(0).section, 0);
+  EXPECT_EQ(path.piece(1).section, 1);
+  EXPECT_EQ(path.piece(2).section, 2);
+  EXPECT_EQ(path.piece(3).section, 1);
+}
+
+using Pieces = std::vector<std::size_t>;
+
+// Messages belong to the piece before; a line on which only C turns is found though s stands.
+TEST(ProgramPath, FindsThePieceOfEveryMove) {
+  EXPECT_EQ(some_path().pieces_of(some_moves()), (Pieces{0, 0, 1, 1, 2, 2, 3}));
+}
+
+TEST(ProgramPath, FindsThePiecesOfRewrittenMoves) {
+  const ProgramPath path = some_path();
+  const Move rapid = move_to(at(9, 1), 1, 0, 10), half = move_to(at(10, 9), 3, 10, 20),
+             rest = move_to(at(10, 21), 3, 20, 30), turn = move_to(at(10, 20, 40), 5, 30, 30),
+             arc = move_to(at(9, 25, 90), 7, 30, 35);
+  EXPECT_EQ(path.pieces_of(std::vector{rapid, half, rest, turn, turn, arc, arc}),
+            (Pieces{0, 1, 1, 2, 2, 3, 3}));
+  EXPECT_THROW(path.pieces_of(std::vector{arc, half}), std::logic_error);
+}
+
+TEST(ProgramPath, GivesThePositionByArcLength) {
+  const ProgramPath path = some_path();
+  expect_at(path.at(0, 0.0), at(0, 0));
+  expect_at(path.at(0, 4 * mm), at(4, 0));
+  expect_at(path.at(1, 15 * mm), at(10, 5));
+  expect_at(path.at(1, 99.0), at(10, 20));  // clamped to the piece
+  expect_at(path.at(2, 30 * mm), at(10, 20, 90));
+  const double h = 10.0 * std::numbers::sqrt2 / 2.0;
+  expect_at(path.at(3, (30 + 0.5 * kQuarter) * mm), at(h, 20 + h, 90));
+}
+
+// Beside a piece, past its end on the next one, before its begin on the one before.
+TEST(ProgramPath, MeasuresTheDistanceToThePathNearby) {
+  const ProgramPath path = some_path();
+  const auto distance = [&](double x, double y, std::size_t piece) {
+    return path.distance(Eigen::Vector3d(x, y, 0.0) * mm, piece) / mm;
+  };
+  constexpr double kTol = 1e-12;  // mm
+  EXPECT_NEAR(distance(10.0, 7.0, 1), 0.0, kTol);
+  EXPECT_NEAR(distance(10.3, 7.0, 1), 0.3, kTol);
+  EXPECT_NEAR(distance(9.95, -0.02, 1), 0.02, kTol) << "the piece before is closer";
+  EXPECT_NEAR(distance(9.5, 20.0 + std::sqrt(100.0 - 9.5 * 9.5), 1), 0.0, kTol) << "over the turn";
+  EXPECT_NEAR(distance(0.0, 31.0, 3), 1.0, kTol);
+  EXPECT_NEAR(distance(3.0, 24.0, 3), 5.0, kTol) << "inside of the arc";
+}
+
+}  // namespace
+}  // namespace servomill::sim

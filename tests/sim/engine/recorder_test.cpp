@@ -1,0 +1,133 @@
+#include "sim/engine/recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+
+#include "plant/vocabulary/units.h"
+#include "tests/sim/small_scenario.h"
+
+namespace servomill::sim {
+namespace {
+
+// Several blocks of the recorder and a rest.
+constexpr std::size_t kRows = 2500;
+
+class Recording : public testing::Test {
+ protected:
+  Recording()
+      : scenario_(small_scenario("G1 X10 Y5 F1000\nG1 X20\nM2\n", "[[case]]\nname = \"one\"\n")),
+        moves_(read_program(scenario_, scenario_.cases.front())),
+        path_(moves_, AxisWords::Zero()),
+        truth_(scenario_.machine.chain, {}) {
+    boost::random::mt19937 random(1);
+    const boost::random::uniform_real_distribution<double> any(-0.1, 0.1);
+    std::size_t piece = 0;
+    for (std::size_t n = 0; n < kRows; ++n) {
+      Snapshot now;
+      now.time = 1e-3 * static_cast<double>(n);
+      now.s = path_.length() * static_cast<double>(n) / kRows;
+      while (now.s > path_.piece(piece).s_end) ++piece;
+      now.piece = piece;
+      for (Joints* Q : {&now.Q_ref, &now.Q_cmd, &now.Q_read, &now.Q_meas, &now.Q_true, &now.dQ_true,
+                        &now.current, &now.torque}) {
+        for (int j = 0; j < kJoints; ++j) (*Q)[j] = any(random);
+      }
+      snapshots_.push_back(now);
+    }
+  }
+  Series record(const RecordFormat& format = {}) const {
+    Recorder recorder(scenario_.machine, truth_, nullptr, path_, tips_, format);
+    for (const Snapshot& now : snapshots_) recorder.record(now);
+    return recorder.take();
+  }
+
+  const Scenario scenario_;
+  const std::vector<Move> moves_;
+  const ProgramPath path_;
+  const plant::VolumetricModel truth_;
+  const std::map<int, Eigen::Vector3d> tips_;
+  std::vector<Snapshot> snapshots_;
+};
+
+TEST_F(Recording, HasARowForEverySnapshotInOrder) {
+  const Series series = record();
+  ASSERT_EQ(series.rows(), kRows);
+  const std::size_t x = *series.column("true_linear", 'X');
+  const std::size_t error = *series.column("following_error_linear", 'Y');
+  const std::size_t current = *series.column("current_linear", 'Z');
+  for (std::size_t n = 0; n < kRows; ++n) {
+    const Snapshot& now = snapshots_[n];
+    EXPECT_EQ(series.at(n, *series.column("time")), now.time);
+    EXPECT_EQ(series.at(n, *series.column("s")), now.s / mm);
+    EXPECT_EQ(series.at(n, x), now.Q_true[0] / mm);
+    EXPECT_EQ(series.at(n, error), (now.Q_cmd[1] - now.Q_read[1]) / um);
+    EXPECT_EQ(series.at(n, current), now.current[2]);
+  }
+}
+
+TEST_F(Recording, GivesUpItsRowsWhenDroppedEarly) {
+  Recorder recorder(scenario_.machine, truth_, nullptr, path_, tips_);
+  for (const Snapshot& now : snapshots_) recorder.record(now);
+  // with the thread at work
+}
+
+TEST_F(Recording, RoundsToAPowerOfTwoNotAboveTheResolution) {
+  constexpr double kResolution = 1 * nm;
+  const Series exact = record(), rounded = record({.resolution = kResolution});
+  // of what 1 nm is in each unit, the power of two below
+  const std::map<std::string, double> quantum = {
+      {"mm", 0x1p-20},    {"um", 0x1p-10}, {"deg", 0x1p-25}, {"mm/s", 0x1p-14},
+      {"deg/s", 0x1p-18}, {"A", 0x1p-14},  {"N m", 0x1p-14}};
+  for (const Signal& signal : rounded.signals()) {
+    if (signal.scale == "ijk") {
+      EXPECT_EQ(signal.quantum, 0x1p-30) << signal.name;
+    } else if (signal.units == "1" || signal.units == "s") {
+      EXPECT_EQ(signal.quantum, 0.0) << signal.name;
+    } else {
+      EXPECT_EQ(signal.quantum, quantum.at(signal.units)) << signal.name;
+    }
+    for (std::size_t n = 0; n < kRows; ++n) {
+      for (std::size_t c = 0; c < signal.columns(); ++c) {
+        const double before = exact.at(n, signal.offset + c);
+        const double after = rounded.at(n, signal.offset + c);
+        if (signal.quantum == 0.0) {
+          ASSERT_EQ(after, before) << signal.name;
+        } else {
+          ASSERT_EQ(after, std::nearbyint(before / signal.quantum) * signal.quantum) << signal.name;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Recording, LeavesAloneWhatIsTooLargeToRoundOrNoNumber) {
+  snapshots_.resize(2);
+  snapshots_[0].Q_true[0] = 1e30;
+  snapshots_[1].Q_true[0] = std::nan("");
+  const Series series = record({.resolution = 1 * nm});
+  const std::size_t x = *series.column("true_linear", 'X');
+  EXPECT_EQ(series.at(0, x), 1e30 / mm);
+  EXPECT_TRUE(std::isnan(series.at(1, x)));
+}
+
+TEST_F(Recording, KeepsInSinglePrecisionAllButPlaceAndCounts) {
+  const Series exact = record(), single = record({.storage = Storage::float32});
+  for (const Signal& signal : single.signals()) {
+    const bool exempt = signal.name == "time" || signal.name == "s" || signal.name == "line" ||
+                        signal.name == "section" || signal.name == "rapid";
+    EXPECT_EQ(signal.storage, exempt ? Storage::float64 : Storage::float32) << signal.name;
+    for (std::size_t n = 0; n < kRows; n += 100) {
+      for (std::size_t c = signal.offset; c < signal.offset + signal.columns(); ++c) {
+        const double before = exact.at(n, c);
+        EXPECT_EQ(single.at(n, c),
+                  exempt ? before : static_cast<double>(static_cast<float>(before)))
+            << signal.name;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace servomill::sim

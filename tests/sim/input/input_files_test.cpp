@@ -1,0 +1,52 @@
+#include "sim/input/input_files.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace servomill::sim {
+namespace {
+
+class Files : public testing::Test {
+ protected:
+  Files() : path_(testing::TempDir() + "servomill_input_files_test.txt") { write("before"); }
+  ~Files() override { std::filesystem::remove(path_); }
+
+  void write(const std::string& text) const { std::ofstream(path_, std::ios::binary) << text; }
+
+  std::string path_;
+};
+
+TEST_F(Files, AreWhatTheyWereWhenFirstRead) {
+  InputFiles files;
+  EXPECT_EQ(*files.text(path_, {}, "program"), "before");
+  write("after");
+  EXPECT_EQ(*files.text(path_, {}, "program"), "before");
+}
+
+TEST_F(Files, AreRefusedWhenForgottenAndChanged) {
+  InputFiles files(1);  // byte beside the last text
+  const std::string other = SERVOMILL_SOURCE_DIR "/tests/cli/gallery/part.ngc";
+  files.text(path_, {}, "program");
+  files.text(other, {}, "program");
+  EXPECT_EQ(*files.text(path_, {}, "program"), "before");
+  write("after");
+  EXPECT_EQ(*files.text(path_, {}, "program"), "before");
+  files.text(other, {}, "program");
+  try {
+    files.text(path_, {"scenario.toml", 3}, "program");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), path_ + ": error: has changed since it was read first");
+  }
+}
+
+// The check value of CRC-64/XZ in the catalogue of parametrised CRC algorithms.
+TEST_F(Files, HaveTheChecksumThatXzWouldStore) {
+  write("123456789");
+  EXPECT_EQ(InputFiles().checksum(path_, {}, "program"), 0x995DC9BBDF1939FAU);
+}
+
+}  // namespace
+}  // namespace servomill::sim

@@ -1,0 +1,172 @@
+// Programs for other controls than LinuxCNC: what they say, and what they refuse to say.
+#include "tests/sim/programs/compensate/dialect_trial.h"
+
+namespace servomill::sim {
+namespace {
+
+const std::string kProgram =
+    "(a plate)\n"
+    "G21 G90 G54 G17\n"
+    "T1 M6\n"
+    "S12000 M3\n"
+    "G43 H1\n"
+    "G0 X10 Y20 Z5\n"
+    "M8\n"
+    "G1 Z-1 F300 (plunge)\n"
+    "G91 X10.5 F1200\n"
+    "G90 G4 P1.5\n"
+    "(MSG, half done)\n"
+    "M0\n"
+    "G53 G0 Z0\n"
+    "G0 Z5\n"
+    "M9\n"
+    "M30\n";
+
+TEST(Dialect, HeidenhainConversational) {
+  EXPECT_EQ(said(Dialect::heidenhain, kProgram),
+            "0 BEGIN PGM PLATE MM\n"
+            "9 CYCL DEF 7.0 DATUM SHIFT\n"
+            "10 CYCL DEF 7.1 X+0\n"
+            "11 CYCL DEF 7.2 Y+0\n"
+            "12 CYCL DEF 7.3 Z+0\n"
+            "13 CYCL DEF 8.0 MIRROR IMAGE\n"
+            "14 CYCL DEF 8.1\n"
+            "15 CYCL DEF 10.0 ROTATION\n"
+            "16 CYCL DEF 10.1 ROT+0\n"
+            "17 CYCL DEF 11.0 SCALING\n"
+            "18 CYCL DEF 11.1 SCL 1\n"
+            "19 M137\n"
+            "20 L Z-2 R0 FMAX M91\n"
+            "21 ; a plate\n"
+            "22 TOOL CALL 1 Z\n"
+            "23 TOOL CALL S12000\n"
+            "24 L M3\n"
+            "25 L X+10 Y+20 R0 FMAX\n"
+            "26 L Z+5 FMAX\n"
+            "27 L M8\n"
+            "28 ; plunge\n"
+            "29 L Z-1 F300\n"
+            "30 L X+20.5 F1200\n"
+            "31 CYCL DEF 9.0 DWELL TIME\n"
+            "32 CYCL DEF 9.1 DWELL 1.5\n"
+            "33 ; half done\n"
+            "34 L M0\n"
+            "35 L M3\n"
+            "36 L M8\n"
+            "37 L Z+0 FMAX M91\n"
+            "38 L Z+5 FMAX\n"
+            "39 L M9\n"
+            "40 L Z-2 R0 FMAX M91\n"
+            "41 L M5\n"
+            "42 L M30\n"
+            "43 END PGM PLATE MM\n");
+}
+
+TEST(Dialect, Fanuc) {
+  EXPECT_EQ(said(Dialect::fanuc, kProgram),
+            "%\n"
+            "O1234 (PLATE)\n"
+            "N1 G21\n"
+            "N2 G17 G40 G80 G90 G94\n"
+            "N3 G69\n"
+            "N4 G15\n"
+            "N5 G50\n"
+            "N6 G50.1 X0. Y0. Z0.\n"
+            "N7 G90 G49 G53 G0 Z-2.\n"
+            "(A PLATE)\n"
+            "N8 T1 M6\n"
+            "N9 G90 G54 G17 G94 G40 G80\n"
+            "N10 S12000 M3\n"
+            "N11 G0 X10. Y20.\n"
+            "N12 G43 H1 Z5.\n"
+            "N13 M8\n"
+            "(PLUNGE)\n"
+            "N14 G1 Z-1. F300.\n"
+            "N15 X20.5 F1200.\n"
+            "N16 G4 X1.5\n"
+            "(HALF DONE)\n"
+            "N17 M0\n"
+            "N18 M3\n"
+            "N19 M8\n"
+            "N20 G90 G49 G53 G0 Z0.\n"
+            "N21 G43 H1 Z5.\n"
+            "N22 M9\n"
+            "N23 G90 G49 G53 G0 Z-2.\n"
+            "N24 M5\n"
+            "N25 M30\n"
+            "%\n");
+}
+
+TEST(Dialect, Siemens) {
+  EXPECT_EQ(said(Dialect::siemens, kProgram),
+            "; PLATE\n"
+            "N10 G17 G40 G90 G94 G710\n"
+            "N20 TRANS\n"
+            "N30 SUPA G0 Z-2 D0\n"
+            "; a plate\n"
+            "N40 T1\n"
+            "N50 M6\n"
+            "N60 G17 G40 G90 G94 G54\n"
+            "N70 S12000 M3\n"
+            "N80 G0 X10 Y20\n"
+            "N90 D1 Z5\n"
+            "N100 M8\n"
+            "; plunge\n"
+            "N110 G1 Z-1 F300\n"
+            "N120 X20.5 F1200\n"
+            "N130 G4 F1.5\n"
+            "N140 MSG(\"half done\")\n"
+            "N150 M0\n"
+            "N160 M3\n"
+            "N170 M8\n"
+            "N180 SUPA G0 Z0 D0\n"
+            "N190 D1 Z5\n"
+            "N200 M9\n"
+            "N210 SUPA G0 Z-2 D0\n"
+            "N220 M5\n"
+            "N230 M30\n");
+}
+
+// G55 of the trial is turned by 12.5 deg: 1 inch along X is 24.798 mm and 5.498 mm.
+TEST(Dialect, ShiftsRotationsInchesAndIncrementsAreInTheNumbers) {
+  const std::string text = said(Dialect::siemens,
+                                "G20 G90 G55 G0 X0 Y0 Z0\n"
+                                "G92 X5\n"
+                                "G1 X6 F10\n"
+                                "G91 X1\n"
+                                "M2\n");
+  EXPECT_EQ(text,
+            "; PLATE\n"
+            "N10 G17 G40 G90 G94 G710\n"
+            "N20 TRANS\n"
+            "N30 SUPA G0 Z-2 D0\n"
+            "N40 G55\n"
+            "N50 G0 X0 Y0\n"
+            "N60 Z0\n"
+            "N70 G1 X24.79792 Y5.49757 F254\n"
+            "N80 X49.59584 Y10.99513\n"
+            "N90 SUPA G0 Z-2 D0\n"
+            "N100 M5\n"
+            "N110 M30\n");
+}
+
+TEST(Dialect, WhatItCannotExpressIsRefusedWithItsPlace) {
+  const std::string start = "G21 G90\nT1 M6 G43 H1\nS1000 M3\nG0 X0 Y0 Z5\n";
+  EXPECT_EQ(refusal(Dialect::heidenhain, start + "G55 G1 X1 F100\nM2\n"),
+            "plate.ngc:5: error: selects a work system other than G54; presets are the control's; "
+            "that cannot be expressed for heidenhain");
+  EXPECT_EQ(refusal(Dialect::siemens, start + "G61 G1 X1 F100\nM2\n"),
+            "plate.ngc:5: error: asks for G61 as LinuxCNC means it; that cannot be expressed for "
+            "siemens");
+  EXPECT_EQ(refusal(Dialect::siemens, start + "G10 L2 P1 X3\nM2\n"),
+            "plate.ngc:5:1: error: G10 cannot be expressed for siemens");
+  EXPECT_EQ(
+      refusal(Dialect::heidenhain, start + "M7\nM2\n"),
+      "plate.ngc:5: error: switches mist (M7), which is the machine builder's; that cannot be "
+      "expressed for heidenhain");
+  EXPECT_EQ(refusal(Dialect::fanuc, start + "M48\nM2\n"),
+            "plate.ngc:5:1: error: M48 cannot be expressed for fanuc");
+}
+
+}  // namespace
+}  // namespace servomill::sim

@@ -1,0 +1,81 @@
+/// Programs written for other controls, as tests show them.
+#pragma once
+
+#include <regex>
+
+#include "tests/sim/programs/compensate/trial.h"
+
+namespace servomill::sim {
+
+/// A trial for another control: without errors, tools 1 and 2, G54 and G55 known.
+inline Trial dialect_trial(Dialect dialect, const std::string& program) {
+  Trial trial(program, "plate.ngc");
+  trial.request.error_file = written("none.toml", "[errors.none]\nEXX = { constant_um = 0.0 }\n");
+  trial.request.dialect = dialect;
+  trial.request.program_name = "PLATE";
+  trial.request.program_number = 1234;
+  trial.request.retract_Z = -2 * mm;
+  return trial;
+}
+
+inline std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> out;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find('\n', from), text.size());
+    out.push_back(text.substr(from, end - from));
+    from = end + 1;
+  }
+  return out;
+}
+
+/// The text but for comments of the header, so that a test shows the dialect alone.
+inline std::string said(const Trial& trial) {
+  std::string out;
+  for (const std::string& line : lines_of(trial.run().program)) {
+    const auto has = [&](const char* word) { return line.find(word) != std::string::npos; };
+    if (!has("POSITIONS ROUNDED") && !has("servomill") && !has("SERVOMILL") && !has("assumed") &&
+        !has("ASSUMED") && !has("path within") && !has("PATH WITHIN") && !has("warning: ") &&
+        !has("WARNING: ")) {
+      out += line + "\n";
+    }
+  }
+  return out;
+}
+inline std::string said(Dialect dialect, const std::string& program) {
+  return said(dialect_trial(dialect, program));
+}
+
+/// Blocks between the retract of the header and the closing frame, without numbers, one line each.
+inline std::string body(const Trial& trial) {
+  static const std::regex kBlockNumber("^(N[0-9]+|[0-9]+) ");
+  static const std::regex kRetract(
+      "^(G90 G49 G53 G0 Z-2\\.|SUPA G0 Z-2 D0|L Z-2 R0 FMAX M91|G90 G49 G53 G0 Z-0\\.0787)$");
+  std::vector<std::string> lines;
+  for (const std::string& line : lines_of(said(trial))) {
+    lines.push_back(std::regex_replace(line, kBlockNumber, ""));
+  }
+  std::size_t first = 0, last = lines.size();
+  while (first < lines.size() && !std::regex_match(lines[first], kRetract)) ++first;
+  while (last > 0 && !std::regex_match(lines[last - 1], kRetract)) --last;
+  std::string out;
+  for (std::size_t i = first + 1; i + 1 < last; ++i) out += lines[i] + "\n";
+  return out;
+}
+inline std::string body(Dialect dialect, const std::string& program) {
+  return body(dialect_trial(dialect, program));
+}
+
+inline std::string refusal(const Trial& trial) {
+  try {
+    trial.run();
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    return what.substr(what.find("plate.ngc"));
+  }
+  return "taken";
+}
+inline std::string refusal(Dialect dialect, const std::string& program) {
+  return refusal(dialect_trial(dialect, program));
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,71 @@
+// Written programs that would go through the work where a tool change or a stop leaves positions
+// unknown: verification refuses them.
+#include "sim/programs/verification/verification.h"
+#include "tests/sim/programs/compensate/dialect_trial.h"
+
+namespace servomill::sim {
+namespace {
+
+const std::string kStart = "G21 G90 G17 G54\nT1 M6\nG43 H1\nS1000 M3\nG0 X10 Y10 Z5\n";
+
+// Why the written program is refused once `from` is replaced in it.
+std::string verified(const std::string& program, const std::string& from, const std::string& to) {
+  const Trial trial = dialect_trial(Dialect::siemens, program);
+  std::string text;
+  for (const std::string& line : lines_of(trial.run().program)) {
+    text += std::regex_replace(line, std::regex("^N[0-9]+ "), "") + "\n";
+  }
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) return "not written: " + text;
+  text.replace(at, from.size(), to);
+  try {
+    verify_compensated(trial.request, text);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    const std::size_t begin = what.find("\": ") + 3;
+    return what.substr(begin, what.find(" (its line") - begin);
+  }
+  return "taken";
+}
+
+TEST(UnsafeOrder, AcrossBeforeUpBehindAStop) {
+  const std::string program = kStart + "G1 Z-5 F200\nX60\nM1\nG0 X10 Y60 Z20\nM2\n";
+  const std::string safe = "G0 Z20\nX10 Y60\n";
+  EXPECT_EQ(verified(program, safe, "G0 X10 Y60\nZ20\n"), "moves the other axes before it goes up");
+  EXPECT_EQ(verified(program, safe, "G0 Z20\nX10 Y60\n"), "taken");
+}
+
+TEST(UnsafeOrder, DownBeforeAcrossBehindAStop) {
+  const std::string program = kStart + "M0\nG0 X30 Y30 Z-4\nM2\n";
+  EXPECT_EQ(verified(program, "X30 Y30\nZ-4\n", "Z-4\nX30 Y30\n"),
+            "goes down before it moves the other axes");
+}
+
+TEST(UnsafeOrder, ZWhereAToolChangeHasLeftOtherAxes) {
+  const std::string program = kStart + "X20 Z20\nT2 M6\nG43 H2\nS800 M3\nG0 Z-4\nX20 Y15\nM2\n";
+  const std::string safe = "G0 X20 Y10\nD1 Z-4\nY15\n";
+  EXPECT_EQ(verified(program, safe, "G0 D1 Z-4\nX20 Y15\n"),
+            "moves Z where the tool change has left X, which the original knows");
+  EXPECT_EQ(verified(program, safe, "G0 X20\nD1 Z-4\nY15\n"),
+            "moves Z where the tool change has left Y, which the original knows");
+}
+
+TEST(UnsafeOrder, ZBetweenTheAxesThatItNeedsBehindAToolChange) {
+  const std::string program = kStart + "X20 Z20\nT2 M6\nG43 H2\nS800 M3\nG0 X30 Z5\nG0 Y15\nM2\n";
+  EXPECT_EQ(verified(program, "G0 Y10\nX30\nD1 Z5\n", "G0 X30\nD1 Z5\n"),
+            "moves Z where the tool change has left Y, which the original knows");
+  EXPECT_EQ(verified(program, "G0 Y10\nX30\nD1 Z5\n", "G0 X30 Y10\nD1 Z5\n"), "taken");
+}
+
+TEST(UnsafeOrder, AxesRestatedElsewhereThanTheOriginalHasThem) {
+  const std::string program = kStart + "X20 Z20\nT2 M6\nG43 H2\nS800 M3\nG0 Z-4\nX20 Y15\nM2\n";
+  EXPECT_EQ(verified(program, "G0 X20 Y10\n", "G0 X20.01 Y10\n"),
+            "X must end at 220.00000 of the machine, and ends at 220.01000");
+  // nothing has left an axis unknown
+  const std::string known = kStart + "X20 Y20\nZ-4\nM2\n";
+  EXPECT_EQ(verified(known, "X20 Y20\nZ-4\n", "X20 Y20\nX10 Y10\nZ-4\n"),
+            "moves X, which the original leaves where it is");
+}
+
+}  // namespace
+}  // namespace servomill::sim

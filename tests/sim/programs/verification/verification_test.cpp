@@ -1,0 +1,87 @@
+// Refusals of written programs: both lines and the setting of the control are shown.
+#include "sim/programs/verification/verification.h"
+
+#include "tests/sim/programs/compensate/trial.h"
+
+namespace servomill::sim {
+namespace {
+
+const std::string kProgram =
+    "G21 G90 G17 G54\n"
+    "T1 M6\n"
+    "G43 H1\n"
+    "S1000 M3\n"
+    "G0 X10 Y10\n"
+    "G0 Z5\n"
+    "M8\n"
+    "G1 Z-1 F200\n"
+    "G1 X50\n"
+    "M30\n";
+
+CompensateRequest request_for(Dialect dialect) {
+  Trial trial(kProgram, "plate.ngc");
+  CompensateRequest request = trial.request;
+  request.error_file = written("none.toml", "[errors.none]\nEXX = { constant_um = 0.0 }\n");
+  request.inputs.parameter_file.clear();
+  request.work_offsets = {"X=200,Y=250,Z=-90"};
+  request.dialect = dialect;
+  request.program_name = "PLATE";
+  request.program_number = 7;
+  request.retract_Z = 0.0;
+  return request;
+}
+
+// The refusal of the written program with one text in place of another.
+std::string refusal(Dialect dialect, const std::string& from, const std::string& to) {
+  const CompensateRequest request = request_for(dialect);
+  std::string text = compensate(request).program;
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) return "no such text in:\n" + text;
+  text.replace(at, from.size(), to);
+  try {
+    verify_compensated(request, text);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    return what.substr(what.find("plate.ngc"));
+  }
+  return "taken";
+}
+
+TEST(Verification, TakesWhatIsWritten) {
+  for (const Dialect dialect :
+       {Dialect::linuxcnc, Dialect::heidenhain, Dialect::fanuc, Dialect::siemens}) {
+    const CompensateRequest request = request_for(dialect);
+    const VerificationReport report = verify_compensated(request, compensate(request).program);
+    EXPECT_GT(report.blocks, 4U);
+    EXPECT_LT(report.largest, 1e-9);
+  }
+  const Compensated done = compensate(request_for(Dialect::fanuc));
+  EXPECT_NE(std::find(done.report.begin(), done.report.end(),
+                      "verified: 8 blocks, largest difference 0.00 um, for 16 control settings"),
+            done.report.end());
+}
+
+TEST(Verification, ShowsBothLines) {
+  EXPECT_EQ(refusal(Dialect::fanuc, "X50.", "X51."),
+            "plate.ngc:9: error: the program written for fanuc would do something else than "
+            "\"G1 X50\": goes beyond X250 Y260 Z-51, where the original ends (its line 24, "
+            "\"N15 X51.\"; EVO=0 TOS=0 LRP=0 IS-B)");
+  EXPECT_EQ(refusal(Dialect::fanuc, "G43 H1 Z5.", "Z5."),
+            "plate.ngc: error: the program written for fanuc cannot be verified (EVO=0 TOS=0 LRP=0 "
+            "IS-B): its line 21, \"N12 Z5.\": Z while none of G43, G44 and G49 is known to be in "
+            "force");
+  EXPECT_EQ(refusal(Dialect::siemens, "M8", "M9"),
+            "plate.ngc:8: error: the program written for siemens would do something else than "
+            "\"G1 Z-1 F200\": coolant must be on, and is off (its line 18, \"N110 G1 Z-1 F200\"; "
+            "MD20270=1 MD10760=1 MD22550=1 SD42940=0 M6 a macro)");
+}
+
+TEST(Verification, ReplaysLinuxCncFromTwoStarts) {
+  EXPECT_EQ(refusal(Dialect::linuxcnc, "G0 X10 Y10", "G0 X10"),
+            "plate.ngc:5: error: the program written for linuxcnc would do something else than "
+            "\"G0 X10 Y10\": moves Z, which the original leaves where it is (its line 10, \"G0 "
+            "Z5\"; the start at zero)");
+}
+
+}  // namespace
+}  // namespace servomill::sim

@@ -1,0 +1,31 @@
+#include "sim/records/series.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+namespace servomill::sim {
+namespace {
+
+TEST(Series, KeepsItsSignalsInTheirOrder) {
+  Series series(
+      {{"time", "s", "", "", ""}, {"p", "mm", "", "XYZ", "xyz"}, {"e", "um", "", "", ""}});
+  EXPECT_EQ(series.width(), 5U);
+  EXPECT_EQ(series.rows(), 0U);
+  EXPECT_EQ(series.column("time"), 0U);
+  EXPECT_EQ(series.column("p", 'X'), 1U);
+  EXPECT_EQ(series.column("p", 'Z'), 3U);
+  EXPECT_EQ(series.column("e"), 4U);
+  EXPECT_EQ(series.column("p", 'A'), std::nullopt);
+  EXPECT_EQ(series.column("q"), std::nullopt);
+  EXPECT_EQ(series.find("q"), nullptr);
+  series.add_row()[4] = 7.0;
+  series.add_row()[0] = 1.0;
+  EXPECT_EQ(series.rows(), 2U);
+  EXPECT_EQ(series.at(0, 4), 7.0);
+  EXPECT_EQ(series.at(1, 4), 0.0);
+  EXPECT_EQ(series.row(1)[0], 1.0);
+}
+
+}  // namespace
+}  // namespace servomill::sim

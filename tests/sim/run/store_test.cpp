@@ -1,0 +1,148 @@
+// Result files of a run: what a kill leaves, and what comes back.
+
+#include "sim/run/store.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "tests/sim/records/file_snapshots.h"
+#include "tests/sim/small_scenario.h"
+
+namespace servomill::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kProgram = "G1 X1 F1000\nM2\n";
+constexpr std::size_t kHeld = 8;  // what the head of a group holds unless it has room for more
+constexpr std::size_t kCases = kHeld + 2;
+
+class RunFile : public testing::Test {
+ protected:
+  RunFile() : folder_(fs::path(testing::TempDir()) / ("run_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~RunFile() override { fs::remove_all(folder_); }
+  std::string path(const std::string& name) const { return folder_ / name; }
+
+  fs::path folder_;
+};
+
+Scenario scenario() {
+  std::string cases;
+  for (std::size_t i = 0; i < kCases; ++i) {
+    cases += "[[case]]\nname = \"case" + std::to_string(i) + "\"\n";
+  }
+  return small_scenario(kProgram, cases);
+}
+
+// Signals that tell their case and their row.
+CaseOutput output(std::size_t number) {
+  constexpr std::size_t kRows = 40;
+  CaseOutput out;
+  out.name = "case" + std::to_string(number);
+  out.sections = {""};
+  out.duration = static_cast<double>(number);
+  out.result.servo = Series({{"time", "s", "time", "", ""},
+                             {"s", "mm", "arc length", "", ""},
+                             {"rapid", "1", "rapid", "", ""},
+                             {"section", "1", "section", "", ""},
+                             {"true_linear", "mm", "position", "XYZ", "axis_linear"}});
+  for (std::size_t n = 0; n < kRows; ++n) {
+    double* row = out.result.servo.add_row();
+    for (std::size_t c = 0; c < out.result.servo.width(); ++c) {
+      row[c] = static_cast<double>(1000 * number + 10 * n + c);
+    }
+  }
+  return out;
+}
+
+TEST_F(RunFile, KilledAtAnyWriteHasEveryCompleteCase) {
+  const Scenario described = scenario();
+  std::atomic<std::size_t> complete = 0;
+  RunStore store(path("out.h5"), false, described);
+  FileSnapshots snapshots(store.partial_path(), folder_ / "snapshots", complete);
+  for (std::size_t i = 0; i < kCases; ++i) {
+    store.add(output(i));
+    ++complete;
+  }
+  store.commit({});
+  EXPECT_GT(snapshots.all().size(), 10 * kCases);
+  for (const FileSnapshots::Snapshot& left : snapshots.all()) {
+    // the first cases, and those around the number that a group holds at its head by itself
+    if (left.promised >= 2 && left.promised < kHeld) continue;
+    SCOPED_TRACE(left.path);
+    const StoredRun run = read_run(left.path);
+    ASSERT_GE(run.cases.size(), left.promised);
+    ASSERT_LE(run.cases.size(), left.promised + 1);
+    for (std::size_t i = 0; i < run.cases.size(); ++i) {
+      const CaseOutput wanted = output(i);
+      EXPECT_EQ(run.cases[i].name, wanted.name);
+      EXPECT_EQ(run.cases[i].duration, wanted.duration);
+      EXPECT_EQ(run.cases[i].servo->data(), wanted.result.servo.data());
+    }
+  }
+}
+
+std::string bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST_F(RunFile, IsTheSameForTheSameCases) {
+  const Scenario described = scenario();
+  for (const std::string name : {"a.h5", "b.h5"}) {
+    RunStore store(path(name), false, described);
+    for (std::size_t i = 0; i < 3; ++i) store.add(output(i));
+    store.commit({});
+    if (name == "a.h5") sleep(1);  // the second is no part of it
+  }
+  EXPECT_EQ(bytes(path("a.h5")), bytes(path("b.h5")));
+  EXPECT_GT(bytes(path("a.h5")).size(), 1000U);
+}
+
+TEST_F(RunFile, SpeaksNotOfUnfinishedCasesWhenItIsComplete) {
+  const Scenario described = scenario();
+  RunStore store(path("out.h5"), false, described);
+  store.add(output(0));
+  fs::copy_file(store.partial_path(), path("before.h5"));
+  EXPECT_TRUE(InputFile(path("before.h5")).has("/unfinished"));
+  store.commit({});
+  EXPECT_FALSE(InputFile(path("out.h5")).has("/unfinished"));
+}
+
+// Errors of a machine whose X lies far from its zero, and whose Y has no travel.
+TEST_F(RunFile, HasErrorsOverAllOfTheTravelAndLocationErrors) {
+  const Scenario far =
+      small_scenario("G1 Z1 F1000\nM2\n",
+                     "truth = \"true\"\n"
+                     "[machine_override.axis.X]\ntravel_mm = [600.0, 3400.0]\n"
+                     "[machine_override.axis.C]\ntravel_deg = [-3600.0, 3600.0]\n"
+                     "[errors.true]\nEXX = { um_per_m = 10.0 }\nECC = { constant_urad = 5.0 }\n"
+                     "EC0Y = { um_per_m = 50.0 }\nEX0C = \"-3 um\"\n"
+                     "[errors.square]\nEB0Z = { um_per_m = 20.0 }\n"
+                     "[program.start]\nX_mm = 700.0\n[[case]]\nname = \"one\"\n");
+  RunStore store(path("out.h5"), false, far);
+  store.commit({});
+  const InputFile file(path("out.h5"));
+  const auto x = file.values("/errors/true/X/position"), exx = file.values("/errors/true/X/EXX");
+  ASSERT_EQ(x.size(), exx.size());
+  EXPECT_EQ(x.size(), 1121U) << "a place each 2.5 mm";
+  EXPECT_DOUBLE_EQ(x.front(), 600.0);
+  EXPECT_DOUBLE_EQ(x.back(), 3400.0);
+  EXPECT_NEAR(exx.front(), 6.0, 1e-9);
+  EXPECT_NEAR(exx.back(), 34.0, 1e-9);
+  const auto c = file.values("/errors/true/C/position");
+  EXPECT_NEAR(c.front(), -180.0, 1e-9);
+  EXPECT_NEAR(c.back(), 180.0, 1e-9);
+  EXPECT_NEAR(file.values("/errors/true/locations/EC0Y").at(0), 50.0, 1e-9);
+  EXPECT_EQ(file.text("/errors/true/locations/EC0Y", "units"), "urad");
+  EXPECT_NEAR(file.values("/errors/true/locations/EX0C").at(0), -3.0, 1e-9);
+  EXPECT_EQ(file.text("/errors/true/locations/EX0C", "units"), "um");
+  EXPECT_NEAR(file.values("/errors/square/locations/EB0Z").at(0), 20.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace servomill::sim

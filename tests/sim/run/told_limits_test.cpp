@@ -1,0 +1,140 @@
+/// Where security blocks act and tables end, the run tells.
+#include <gtest/gtest.h>
+
+#include "plant/vocabulary/units.h"
+#include "sim/preparation/preparation_cache.h"
+#include "tests/sim/small_scenario.h"
+
+namespace servomill::sim {
+namespace {
+
+// Y is 1 um off for each mm of X: 60 um at the end of line 3, 20 um and less in line 4.
+constexpr const char* kProgram =
+    "G17 G21 G40 G90 G94\nG1 X-10 F6000\nG1 X60\nG1 X20\nG1 X-20\nG0 X150\nG1 X0\nM30\n";
+const std::string kErrors =
+    "imposed = \"machine\"\n[errors.machine]\nEYX = { polynomial_um = [0.0, 1.0] }\n";
+
+std::string one_case(const std::string& name, const std::string& strategy,
+                     const std::string& more = "") {
+  return "[[case]]\nname = \"" + name + "\"\n" + more +
+         "[[case.strategy]]\nmodel = \"machine\"\nsign = \"generate\"\n" + strategy;
+}
+
+std::string note_of(const CaseOutput& output) {
+  return output.notes.empty() ? "none" : output.notes.front();
+}
+
+// From X50 to X60 and back to X50 at 100 mm/s, and at X150 to X50 again, less what lag and ramps
+// do.
+TEST(Saturation, IsToldWithItsLimitLineAndTime) {
+  const std::string feedback = "type = \"feedback\"\n";
+  const Scenario scenario = small_scenario(
+      kProgram, kErrors + one_case("free", feedback) +
+                    one_case("size", feedback + "max_um = 50.0\n") +
+                    one_case("rate", feedback + "max_rate_mm_per_s = 0.09\n") +
+                    one_case("ideal", feedback + "max_um = 50.0\n", "servo = \"ideal\"\n"));
+  EXPECT_EQ(note_of(run_case(scenario, "free")), "none");
+  const CaseOutput size = run_case(scenario, "size");
+  ASSERT_EQ(size.notes.size(), 1U);
+  EXPECT_NE(size.notes[0].find("small.ngc:3: warning: case size: strategy feedback: virtual "
+                               "displacement of Y saturated at 50 um, first here, "),
+            std::string::npos)
+      << size.notes[0];
+  // how long, from the recorded place of X
+  const auto beyond = [](const CaseOutput& one, const char* what) {
+    const Series& servo = one.result.servo;
+    double rows = 0.0;
+    for (std::size_t n = 0; n < servo.rows(); ++n) {
+      if (servo.at(n, servo.column(what, 'X').value()) > 50.0) rows += 1.0;
+    }
+    return rows * 1 * ms;
+  };
+  constexpr double kRows = 6 * ms;  // of 1 ms, where it begins and ends
+  ASSERT_EQ(size.result.saturations.size(), 1U);
+  EXPECT_NEAR(size.result.saturations[0].time, beyond(size, "meas_linear"), kRows);
+  const CaseOutput ideal = run_case(scenario, "ideal");
+  ASSERT_EQ(ideal.result.saturations.size(), 1U);
+  EXPECT_NEAR(ideal.result.saturations[0].time, beyond(ideal, "true_linear"), kRows);
+  EXPECT_NE(note_of(run_case(scenario, "rate"))
+                .find(": strategy feedback: rate of the virtual displacement of Y saturated at "
+                      "0.09 mm/s, first here, "),
+            std::string::npos)
+      << note_of(run_case(scenario, "rate"));
+}
+
+// Runs in lockstep tell the same.
+TEST(Saturation, IsTheSameInLockstep) {
+  const std::string feedback = "type = \"feedback\"\nmax_um = 50.0\n";
+  const Scenario scenario = small_scenario(kProgram, kErrors + one_case("a", feedback) +
+                                                         one_case("b", feedback,
+                                                                  "work_offset = { "
+                                                                  "X_mm = 7.0 }\n"));
+  PreparationCache cache;
+  const std::vector<PreparedCase> cases = prepare_cases(scenario, &cache);
+  std::vector<CaseInputs> inputs;
+  for (const PreparedCase& one : cases) inputs.push_back(one.inputs());
+  std::vector<CaseInputs*> together;
+  for (CaseInputs& one : inputs) together.push_back(&one);
+  const StopFlag never = false;
+  std::atomic<float> progress = 0.0F;
+  const auto results = simulate(together, never, progress);
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    const CaseOutput alone = run_case(scenario, cases[k].spec().name);
+    ASSERT_EQ(alone.result.saturations.size(), 1U);
+    ASSERT_EQ(results[k].saturations.size(), 1U);
+    EXPECT_EQ(results[k].saturations[0].first, alone.result.saturations[0].first);
+    EXPECT_EQ(results[k].saturations[0].time, alone.result.saturations[0].time);
+  }
+}
+
+// The rapid move to X150 cuts nothing, the way back begins beyond the table.
+TEST(EndOfATable, IsToldWhereTheProgramGoesOn) {
+  const std::string table = "type = \"table\"\naxis = \"X\"\ngrid = \"free\"\nspacing_mm = 10.0\n";
+  const Scenario scenario =
+      small_scenario(kProgram, kErrors + one_case("wide", table) +
+                                   one_case("short", table + "from_mm = -20.0\nto_mm = 55.0\n") +
+                                   one_case("both", table + "from_mm = -15.0\nto_mm = 155.0\n"));
+  EXPECT_EQ(note_of(run_case(scenario, "wide")), "none");
+  const CaseOutput one = run_case(scenario, "short");
+  ASSERT_EQ(one.notes.size(), 1U);  // points every 10 mm: the last one at 60
+  EXPECT_TRUE(one.notes[0].ends_with(
+      "small.ngc:7: warning: case short: strategy table: the table over X ends at 60.0000 mm, the "
+      "program goes on to 150.0000 mm; from here on the last value stays"))
+      << one.notes[0];
+  EXPECT_TRUE(
+      note_of(run_case(scenario, "both"))
+          .ends_with("small.ngc:5: warning: case both: strategy table: the table over X ends "
+                     "at -15.0000 mm, the program goes on to -20.0000 mm; from here on the "
+                     "last value stays"))
+      << note_of(run_case(scenario, "both"));
+}
+
+// EYX = 1 um/mm: 7 mm away Y is wrong by 7 um everywhere.
+TEST(RewrittenProgram, KeepsTheErrorsOfThePlaceThatItWasRewrittenFor) {
+  const std::string gcode = "type = \"gcode\"\n", moved = "work_offset = { X_mm = 7.0 }\n",
+                    ideal = "servo = \"ideal\"\n";
+  const Scenario scenario = small_scenario(
+      kProgram, kErrors + one_case("here", gcode, ideal) + one_case("moved", gcode, ideal + moved) +
+                    one_case("old", gcode + "rewritten_for = \"program\"\n", ideal + moved) +
+                    one_case("unmoved", gcode + "rewritten_for = \"program\"\n", ideal));
+  // largest distance of Y from the error curve of a place `shift` mm away
+  const auto off = [&](const char* name, double shift) {
+    const Series servo = run_case(scenario, name).result.servo;
+    const std::size_t x = *servo.column("ref_linear", 'X'), y = *servo.column("true_linear", 'Y');
+    const std::size_t line = *servo.column("line");
+    double largest = 0.0;
+    for (const std::size_t n : rows_within(servo, 0.0, 50.0)) {
+      if (servo.at(n, line) < 3.0) continue;  // begins where the machine stands, undisplaced
+      largest = std::max(largest, std::abs(servo.at(n, y) - 1e-3 * (servo.at(n, x) - shift)));
+    }
+    return largest;
+  };
+  constexpr double kPrinted = 1e-5;  // mm, of printed programs and of corners that are passed
+  EXPECT_LT(off("here", 0.0), kPrinted);
+  EXPECT_LT(off("moved", 0.0), kPrinted);
+  EXPECT_LT(off("unmoved", 0.0), kPrinted);
+  EXPECT_LT(off("old", 7.0), kPrinted);
+}
+
+}  // namespace
+}  // namespace servomill::sim
