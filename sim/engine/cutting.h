@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "plant/kinematics/chain.h"
+#include "sim/model/run_settings.h"
 
 namespace servomill::sim {
 
@@ -41,12 +42,6 @@ class CuttingTable {
 
  private:
   std::vector<Row> rows_;
-};
-
-/// Factor on the terms of the edge: at the beginning, and its growth with the length of cut.
-struct CuttingWear {
-  double initial = 1.0;
-  double per_m = 0.0;  // 1/m
 };
 
 /// What one run feels of the cut, position period by position period.

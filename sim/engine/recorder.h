@@ -10,6 +10,7 @@
 #include "plant/geometry/volumetric.h"
 #include "sim/engine/program_path.h"
 #include "sim/model/machine.h"
+#include "sim/model/run_settings.h"
 #include "sim/records/series.h"
 #include "sim/system/background.h"
 #include "strategies/strategy.h"

@@ -15,22 +15,11 @@
 #include "sim/engine/cutting.h"
 #include "sim/engine/program_path.h"
 #include "sim/model/machine.h"
+#include "sim/model/run_settings.h"
 #include "sim/records/series.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim {
-
-enum class ServoModel : std::uint8_t {
-  cascade,  // loops and drives as described
-  ideal,    // the axes stand where the NC wants them, readings included: Q_true + d(Q_true) = Q_cmd
-};
-
-/// Signals pass through the hardware of the feedback strategy, whether or not it displaces them.
-struct FeedbackHardware {
-  bool connected = false;
-  Tick signal_delay = 1;  // from reading the scale to what the NC reads
-  Tick model_period = 6;  // a model evaluated at tick n acts from n + model_period on
-};
 
 /// What one case needs. References are shared with other cases; parts belong to this run.
 struct CaseInputs {

@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/config/reader.h"
-#include "sim/input/input_files.h"
 #include "sim/metrology/probing_plan.h"
 #include "sim/metrology/triangle_mesh.h"
 
@@ -24,11 +22,6 @@ struct NominalPart {
   std::string bytes;  // STL
   std::shared_ptr<const TriangleMesh> mesh;
 };
-
-/// Keys of [part]: `stl`, a file, and, in a document that needs no other file, `stl_base64`, its
-/// bytes. Nothing without `stl`.
-/// @throws InputError if the file cannot be read or bounds no body
-std::shared_ptr<const NominalPart> read_nominal_part(Reader& part, InputFiles& files);
 
 /// A fault for every probe with nominal points that are off the part, or on its surface but not
 /// facing as it does.

@@ -10,8 +10,8 @@
 #include "plant/cutting/stock.h"
 #include "plant/geometry/volumetric.h"
 #include "sim/engine/program_path.h"
-#include "sim/input/read_probes.h"
 #include "sim/metrology/cmm.h"
+#include "sim/metrology/probing_plan.h"
 #include "sim/records/series.h"
 
 namespace servomill::sim {

@@ -16,12 +16,11 @@
 #include "plant/geometry/error_model.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/parameters.h"
-#include "sim/config/document.h"
-#include "sim/engine/simulate.h"
 #include "sim/metrology/cmm.h"
 #include "sim/metrology/probing_plan.h"
 #include "sim/model/design.h"
 #include "sim/model/machine.h"
+#include "sim/model/run_settings.h"
 #include "strategies/registry.h"
 
 namespace servomill::sim {

@@ -24,18 +24,6 @@ struct Signal {
   std::size_t columns() const { return labels.empty() ? 1 : labels.size(); }
 };
 
-/// How exactly recorded signals are kept. A Series holds what a file of it holds, so that a
-/// comparison made from the file gives the same numbers.
-struct RecordFormat {
-  /// Lengths are rounded to multiples of the power of two (of their unit) next below this. Angles
-  /// and directions are rounded as it is seen from 1 m, rates as it is passed in 10 ms, currents
-  /// and torques to that many times 0.1 A (N m) a micrometre, forces to that many times 1 N. 0:
-  /// every bit is kept.
-  double resolution = 0.0;  // m
-  /// Of all but time, s and counts, which stay float64.
-  Storage storage = Storage::float64;
-};
-
 /// A table of rows. Storage grows in blocks outside of what a tick does.
 class Series {
  public:

@@ -8,7 +8,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/bode.h"
-#include "sim/frequency/servo_store.h"
+#include "sim/run/servo_store.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {

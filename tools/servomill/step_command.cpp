@@ -7,8 +7,8 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/frequency_response.h"
-#include "sim/frequency/servo_store.h"
 #include "sim/frequency/stability.h"
+#include "sim/run/servo_store.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {

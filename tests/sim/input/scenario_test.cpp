@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/config/document.h"
 #include "sim/evaluation/comparison.h"
 #include "sim/run/run.h"
 #include "sim/run/store.h"

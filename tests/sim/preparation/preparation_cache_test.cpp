@@ -1,5 +1,6 @@
 /// Sweeps share what their points have in common, and no result shows it.
 #include "sim/preparation/preparation_cache.h"
+#include "sim/config/document.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "sim/frequency/servo_store.h"
+#include "sim/run/servo_store.h"
 
 #include <fmt/format.h>
 
