@@ -71,6 +71,13 @@ void refuse_what_changes_its_meaning(const ExecutedBlock& block) {
     throw InputError({*block.file, block.line, request.motion.column},
                      "a cycle under G95 while the spindle speed is zero has no feed");
   }
+  if (request.code(Group::g_path_control) > 610 &&
+      controllers::is_canned_cycle(request.motion_code())) {
+    fail(Group::g_path_control,
+         fmt::format("{} beside a canned cycle, which runs under G61: write it in a block of its "
+                     "own",
+                     controllers::code_name('G', request.code(Group::g_path_control))));
+  }
   const int L = static_cast<int>(std::lround(request['L']));
   const bool sets_position = code == 100 && L == 20;
   const auto P = static_cast<int>(std::lround(request['P']));
@@ -150,6 +157,7 @@ void LinuxCncWriter::write(const Block& given) {
   refuse_slash(line);
   if (block.request != nullptr) {
     refuse_what_changes_its_meaning(block);
+    note_path_mode(block);
     const int cutter = block.request->code(Group::g_cutter_compensation);
     if (cutter > 400) {
       summary_.has_cutter_compensation = compensates_cutter_ = true;
@@ -241,6 +249,45 @@ void LinuxCncWriter::move(const Block& block) {
   if (!has_moved && !waiting_.back().is_motion) note_motion_code(waiting_.back());
 }
 
+// Before the next block that does something.
+void LinuxCncWriter::note_path_mode(const Block& block) {
+  if (!controllers::is_canned_cycle(block.request->motion_code())) end_exact_path();
+  if (block.request->code(Group::g_path_control) < 0) return;
+  says_path_ = true;
+  const bool has_Q = block.request->has('Q');
+  naive_cam_tolerance_ = has_Q ? std::max((*block.request)['Q'], 0.0) * block.state->unit : -1.0;
+}
+
+// The rapid to the height of R keeps the mode of the program.
+void LinuxCncWriter::begin_exact_path(const Move& one, const Block& block) {
+  const controllers::ModalState& state = *block.state;
+  if (one.path_mode != PathMode::exact_path || state.path_mode == PathMode::exact_path) return;
+  if (!path_behind_cycle_.empty()) return;
+  path_behind_cycle_ = state.path_mode == PathMode::exact_stop ? "G61.1" : "G64";
+  if (state.path_mode == PathMode::continuous && state.path_tolerance > 0.0) {
+    path_behind_cycle_ +=
+        fmt::format(" P{}", controllers::significant_text(state.path_tolerance / state.unit));
+  }
+  if (state.path_mode == PathMode::continuous && naive_cam_tolerance_ >= 0.0) {
+    path_behind_cycle_ +=
+        fmt::format(" Q{}", controllers::significant_text(naive_cam_tolerance_ / state.unit));
+  }
+  assumes_G64_ = assumes_G64_ || !says_path_;
+  put("G61");
+}
+
+void LinuxCncWriter::end_exact_path() {
+  if (!path_behind_cycle_.empty()) put(path_behind_cycle_);
+  path_behind_cycle_.clear();
+}
+
+std::vector<std::string> LinuxCncWriter::assumptions() const {
+  if (!assumes_G64_) return {};
+  return {
+      "G64 without a tolerance is in force at the start (no other path mode in "
+      "RS274NGC_STARTUP_CODE): it is restored behind canned cycles"};
+}
+
 void LinuxCncWriter::put_cycle_step(const Move& one, const Block& block) {
   if (one.kind == MoveKind::dwell) {
     put(fmt::format("G4 P{}", controllers::significant_text(one.value)));
@@ -256,6 +303,7 @@ void LinuxCncWriter::move(const Move& one, const Block& block, bool is_place) {
                                  [&](const WovenLine& line) { return line.number == one.line; });
   if (waits) release_until(one.line);
   WovenLine& line = waits ? waiting_.front() : waiting_.back();
+  if (line.is_cycle) begin_exact_path(one, block);
   const Step step = walk_.next(one, block);
   if (step.is_corrected) return write_step(step, line, waits && !line.is_released);
   // the words of the line are those of the move

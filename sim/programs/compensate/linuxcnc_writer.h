@@ -19,6 +19,9 @@ struct WovenLine;
 ///   that act behind the motion (M0, M1, M2, M30, M60) come behind the last.
 /// - Expressions become numbers, lines with O-words go, canned cycles and cutter compensation
 ///   become their moves.
+/// - Moves of canned cycles run under G61, as the cycles do (interp_cycles.cc, convert_cycle);
+/// behind
+///   them the mode of the program is restored.
 /// - G92 and G10 L10, L11, L20 say where the machine is: they are told where it now stands.
 /// - A line that starts with '/' and moves or changes modes is refused: what follows relies on it.
 ///   One that the interpreter leaves out becomes a comment.
@@ -32,6 +35,7 @@ class LinuxCncWriter final : public ProgramWriter {
 
   void write(const controllers::ExecutedBlock& block) override;
   std::string finish(const std::vector<std::string>& header) override;
+  std::vector<std::string> assumptions() const override;
 
  private:
   using Block = controllers::ExecutedBlock;
@@ -42,6 +46,9 @@ class LinuxCncWriter final : public ProgramWriter {
   void move(const Block& block);
   void move(const Move& one, const Block& block, bool is_place);
   void put_cycle_step(const Move& one, const Block& block);
+  void note_path_mode(const Block& block);
+  void begin_exact_path(const Move& one, const Block& block);
+  void end_exact_path();
   void release_until(int line);
   void release(WovenLine& line);
   void write_step(const Step& step, WovenLine& line, bool is_woven_in);
@@ -56,7 +63,10 @@ class LinuxCncWriter final : public ProgramWriter {
   bool is_first_ = true, is_open_ = false;  // no line yet; behind a '%'
   std::string motion_;                      // code in force in the output; empty: none
   bool compensates_cutter_ = false;
-  std::deque<WovenLine> waiting_;  // lines whose motion may still come
+  bool says_path_ = false, assumes_G64_ = false;  // the program has named its path mode
+  double naive_cam_tolerance_ = -1.0;             // m, Q of G64; < 0: not given
+  std::string path_behind_cycle_;                 // to be restored; empty: in force
+  std::deque<WovenLine> waiting_;                 // lines whose motion may still come
 };
 
 }  // namespace servomill::sim

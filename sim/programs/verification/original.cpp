@@ -114,11 +114,11 @@ void Original::take_motion(const Move& move, const ExecutedBlock& block, bool is
   action.was_known = known_;
   action.was_ever_known = ever_known_;
   action.auxiliary = auxiliary_;
-  // a canned cycle follows its path exactly, whatever is in force
+  // a canned cycle follows its path exactly (G61), whatever is in force
   const bool is_cycle =
       block.request != nullptr && controllers::is_canned_cycle(block.request->motion_code());
   action.is_of_cycle = is_cycle;
-  action.has_path_mode = has_path_mode_ && !is_cycle;
+  action.has_path_mode = has_path_mode_ || (is_cycle && move.path_mode == PathMode::exact_path);
   const int code = one_shot(block);
   action.is_machine_position = code == 530 || code == 280 || code == 300;
   action.is_reference_return = code == 280 || code == 300;
