@@ -153,12 +153,16 @@ void Control::run_circle(const HeidenhainBlock& block) {
            fmt::format("'{}': not in the plane of CC; a helix needs CP", p.target[i].word->text));
     }
   }
-  const KnownPosition end = targets(p);
+  KnownPosition end = targets(p);
   const Point last = {*end[axes[0]], *end[axes[1]]};
   check_ends(start, last);
   int direction = *p.direction * (rules_.dr_plus_is_counter_clockwise ? 1 : -1);
   if (is_mirrored(0) != is_mirrored(1) && rules_.mirror_reverses_arcs) direction = -direction;
-  move_on_arc(p, end, sweep_to(start, last, direction));
+  const double sweep = sweep_to(start, last, direction);
+  if (std::abs(sweep) == kFullTurn) {
+    for (std::size_t i = 0; i < axes.size(); ++i) end[axes[i]] = start[i];
+  }
+  move_on_arc(p, end, sweep);
   act_at_end(p);
 }
 

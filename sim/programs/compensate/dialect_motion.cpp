@@ -21,6 +21,7 @@ namespace {
 constexpr double kShortestShare = 1e-3;     // of a move, for the time of blocks that lead to it
 constexpr double kLeastSweep = 1e-3 * deg;  // of an arc, and of what it lacks of a full circle
 constexpr double kSamePlace = 1e-9;         // m: the same digits
+constexpr double kStill = 1e-12;            // m, rad: the same number
 constexpr double kMostRadiusError = 5e-6;   // m, between begin and end of an arc
 constexpr double kMostTurnOff = 0.25 * std::numbers::pi;  // rad: farther off, an arc goes round
 
@@ -153,7 +154,8 @@ void DialectWriter::check_place(const Step& step, const AxisWords& on_grid) cons
   }
 }
 
-// Those that change, and of those without a known position all that the move names.
+// Those that change, and of those without a known position all that the move names. A feed brings
+// back what a helix of Heidenhain's has left beside the grid; a rapid leaves it there.
 DialectWriter::Words DialectWriter::words_of(const Step& step, const AxisWords& target,
                                              const AxisWords& at) const {
   Words out;
@@ -162,8 +164,9 @@ DialectWriter::Words DialectWriter::words_of(const Step& step, const AxisWords& 
     const auto k = static_cast<std::size_t>(i);
     const double unit = printer_->unit(axis), grid = std::pow(10.0, -printer_->decimals(axis));
     const bool is_feed = step.move->kind != MoveKind::rapid;
-    const bool moves = out_known_[k] ? std::abs(target[i] - at[i]) > 0.5 * grid * unit
-                                     : step.is_commanded[k] || is_feed;
+    const double still = is_feed ? kStill : 0.5 * grid * unit;
+    const bool moves =
+        out_known_[k] ? std::abs(target[i] - at[i]) > still : step.is_commanded[k] || is_feed;
     if (moves && walk_.has(axis)) out.emplace_back(axis, target[i] / unit);
   }
   return out;

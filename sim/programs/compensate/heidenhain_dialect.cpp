@@ -65,7 +65,8 @@ class Heidenhain final : public DialectPrinter {
   void turn_by_angle(const DialectMotion& motion, const AxisWords& begin,
                      AxisWords& end) const override {
     if (!motion.names(Axis::Z)) return;
-    const Eigen::Vector2d centre = motion.arc->centre.head<2>() * mm;
+    const Eigen::Vector2d centre(as_printed(motion.arc->centre.x(), Axis::X) * mm,
+                                 as_printed(motion.arc->centre.y(), Axis::Y) * mm);
     const double angle = std::stod(angle_text(*motion.arc)) * deg;
     end.head<2>() = centre + Eigen::Rotation2Dd(angle) * (begin.head<2>() - centre);
   }
@@ -164,6 +165,9 @@ class Heidenhain final : public DialectPrinter {
   }
   std::string retract_word() const {
     return "Z" + signed_number(settings_.retract_Z / mm, decimals(Axis::Z));
+  }
+  double as_printed(double value, Axis axis) const {
+    return std::stod(fixed_text(value, decimals(axis)));
   }
   std::string words(const std::vector<std::pair<Axis, double>>& all) const {
     std::string out;
