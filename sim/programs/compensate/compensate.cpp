@@ -225,8 +225,14 @@ std::unique_ptr<ProgramWriter> writer_of(const CompensateRequest& request,
     throw InputError({"--smoothing"}, "is for other controls; LinuxCNC takes G64 P in the program");
   }
   if (request.dialect != Dialect::linuxcnc) {
-    return std::make_unique<DialectWriter>(
-        walk, summary, dialect_settings(request, described, setup), request.program_file);
+    DialectSettings settings = dialect_settings(request, described, setup);
+    for (std::size_t i = 0; i < settings.rotary_start.size(); ++i) {
+      const Axis axis = kAllAxes[kLinearJoints + i];
+      if (walk.has(axis) && walk.is_known(axis)) {
+        settings.rotary_start[i] = walk.out()[index_of(axis)];
+      }
+    }
+    return std::make_unique<DialectWriter>(walk, summary, settings, request.program_file);
   }
   return std::make_unique<LinuxCncWriter>(walk, summary, decimals_for(request.tolerance));
 }

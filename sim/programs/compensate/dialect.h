@@ -38,6 +38,7 @@ struct DialectSettings {
   double retract_Z = 0.0;                // m, machine coordinate
   bool has_rotary_axes = false;          // of the machine
   std::array<bool, 3> is_endless{};      // A, B, C: without ends of travel
+  std::array<std::optional<double>, 3> rotary_start{};   // A, B, C: rad, machine, where known
   std::vector<Axis> axes = {Axis::X, Axis::Y, Axis::Z};  // of the machine
   std::optional<int> preset;  // Heidenhain: number in the preset table that is activated
   double smoothing = 0.0;     // m, tolerance of the control's smoothing; 0: not set

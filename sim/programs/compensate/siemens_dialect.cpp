@@ -17,7 +17,13 @@ constexpr double kMostTilt = 1e-3;  // mm; of a circle through points, against a
 
 class Siemens final : public IsoDialect {
  public:
-  using IsoDialect::IsoDialect;
+  Siemens(const DialectSettings& settings, std::vector<std::string>& lines)
+      : IsoDialect(settings, lines) {
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+      const auto& start = settings.rotary_start[i];
+      if (start) counts_[i] = {*start / deg, 0.0};
+    }
+  }
 
   void begin(const std::vector<std::string>& header) override {
     comment(settings_.name);
@@ -83,14 +89,14 @@ class Siemens final : public IsoDialect {
     put("M6");
     assume("T selects the tool and M6 changes it");
     forget_modes();
-    count_.fill(std::nullopt);
+    counts_.fill({});
     modes_.feed_mode = FeedMode::units_per_minute;
     modes_.work_system = system;
     put(fmt::format("G17 G40 G90 G94 {}", system_code(system)));
   }
   void stop(int code) override {
     IsoDialect::stop(code);
-    count_.fill(std::nullopt);
+    counts_.fill({});
   }
   void dwell(double seconds) override { put("G4 F" + rate(seconds, 4, "dwell")); }
 
@@ -161,22 +167,32 @@ class Siemens final : public IsoDialect {
 
   // An axis without ends may be a modulo axis: MD30455 then decides the way to a plain angle, and
   // angles outside 0 ... 360 are others (Axes and spindles 06/2019, p. 225). AC keeps to the turn,
-  // IC to the count.
+  // IC to the count; settings decide whether IC carries a new offset along (K2 p. 1-7), and SUPA
+  // needs absolute positions.
   std::string position_word(Axis axis, double value) override {
-    const int i = index_of(axis) - kLinearJoints;
-    if (i < 0 || !settings_.is_endless[static_cast<std::size_t>(i)]) {
+    const int k = index_of(axis) - kLinearJoints;
+    if (k < 0 || !settings_.is_endless[static_cast<std::size_t>(k)]) {
       return IsoDialect::position_word(axis, value);
     }
-    const auto is_angle = [](double count) { return count >= 0.0 && count < 360.0; };
+    const auto i = static_cast<std::size_t>(k);
     const std::string text = fixed_text(value, decimals(axis));
-    const double count = std::stod(text);
-    std::optional<double>& known = count_[static_cast<std::size_t>(i)];
-    const std::optional<double> before = is_of_machine_ ? std::nullopt : known;
-    known = is_of_machine_ ? std::nullopt : std::optional<double>(count);
-    if (before && !(is_angle(*before) && is_angle(count))) {
-      return fmt::format("{}=IC({})", letter(axis), fixed_text(count - *before, decimals(axis)));
+    const double count = std::stod(text), offset = offset_of(i);
+    const std::optional<Count> known = counts_[i];
+    counts_[i] = {count + offset, offset};
+    const auto is_angle = [](double angle) { return angle >= 0.0 && angle < 360.0; };
+    const double before = known ? known->machine - offset : 0.0;
+    if (is_angle(count) && (!known || is_angle(before))) {
+      return fmt::format("{}=AC({})", letter(axis), text);
     }
-    return is_angle(count) ? fmt::format("{}=AC({})", letter(axis), text) : letter(axis) + text;
+    if (!known) return letter(axis) + text;
+    if (is_of_machine_ || known->offset != offset) {
+      throw Unsayable{
+          fmt::format("rotates {0} from {1:.7g} to {2} {3}, while it may be a modulo axis, whose "
+                      "absolute positions are from 0 to 360 deg; keep to those there",
+                      letter(axis), before, text,
+                      is_of_machine_ ? "of the machine" : "behind a change of its work offset")};
+    }
+    return fmt::format("{}=IC({})", letter(axis), fixed_text(count - before, decimals(axis)));
   }
 
   static int edge(const DialectMotion& motion) {
@@ -194,10 +210,17 @@ class Siemens final : public IsoDialect {
   void work_system(int system) {
     put(system_code(system));
     modes_.work_system = system;
-    count_.fill(std::nullopt);
   }
-  // Rotary axes as written last, deg; nullopt: not known in the work system in force.
-  std::array<std::optional<double>, 3> count_{};
+  double offset_of(std::size_t i) const {  // deg, of A, B, C
+    if (is_of_machine_) return 0.0;
+    const auto system = static_cast<std::size_t>(modes_.work_system.value_or(1) - 1);
+    return settings_.work_offset[system][kLinearJoints + static_cast<int>(i)] / deg;
+  }
+
+  struct Count {
+    double machine = 0.0, offset = 0.0;  // deg; of the work system that it was written in
+  };
+  std::array<std::optional<Count>, 3> counts_{};  // of A, B, C as written last
   bool is_of_machine_ = false;
   Eigen::Vector3d through_ = Eigen::Vector3d::Zero();  // of an arc outside XY, half way along
 
