@@ -53,14 +53,16 @@ Vector3d CorrectedCurve::derivative(double t) const {
   return arc_ ? arc_->derivative(t) : Vector3d((end_ - begin_).head<3>());
 }
 
-double CorrectedCurve::first_guess(const AxisWords& from, const AxisWords& end,
+// From share t to `end`. A straight block may come from beside the path, where a rapid has ended:
+// its own length says nothing.
+double CorrectedCurve::first_guess(const AxisWords& from, const AxisWords& end, double t,
                                    const controllers::MachineAction& action) const {
   if (!arc_) {
     const AxisWords along = weighted(end_ - begin_);
-    return weighted(end - from).dot(along) / along.squaredNorm();
+    return weighted(end - at(t)).dot(along) / along.squaredNorm();
   }
   const bool is_arc = action.kind == controllers::ActionKind::arc && action.normal_axis == arc_->c;
-  if (!is_arc) return angle_between(*arc_, from, end) / arc_->sweep;
+  if (!is_arc) return angle_between(*arc_, at(t), end) / arc_->sweep;
   return ArcSweep(from.head<3>(), end.head<3>(), action.centre, arc_->c, action.turns).sweep /
          arc_->sweep;
 }
@@ -68,7 +70,7 @@ double CorrectedCurve::first_guess(const AxisWords& from, const AxisWords& end,
 double CorrectedCurve::share(const AxisWords& from, const AxisWords& end, double t,
                              const controllers::MachineAction& action) const {
   constexpr int kIterations = 2;  // the derivative is that of the programmed path
-  double out = t + first_guess(from, end, action);
+  double out = t + (is_still() ? 0.0 : first_guess(from, end, t, action));
   for (int i = 0; i < kIterations && !is_still(); ++i) {
     const double inside = std::clamp(out, 0.0, 1.0);
     AxisWords along = end_ - begin_;

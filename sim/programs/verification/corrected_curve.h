@@ -38,7 +38,7 @@ class CorrectedCurve {
 
  private:
   Eigen::Vector3d derivative(double t) const;
-  double first_guess(const AxisWords& from, const AxisWords& end,
+  double first_guess(const AxisWords& from, const AxisWords& end, double t,
                      const controllers::MachineAction& action) const;
 
   const Correction& correction_;

@@ -122,8 +122,9 @@ void ReplayComparison::check_piece(const OriginalAction& action, const Corrected
   const double tolerance = path_tolerance(one.kind == ActionKind::arc || was_arc_);
   // a block may lead from where a rapid has ended to the begin of the corrected path
   const double begin_off = (from - curve.at(0.0)).head<3>().norm();
-  const bool is_approach = t_begin == 0.0 && t_end * curve.length() <= 2.0 * tolerance &&
-                           t_end * curve.angle() <= 2.0 * limits_.grid_turn;
+  const bool is_approach =
+      curve.is_still() || (t_begin == 0.0 && t_end * curve.length() <= 2.0 * tolerance &&
+                           t_end * curve.angle() <= 2.0 * limits_.grid_turn);
   const int n = piece.samples();
   for (int i = is_approach ? n : 1; i <= n; ++i) {
     const double u = static_cast<double>(i) / n;

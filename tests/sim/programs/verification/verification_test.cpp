@@ -76,6 +76,24 @@ TEST(Verification, ShowsBothLines) {
             "MD20270=1 MD10760=1 MD22550=1 SD42940=0 M6 a macro)");
 }
 
+// X and Y of a rapid before Z is known are not corrected: the next feed begins beside its path, and
+// here by more than its length (Y from 1 to 0.9 mm under a correction of 0.2 mm), or has none.
+TEST(Verification, TakesShortFeedsThatBeginBesideTheirPath) {
+  const std::string errors =
+      written("shifted.toml", "[errors.shifted]\nEYX = { constant_um = 200.0 }\n");
+  for (const std::string feed : {"G1 Y0.9 F100\n", "G1 Y1.1 F100\n", "G1 Y1 F100\n"}) {
+    for (const Dialect dialect :
+         {Dialect::linuxcnc, Dialect::heidenhain, Dialect::fanuc, Dialect::siemens}) {
+      CompensateRequest request = request_for(dialect);
+      request.error_file = errors;
+      request.program_file =
+          written("plate.ngc", "G21 G90 G17 G54\nT1 M6\nS1000 M3\nG0 X1 Y1\nG43 H1 Z5\n" + feed +
+                                   "G1 X9\nM30\n");
+      EXPECT_NO_THROW(compensate(request)) << feed;
+    }
+  }
+}
+
 TEST(Verification, ReplaysLinuxCncFromTwoStarts) {
   EXPECT_EQ(refusal(Dialect::linuxcnc, "G0 X10 Y10", "G0 X10"),
             "plate.ngc:5: error: the program written for linuxcnc would do something else than "
