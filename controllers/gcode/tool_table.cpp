@@ -159,9 +159,15 @@ void ToolTable::add(const ToolEntry& tool) {
   }
 }
 
-const ToolEntry* ToolTable::find(int number) const {
+const ToolEntry* ToolTable::entry_of(int number) const {
   const auto found = tools_.find(number);
   return found == tools_.end() ? nullptr : &found->second;
+}
+
+const ToolEntry* ToolTable::find(int number) const {
+  static const ToolEntry kAnyTool;
+  const ToolEntry* entry = entry_of(number);
+  return entry == nullptr && takes_any_ ? &kAnyTool : entry;
 }
 
 }  // namespace servomill::controllers

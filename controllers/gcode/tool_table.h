@@ -34,14 +34,21 @@ class ToolTable {
   /// Puts a tool in the place of that of the same number.
   void replace(const ToolEntry& tool) { tools_[tool.number] = tool; }
 
+  /// Every number that the table lacks is from now on a tool without length and diameter: for
+  /// surveys of programs, where what depends on them counts as unknown.
+  void take_any_number() { takes_any_ = true; }
+
   /// nullptr if there is no such tool.
   const ToolEntry* find(int number) const;
+  /// The line of the table; nullptr if it has none.
+  const ToolEntry* entry_of(int number) const;
   const std::map<int, ToolEntry>& entries() const { return tools_; }  ///< by number
   bool empty() const { return tools_.empty(); }
   std::size_t size() const { return tools_.size(); }
 
  private:
   std::map<int, ToolEntry> tools_;
+  bool takes_any_ = false;
 };
 
 }  // namespace servomill::controllers

@@ -13,6 +13,7 @@
 #include "controllers/gcode/parameter_file.h"
 #include "sim/config/document.h"
 #include "sim/input/implausible.h"
+#include "sim/input/read_machine.h"
 #include "sim/input/subroutine_files.h"
 #include "sim/model/scenario.h"
 #include "sim/preparation/prepared_case.h"
@@ -90,7 +91,7 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
     setup.work_system = controllers::work_system_of(setup.stored);
   }
   if (!inputs.machine.empty()) {
-    setup.machine = tool_centre_point(read_machine_file(inputs.machine));
+    setup.machine = tool_centre_point(read_machine_description(inputs.machine).machine);
   }
   for (const std::string& parameter : inputs.parameters) {
     const std::size_t equals = parameter.find('=');
@@ -136,6 +137,10 @@ std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& i
   return interpreter.warnings();
 }
 
+bool is_program(std::string_view path) {
+  return !path.ends_with(".toml") && !holds_cutter_locations(path);
+}
+
 std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,
                               const ProgramInputs& inputs, std::vector<Fault>* warnings) {
   try {
@@ -147,8 +152,10 @@ std::vector<Fault> check_file(const std::string& path, const std::vector<std::st
       controllers::read_cl_data(read_file(path, {}, "cutter location file"), path);
       return {};
     }
-    return controllers::check_program(controllers::ProgramText::of_file(path),
-                                      program_setup(inputs, path), warnings);
+    controllers::ProgramSetup setup = program_setup(inputs, path);
+    if (setup.tools.empty()) setup.tools.take_any_number();  // the control has a table of its own
+    return controllers::check_program(controllers::ProgramText::of_file(path), std::move(setup),
+                                      warnings);
   } catch (const InputError& error) {
     return error.faults();
   }

@@ -35,6 +35,9 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
 std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& inputs,
                          const std::function<void(std::string_view)>& write);
 
+/// True of files that are neither scenarios, machines nor cutter locations.
+bool is_program(std::string_view path);
+
 /// All faults of a file: scenario or machine (.toml), cutter locations (.cls, .apt, .csv) or
 /// program (anything else).
 /// @param changes     what --set says, for scenarios

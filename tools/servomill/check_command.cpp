@@ -1,40 +1,97 @@
 #include <fmt/format.h>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/evaluation/comparison.h"
 #include "sim/programs/canon.h"
+#include "sim/programs/program_survey.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/program_options.h"
 
 namespace servomill::tools {
+namespace {
+
+namespace po = boost::program_options;
+
+void declare(Options& options) {
+  const auto texts = [](const char* name) {
+    return po::value<std::vector<std::string>>()->value_name(name);
+  };
+  options.add()("set", texts("KEY=VALUE"), "changes a key of the scenarios, as for servomill run");
+  add_program_options(options);
+  options.add()("machine", po::value<std::string>()->value_name("M.toml"),
+                "machine that runs the programs: for the cycle time (v_max, a_max and j_max of its "
+                "axes are enough), G43.4, G43.5, G53.1 and G68.2");
+  options.add()("work-offset", texts("X=10,Y=-5"),
+                "programs: position of G54 in the machine, mm and deg; G55:X=10,R=30 for another "
+                "one and with a rotation");
+  options.add()("tool-length", texts("1=50"),
+                "programs: length of tool 1, mm, in place of that of --tools");
+  options.add()("json", "prints one JSON object a file");
+  options.add()("quiet,q", "prints nothing but faults");
+}
+
+std::string fault_json(const Fault& fault) {
+  return fmt::format(R"({{"file": "{}", "line": {}, "column": {}, "message": "{}"}})",
+                     sim::json_escaped(fault.place.file), fault.place.line, fault.place.column,
+                     sim::json_escaped(fault.message));
+}
+
+std::string faults_json(const std::vector<Fault>& faults) {
+  std::string out;
+  for (const Fault& fault : faults) out += (out.empty() ? "" : ", ") + fault_json(fault);
+  return "[" + out + "]";
+}
+
+// @return number of faults
+std::size_t check(const std::string& path, const Options& options,
+                  const sim::ProgramInputs& inputs) {
+  std::vector<Fault> warnings;
+  const auto faults = sim::check_file(path, options.list("set"), inputs, &warnings);
+  const bool json = options.has("json");
+  std::optional<sim::ProgramSurvey> survey;
+  if (sim::is_program(path) && !options.has("quiet")) {
+    survey = sim::survey_program(
+        {path, inputs, options.list("work-offset"), options.list("tool-length")});
+  }
+  if (json) {
+    fmt::print(R"({{"file": "{}", "faults": {}, "warnings": {}, "program": {}}})"
+               "\n",
+               sim::json_escaped(path), faults_json(faults), faults_json(warnings),
+               survey ? sim::to_json(*survey) : "null");
+    return faults.size();
+  }
+  for (const Fault& warning : warnings) {
+    fmt::print(stderr, "{}: warning: {}\n", to_string(warning.place), warning.message);
+  }
+  for (const Fault& fault : faults) fmt::print(stderr, "{}\n", to_string(fault));
+  if (options.has("quiet")) return faults.size();
+  if (faults.empty()) fmt::print("{}: no faults\n", path);
+  if (survey) fmt::print("{}", sim::to_text(*survey));
+  return faults.size();
+}
+
+}  // namespace
 
 int check_command(const Arguments& arguments) {
-  namespace po = boost::program_options;
   Options options(
-      "check", "FILE... [--set KEY=VALUE]... [--tools TABLE]",
-      "Checks scenarios and machines (.toml), cutter locations (.cls, .apt, .csv) and programs "
-      "(all others) and prints every fault with file:line:column. Scenarios are prepared as for a "
-      "run, up to the first "
-      "tick, at every point of their sweep.",
+      "check", "FILE... [--set KEY=VALUE]... [--tools TABLE] [--machine M.toml] [--json]",
+      "Checks scenarios and machines (.toml), cutter locations (.cls, .apt, .csv) and programs\n"
+      "(all others) and prints every fault with file:line:column. Scenarios are prepared as for a\n"
+      "run, up to the first tick, at every point of their sweep.\n\n"
+      "Of each program it prints units, work offsets, tools, extent, cycle time, the controls "
+      "that\n"
+      "read it as it stands, and for the others the first line that stops them. Positions are\n"
+      "known as far as the program names them, machine coordinates as far as --work-offset or\n"
+      "--parameter-file and the tool lengths are given. The extent holds the ends of all moves "
+      "and\n"
+      "the extreme points of arcs. The cycle time is that of the motion, planned as in a run.",
       "FILE");
-  options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
-                "changes a key of the scenarios, as for servomill run");
-  add_program_options(options);
-  add_machine_option(options);
-  options.add()("quiet,q", "prints nothing but faults");
+  declare(options);
   if (!options.parse(arguments)) return kDone;
   if (options.words().empty()) throw InputError({"servomill check"}, "needs a FILE; see --help");
   const sim::ProgramInputs inputs = program_inputs(options);
   std::size_t faults = 0;
-  for (const std::string& path : options.words()) {
-    std::vector<Fault> warnings;
-    const auto found = sim::check_file(path, options.list("set"), inputs, &warnings);
-    for (const Fault& warning : warnings) {
-      fmt::print(stderr, "{}: warning: {}\n", to_string(warning.place), warning.message);
-    }
-    for (const Fault& fault : found) fmt::print(stderr, "{}\n", to_string(fault));
-    if (found.empty() && !options.has("quiet")) fmt::print("{}: no faults\n", path);
-    faults += found.size();
-  }
+  for (const std::string& path : options.words()) faults += check(path, options, inputs);
   return faults == 0 ? kDone : kInputWrong;
 }
 

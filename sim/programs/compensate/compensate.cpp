@@ -257,7 +257,7 @@ struct Preparation {
     const NcSettings& nc = described.machine.nc;
     known.depends_on_place = depends_on_place(correction, nc.lower, nc.upper);
     if (request.start.empty()) return;
-    const AxisValues start = axis_values("--start", request.start, layout, false);
+    const AxisValues start = axis_values("--start", request.start, &layout, false);
     options.start = known.setup.start = start.words;
     options.is_start_known = start.given;
     // programs for other controls retract first

@@ -18,7 +18,7 @@ namespace servomill::sim {
 
 using controllers::ProgramSetup;
 
-AxisValues axis_values(const std::string& option, std::string_view text, const JointLayout& layout,
+AxisValues axis_values(const std::string& option, std::string_view text, const JointLayout* layout,
                        bool takes_rotation) {
   AxisValues out;
   const Place place{option + " " + std::string(text)};
@@ -38,7 +38,7 @@ AxisValues axis_values(const std::string& option, std::string_view text, const J
       out.has_rotation = true;
       continue;
     }
-    if (!layout.joint_of(*axis)) {
+    if (layout != nullptr && !layout->joint_of(*axis)) {
       throw InputError(place, fmt::format("the machine has no axis {}", letter(*axis)));
     }
     out.words[index_of(*axis)] = value * (is_linear(*axis) ? mm : deg);
@@ -49,11 +49,7 @@ AxisValues axis_values(const std::string& option, std::string_view text, const J
 
 namespace {
 
-constexpr std::size_t kSystems = kWorkSystems.size();
-
-// Axes of a second --work-offset of the same system are added, another value of one is refused.
-void add_work_offset(const std::string& text, const JointLayout& layout,
-                     std::array<std::optional<AxisValues>, kSystems>& given) {
+void add_work_offset(const std::string& text, const JointLayout* layout, GivenWorkOffsets& given) {
   const std::size_t colon = text.find(':');
   const std::string name = colon == std::string::npos ? "G54" : text.substr(0, colon);
   const auto found = std::find(kWorkSystems.begin(), kWorkSystems.end(), name);
@@ -91,7 +87,14 @@ void add_work_offset(const std::string& text, const JointLayout& layout,
   known->rotation = values.rotation;
 }
 
-// "1=50": in place of the length of the tool table.
+}  // namespace
+
+GivenWorkOffsets work_offsets(const std::vector<std::string>& texts, const JointLayout* layout) {
+  GivenWorkOffsets given;
+  for (const std::string& text : texts) add_work_offset(text, layout, given);
+  return given;
+}
+
 void add_tool_length(const std::string& text, controllers::ToolTable& tools) {
   const Place place{"--tool-length " + text};
   const std::size_t equals = text.find('=');
@@ -110,8 +113,6 @@ void add_tool_length(const std::string& text, controllers::ToolTable& tools) {
   tools.replace(tool);
 }
 
-}  // namespace
-
 WorkKnowledge read_work_knowledge(const CompensateRequest& request, const JointLayout& layout) {
   WorkKnowledge known;
   known.setup = program_setup(request.inputs, request.program_file);
@@ -120,8 +121,7 @@ WorkKnowledge read_work_knowledge(const CompensateRequest& request, const JointL
       known.work_systems.insert(system);
     }
   }
-  std::array<std::optional<AxisValues>, kSystems> given;
-  for (const std::string& text : request.work_offsets) add_work_offset(text, layout, given);
+  const GivenWorkOffsets given = work_offsets(request.work_offsets, &layout);
   for (std::size_t k = 0; k < given.size(); ++k) {
     if (!given[k]) continue;
     known.setup.work_offset[k] = given[k]->words;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/program_setup.h"
@@ -26,8 +28,17 @@ struct AxisValues {
 };
 
 /// @param option  its name, for messages
-AxisValues axis_values(const std::string& option, std::string_view text, const JointLayout& layout,
+/// @param layout  nullptr: of a machine that is not known, which may have any axis
+AxisValues axis_values(const std::string& option, std::string_view text, const JointLayout* layout,
                        bool takes_rotation);
+
+/// Values of `--work-offset`, G54 ... G59.3. Axes of a second one of the same system are added,
+/// another value of one is refused.
+using GivenWorkOffsets = std::array<std::optional<AxisValues>, kWorkSystems.size()>;
+GivenWorkOffsets work_offsets(const std::vector<std::string>& texts, const JointLayout* layout);
+
+/// "1=50": in place of the length of the tool table.
+void add_tool_length(const std::string& text, controllers::ToolTable& tools);
 
 /// State of the control before the program, and the work systems of known place.
 struct WorkKnowledge {

@@ -1,0 +1,48 @@
+/// Cycle time of a program on a machine: the time of its motion, planned as in a simulation.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "controllers/path/trajectory.h"
+#include "sim/model/machine.h"
+#include "sim/programs/known_positions.h"
+
+namespace servomill::sim {
+
+/// Adds up motion and dwells. Moves over a distance that is not known (from where the machine
+/// happens to be at the start, behind a tool change or between places of unknown offset) are left
+/// out, and counted.
+class ProgramDuration {
+ public:
+  explicit ProgramDuration(const MachineSettings& machine);
+
+  void add(const Move& move, const MoveKnowledge& known);  ///< a motion
+  void add(const Move& move);                              ///< anything else
+  /// Plans the moves that are left.
+  void finish();
+
+  double duration() const { return duration_; }                    ///< s
+  const std::vector<int>& left_out() const { return left_out_; }   ///< lines
+  const std::string& why_unknown() const { return why_unknown_; }  ///< empty: it is known
+  int tool_changes() const { return tool_changes_; }
+  int stops() const { return stops_; }  ///< M0, M1, M60
+
+ private:
+  bool refuses(const Move& move);
+  void plan();
+
+  const MachineSettings& machine_;
+  controllers::JointLimits limits_;
+  controllers::PathOptions options_;
+  std::vector<Move> moves_;  // not planned yet
+  Joints start_ = Joints::Zero();
+  Joints at_ = Joints::Zero();
+  double duration_ = 0.0;
+  std::vector<int> left_out_;
+  std::string why_unknown_;
+  int tool_changes_ = 0, stops_ = 0;
+  MoveKind last_ = MoveKind::dwell;
+};
+
+}  // namespace servomill::sim

@@ -1,0 +1,76 @@
+#include "sim/programs/program_extent.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace servomill::sim {
+namespace {
+
+constexpr double kStill = 1e-12;  // m, rad: what rounding leaves of positions
+
+void include(AxisRanges& ranges, const AxisWords& position, const AxisFlags& is_known) {
+  for (std::size_t i = 0; i < kAxisWords; ++i) {
+    if (is_known[i]) ranges[i].include(position[static_cast<Eigen::Index>(i)]);
+  }
+}
+
+// The quadrant points that lie on the arc, where its plane is known at both ends.
+void include_extremes(AxisRanges& ranges, const ArcSweep& arc, const AxisFlags& begin,
+                      const AxisFlags& end) {
+  const auto a = static_cast<std::size_t>(arc.a), b = static_cast<std::size_t>(arc.b);
+  if (!begin[a] || !begin[b] || !end[a] || !end[b]) return;
+  constexpr double kQuarter = std::numbers::pi / 2.0;
+  const double low = std::min(arc.angle, arc.angle + arc.sweep);
+  const double high = std::max(arc.angle, arc.angle + arc.sweep);
+  const double first = std::ceil(low / kQuarter);
+  for (int n = 0; n < 4 && (first + n) * kQuarter <= high; ++n) {  // a full turn has four
+    const Eigen::Vector3d point = arc.point(((first + n) * kQuarter - arc.angle) / arc.sweep);
+    ranges[a].include(point[arc.a]);
+    ranges[b].include(point[arc.b]);
+  }
+}
+
+}  // namespace
+
+void AxisRange::include(double position) {
+  lower = std::min(lower, position);
+  upper = std::max(upper, position);
+}
+
+void ProgramExtent::count_unknown(const Move& move, const MoveKnowledge& known) {
+  for (std::size_t i = 0; i < kAxisWords; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const bool learns = known.end_work_is_known[i] && !known.begin_work_is_known[i];
+    if (!learns && std::abs(move.end_machine[k] - known.begin_machine[k]) <= kStill) continue;
+    if (moved_[i] == 0) moved_[i] = move.line;
+    const bool is_work = known.end_work_is_known[i] || known.is_place;
+    if (!is_work && unknown_work_[i] == 0) unknown_work_[i] = move.line;
+    if (!known.end_machine_is_known[i] && unknown_machine_[i] == 0) unknown_machine_[i] = move.line;
+  }
+}
+
+void ProgramExtent::add(const Move& move, const MoveKnowledge& known) {
+  count_unknown(move, known);
+  const bool is_arc = move.kind == MoveKind::arc && move.plane == nullptr;
+  include(machine_, move.end_machine, known.end_machine_is_known);
+  if (is_arc) {
+    include_extremes(machine_, arc_sweep(move, known.begin_machine.head<3>()),
+                     known.begin_machine_is_known, known.end_machine_is_known);
+  }
+  if (move.plane != nullptr && tilted_ == 0) tilted_ = move.line;
+  if (known.is_place || move.plane != nullptr) return;
+  WorkExtent& extent = work_[move.work_offset];
+  const bool is_feed = move.kind != MoveKind::rapid;
+  for (AxisRanges* ranges : {&extent.motion, &extent.feed}) {
+    if (ranges == &extent.feed && !is_feed) continue;
+    if (ranges == &extent.feed) include(*ranges, known.begin_work, known.begin_work_is_known);
+    include(*ranges, move.end, known.end_work_is_known);
+    if (!is_arc) continue;
+    const ArcSweep arc(known.begin_work.head<3>(), move.end.head<3>(), move.arc.centre,
+                       move.arc.normal_axis, move.arc.turns);
+    include_extremes(*ranges, arc, known.begin_work_is_known, known.end_work_is_known);
+  }
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,212 @@
+#include "sim/programs/program_survey.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "controllers/gcode/interpreter.h"
+#include "controllers/gcode/modal_groups.h"
+#include "controllers/gcode/request.h"
+#include "plant/vocabulary/interrupt.h"
+#include "sim/input/read_machine.h"
+#include "sim/programs/compensate/work_knowledge.h"
+#include "sim/programs/program_duration.h"
+
+namespace servomill::sim {
+namespace {
+
+using controllers::ExecutedBlock;
+using controllers::Group;
+using controllers::ProgramSetup;
+using controllers::ProgramText;
+
+// Canned cycles compare their heights with the one before. Where nothing names that, it is above
+// the workpiece, and none that a program would name.
+constexpr double kSomeHeight = 1.23456789;  // m
+
+struct SurveyInputs {
+  ProgramSetup setup;
+  GivenPlaces given;
+  std::optional<MachineSettings> machine;
+};
+
+SurveyInputs read_inputs(const SurveyRequest& request) {
+  SurveyInputs out;
+  if (!request.inputs.machine.empty()) {
+    out.machine = read_machine_description(request.inputs.machine).machine;
+  }
+  out.setup = program_setup(request.inputs, request.program_file);
+  const JointLayout* layout = out.machine ? &out.machine->chain.layout : nullptr;
+  if (!request.inputs.parameter_file.empty()) {
+    out.given.has_stored_places = true;
+    for (AxisFlags& axes : out.given.work_offset) axes.fill(true);
+  }
+  const GivenWorkOffsets offsets = work_offsets(request.work_offsets, layout);
+  for (std::size_t k = 0; k < offsets.size(); ++k) {
+    if (!offsets[k]) continue;
+    out.setup.work_offset[k] = offsets[k]->words;
+    out.setup.work_rotation[k] = offsets[k]->rotation;
+    for (std::size_t i = 0; i < kAxisWords; ++i) {
+      out.given.work_offset[k][i] = out.given.work_offset[k][i] || offsets[k]->given[i];
+    }
+  }
+  for (const std::string& text : request.tool_lengths) add_tool_length(text, out.setup.tools);
+  for (const auto& [number, tool] : out.setup.tools.entries()) {
+    out.given.tool_lengths.insert(number);
+  }
+  return out;
+}
+
+void note_first(std::vector<FirstUse>& uses, const std::string& word, int line) {
+  const auto is_same = [&](const FirstUse& use) { return use.word == word; };
+  if (std::none_of(uses.begin(), uses.end(), is_same)) uses.push_back({word, line});
+}
+
+// One pass over a program, line by line.
+class Surveyor {
+ public:
+  Surveyor(const SurveyInputs& inputs, ProgramSurvey& out)
+      : inputs_(inputs), out_(out), positions_(inputs.given, inputs.setup.start) {
+    if (inputs.machine) duration_ = std::make_unique<ProgramDuration>(*inputs.machine);
+  }
+
+  void add(const ExecutedBlock& block) {
+    note_words(block);
+    note_tools(block);
+    positions_.begin_line(block);
+    const Move* last = nullptr;
+    for (const Move& move : block.moves) {
+      if (is_motion(move.kind)) last = &move;
+    }
+    for (const Move& move : block.moves) add_move(move, block, &move == last);
+  }
+
+  void finish() {
+    if (!duration_) return;
+    duration_->finish();
+    out_.cycle_time = CycleTime{inputs_.machine->name, duration_->duration(),
+                                duration_->why_unknown(), duration_->left_out()};
+  }
+
+ private:
+  void add_move(const Move& move, const ExecutedBlock& block, bool is_last) {
+    if (move.kind == MoveKind::tool) ++out_.tool_changes;
+    if (move.kind == MoveKind::stop) ++out_.stops;
+    if (!is_motion(move.kind)) {
+      if (duration_) duration_->add(move);
+      return;
+    }
+    const MoveKnowledge known = positions_.next(move, block, is_last);
+    out_.extent.add(move, known);
+    if (duration_) duration_->add(move, known);
+    if (known.is_place) return;
+    const auto system = static_cast<std::size_t>(move.work_offset - 1);
+    note_first(out_.work_systems, std::string(kWorkSystems[system]), work_system_lines_[system]);
+  }
+
+  void note_words(const ExecutedBlock& block) {
+    if (block.request == nullptr) return;
+    const auto& words = *block.request;
+    const int units = words.code(Group::g_units);
+    if (units >= 0) note_first(out_.units, controllers::code_name('G', units), block.line);
+    const int code = words.code(Group::g_non_modal);
+    if (code == 100 || code == 520 || code == 920) {
+      note_first(out_.shifts, controllers::code_name('G', code), block.line);
+    }
+    if (words.code(Group::g_work_system) < 0) return;
+    int& line = work_system_lines_[static_cast<std::size_t>(block.state->work_system - 1)];
+    if (line == 0) line = block.line;
+  }
+
+  SurveyedTool& tool(int number, int line) {
+    const auto [found, is_new] = out_.tools.try_emplace(number);
+    SurveyedTool& tool = found->second;
+    if (!is_new) return tool;
+    tool.first_line = line;
+    const auto* entry = inputs_.setup.tools.entry_of(number);
+    tool.is_in_table = entry != nullptr;
+    if (entry == nullptr) return tool;
+    tool.length = entry->offset[index_of(Axis::Z)];
+    if (entry->diameter > 0.0) tool.diameter = entry->diameter;
+    return tool;
+  }
+
+  void note_tools(const ExecutedBlock& block) {
+    const auto& state = *block.state;
+    if (block.request != nullptr && block.request->has('T') && state.selected_tool > 0) {
+      tool(state.selected_tool, block.line);
+    }
+    for (const Move& move : block.moves) {
+      if (move.kind == MoveKind::tool && move.number > 0) {
+        tool(move.number, block.line).is_loaded = true;
+      }
+    }
+    if (state.tool_offset_number > 0) {
+      tool(state.tool_offset_number, block.line).uses_length = true;
+    }
+    if (block.request == nullptr || block.request->code(Group::g_cutter_compensation) < 0) return;
+    if (!state.compensation.is_on) return;
+    const bool has_D = block.request->has('D');
+    const int number = has_D ? static_cast<int>(std::lround((*block.request)['D'])) : state.tool;
+    const int code = block.request->code(Group::g_cutter_compensation);
+    const bool is_table = code == 410 || code == 420;  // G41.1 and G42.1 say the diameter
+    if (is_table && number > 0) tool(number, block.line).uses_diameter = true;
+  }
+
+  const SurveyInputs& inputs_;
+  ProgramSurvey& out_;
+  KnownPositions positions_;
+  std::unique_ptr<ProgramDuration> duration_;
+  std::array<int, controllers::kWorkSystems> work_system_lines_{};
+};
+
+void survey_moves(const SurveyInputs& inputs, ProgramSurvey& out) {
+  controllers::Interpreter interpreter(ProgramText::of_file(out.file), inputs.setup);
+  Surveyor surveyor(inputs, out);
+  try {
+    while (const auto block = interpreter.next_block()) {
+      throw_if_interrupted();
+      surveyor.add(*block);
+    }
+  } catch (const InputError& error) {
+    out.read_to = error.faults().front().place.line;
+  }
+  surveyor.finish();
+}
+
+ReaderVerdict verdict(std::size_t reader, const ProgramSetup& setup, const std::string& file) {
+  ReaderVerdict out{controllers::kReaders[reader], {}};
+  ProgramSetup own = setup;
+  own.reader = static_cast<controllers::Reader>(reader);
+  try {
+    controllers::Interpreter interpreter(ProgramText::of_file(file), std::move(own));
+    while (interpreter.next() != nullptr) throw_if_interrupted();
+  } catch (const InputError& error) {
+    out.stop = error.faults().front();
+  }
+  return out;
+}
+
+}  // namespace
+
+ProgramSurvey survey_program(const SurveyRequest& request) {
+  SurveyInputs inputs = read_inputs(request);
+  ProgramSurvey out;
+  out.file = request.program_file;
+  out.has_tool_table = !inputs.setup.tools.empty();
+  inputs.setup.start[index_of(Axis::Z)] = kSomeHeight;
+  inputs.setup.tools.take_any_number();
+  survey_moves(inputs, out);
+  // every control has a tool table of its own: without one here, no number stops a reader
+  ProgramSetup setup = program_setup(request.inputs, request.program_file);
+  for (const std::string& text : request.tool_lengths) add_tool_length(text, setup.tools);
+  if (setup.tools.empty()) setup.tools.take_any_number();
+  for (std::size_t k = 0; k < controllers::kReaders.size(); ++k) {
+    if (static_cast<controllers::Reader>(k) == controllers::Reader::any) continue;
+    out.readers.push_back(verdict(k, setup, out.file));
+  }
+  return out;
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,80 @@
+/// Survey of a program: units, work offsets, tools, extent, cycle time, and the controls that read
+/// it.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/programs/canon.h"
+#include "sim/programs/program_extent.h"
+
+namespace servomill::sim {
+
+struct SurveyRequest {
+  std::string program_file;
+  ProgramInputs inputs;
+  std::vector<std::string> work_offsets;  // "G54:X=10,Y=-5"
+  std::vector<std::string> tool_lengths;  // "1=50"
+};
+
+/// A word of the program and the first line that has it; 0: the control starts with it.
+struct FirstUse {
+  std::string word;
+  int line = 0;
+};
+
+struct SurveyedTool {
+  int first_line = 0;
+  bool is_loaded = false;        // by M6
+  bool uses_length = false;      // G43
+  bool uses_diameter = false;    // G41, G42
+  bool is_in_table = false;      // of --tools
+  std::optional<double> length;  // m; none: unknown
+  std::optional<double> diameter;
+};
+
+/// One of controllers::kReaders, and the first line that stops it.
+struct ReaderVerdict {
+  std::string_view reader;
+  std::optional<Fault> stop;  // none: it reads the program
+};
+
+struct CycleTime {
+  std::string machine;
+  double duration = 0.0;      // s
+  std::string why_unknown;    // empty: it is known
+  std::vector<int> left_out;  // lines of moves from positions that are not known
+};
+
+struct ProgramSurvey {
+  std::string file;
+  std::vector<FirstUse> units;         // G20, G21; empty: no word names one
+  std::vector<FirstUse> work_systems;  // that motion uses: G54 ...
+  std::vector<FirstUse> shifts;        // G10, G52, G92
+  std::map<int, SurveyedTool> tools;
+  bool has_tool_table = false;
+  ProgramExtent extent;
+  std::optional<CycleTime> cycle_time;  // with a machine file
+  int tool_changes = 0, stops = 0;      // M6; M0, M1, M60
+  std::vector<ReaderVerdict> readers;
+  int read_to = 0;  // line of the first fault; 0: read to its end
+};
+
+/// Reads the program as the chosen reader does, and once as each control reads it. Tools that no
+/// table gives are of unknown length and diameter: neither stops the survey, and positions that
+/// depend on them are unknown.
+/// @throws InputError for inputs other than the program
+ProgramSurvey survey_program(const SurveyRequest& request);
+
+/// The survey as indented lines.
+std::string to_text(const ProgramSurvey& survey);
+
+/// The same as one JSON object; lengths in mm, angles in deg, null for what is unknown.
+std::string to_json(const ProgramSurvey& survey);
+
+}  // namespace servomill::sim

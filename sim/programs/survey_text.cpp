@@ -1,0 +1,332 @@
+// The survey of a program as text and as JSON.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "plant/vocabulary/units.h"
+#include "sim/evaluation/comparison.h"
+#include "sim/programs/compensate/work_knowledge.h"
+#include "sim/programs/program_survey.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr std::size_t kLabel = 15;  // columns
+
+double unit_of(Axis axis) { return is_linear(axis) ? mm : deg; }
+std::string_view unit_name(Axis axis) { return is_linear(axis) ? "mm" : "deg"; }
+
+// "-1.000 ... 5.000 mm", or "5.000 mm" of an axis that stays there.
+std::string in_units(const AxisRange& range, Axis axis) {
+  const auto number = [&](double x) {
+    const double scaled = x / unit_of(axis);
+    return fmt::format("{:.3f}", std::abs(scaled) < 0.0005 ? 0.0 : scaled);
+  };
+  const std::string lower = number(range.lower), upper = number(range.upper);
+  return lower == upper ? fmt::format("{} {}", lower, unit_name(axis))
+                        : fmt::format("{} ... {} {}", lower, upper, unit_name(axis));
+}
+
+std::string in_time(double seconds) {
+  constexpr double kMinute = 60.0, kHour = 3600.0;
+  if (seconds < kMinute) return fmt::format("{:.1f} s", seconds);
+  const double tenths = std::round(seconds * 10.0) / 10.0;
+  const double hours = std::floor(tenths / kHour);
+  const double minutes = std::floor((tenths - hours * kHour) / kMinute);
+  const std::string rest =
+      fmt::format("{:.0f} min {:.1f} s", minutes, tenths - hours * kHour - minutes * kMinute);
+  return hours > 0.0 ? fmt::format("{:.0f} h {}", hours, rest) : rest;
+}
+
+std::string counted(std::size_t count, std::string_view singular, std::string_view plural) {
+  return fmt::format("{} {}", count, count == 1 ? singular : plural);
+}
+
+// "line 3", "lines 3, 7, 12, ...".
+std::string lines_text(const std::vector<int>& lines) {
+  constexpr std::size_t kMost = 5;
+  const std::size_t shown = std::min(lines.size(), kMost);
+  return fmt::format(
+      "{} {}{}", lines.size() == 1 ? "line" : "lines",
+      fmt::join(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+      lines.size() > shown ? ", ..." : "");
+}
+
+std::string use_text(const FirstUse& use) {
+  return use.line > 0 ? fmt::format("{} (line {})", use.word, use.line)
+                      : fmt::format("{} (in force at the start)", use.word);
+}
+
+class Text {
+ public:
+  void add(std::string_view label, const std::string& text) {
+    out_ += fmt::format("  {:<{}}{}\n", label == last_ ? "" : label, kLabel, text);
+    last_ = label;
+  }
+  std::string take() { return std::move(out_); }
+
+ private:
+  std::string out_;
+  std::string last_;
+};
+
+std::string unit_sentence(const FirstUse& use) {
+  return fmt::format("{}, {}", use.word == "G20" ? "inch" : "mm", use_text(use));
+}
+
+void add_units(const ProgramSurvey& survey, Text& text) {
+  if (survey.units.empty()) {
+    text.add("units", "no G20 or G21: those of the control; read as mm");
+  }
+  for (const FirstUse& use : survey.units) text.add("units", unit_sentence(use));
+  if (survey.units.size() > 1) text.add("units", "the program changes its unit");
+}
+
+void add_work_offsets(const ProgramSurvey& survey, Text& text) {
+  std::vector<std::string> words;
+  for (const FirstUse& use : survey.work_systems) words.push_back(use_text(use));
+  text.add("work offsets", words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", ")));
+  for (const FirstUse& use : survey.shifts) {
+    text.add("work offsets", fmt::format("changed by {}", use_text(use)));
+  }
+}
+
+std::string tool_text(const SurveyedTool& tool, bool has_table) {
+  std::vector<std::string> parts;
+  if (tool.length) parts.push_back(fmt::format("length {:g} mm", *tool.length / mm));
+  if (tool.diameter) parts.push_back(fmt::format("diameter {:g} mm", *tool.diameter / mm));
+  if (!tool.is_in_table) {
+    parts.push_back(has_table ? "unknown: not in the tool table" : "unknown: no tool table given");
+  }
+  std::vector<std::string> uses;
+  if (tool.is_loaded) uses.emplace_back("M6");
+  if (tool.uses_length) uses.emplace_back("length");
+  if (tool.uses_diameter) uses.emplace_back("diameter");
+  const std::string needs = uses.empty() ? "" : fmt::format("; used: {}", fmt::join(uses, ", "));
+  return fmt::format("{}{}", fmt::join(parts, ", "), needs);
+}
+
+void add_tools(const ProgramSurvey& survey, Text& text) {
+  if (survey.tools.empty()) text.add("tools", "none");
+  for (const auto& [number, tool] : survey.tools) {
+    text.add("tools", fmt::format("T{} (line {}): {}", number, tool.first_line,
+                                  tool_text(tool, survey.has_tool_table)));
+  }
+}
+
+void add_work_extent(const ProgramSurvey& survey, Text& text) {
+  const ProgramExtent& extent = survey.extent;
+  for (const auto& [system, ranges] : extent.work()) {
+    const auto name = kWorkSystems[static_cast<std::size_t>(system - 1)];
+    for (const Axis axis : kAllAxes) {
+      const auto i = static_cast<std::size_t>(index_of(axis));
+      if (!ranges.motion[i].is_known()) continue;
+      const std::string feeds = ranges.feed[i].is_known()
+                                    ? fmt::format("; feeds {}", in_units(ranges.feed[i], axis))
+                                    : "";
+      text.add(fmt::format("extent {}", name),
+               fmt::format("{} {}{}", letter(axis), in_units(ranges.motion[i], axis), feeds));
+    }
+  }
+  for (const Axis axis : kAllAxes) {
+    const auto i = static_cast<std::size_t>(index_of(axis));
+    if (extent.unknown_work(i) == 0) continue;
+    text.add("not in it", fmt::format("{} moves to a position that is not known (line {})",
+                                      letter(axis), extent.unknown_work(i)));
+  }
+  if (extent.tilted() > 0) {
+    text.add("not in it", fmt::format("moves in a tilted work plane (line {})", extent.tilted()));
+  }
+}
+
+void add_machine_extent(const ProgramSurvey& survey, Text& text) {
+  const ProgramExtent& extent = survey.extent;
+  for (const Axis axis : kAllAxes) {
+    const auto i = static_cast<std::size_t>(index_of(axis));
+    if (extent.moved(i) == 0) continue;
+    const AxisRange& range = extent.machine()[i];
+    const std::string unknown =
+        extent.unknown_machine(i) > 0
+            ? fmt::format("{}unknown from line {} on: needs --work-offset{}",
+                          range.is_known() ? "; " : "", extent.unknown_machine(i),
+                          axis == Axis::Z ? " and the tool lengths" : "")
+            : "";
+    text.add("machine", fmt::format("{} {}{}", letter(axis),
+                                    range.is_known() ? in_units(range, axis) : "", unknown));
+  }
+}
+
+void add_cycle_time(const ProgramSurvey& survey, Text& text) {
+  if (!survey.cycle_time) {
+    text.add("cycle time", "unknown: needs --machine");
+    return;
+  }
+  const CycleTime& time = *survey.cycle_time;
+  if (!time.why_unknown.empty()) {
+    text.add("cycle time", "unknown: " + time.why_unknown);
+    return;
+  }
+  text.add("cycle time", fmt::format("{} on {}", in_time(time.duration), time.machine));
+  std::vector<std::string> without;
+  if (!time.left_out.empty()) {
+    without.push_back(fmt::format("{} from unknown positions ({})",
+                                  counted(time.left_out.size(), "move", "moves"),
+                                  lines_text(time.left_out)));
+  }
+  if (survey.tool_changes > 0) {
+    without.push_back(
+        counted(static_cast<std::size_t>(survey.tool_changes), "tool change", "tool changes"));
+  }
+  if (survey.stops > 0) {
+    without.push_back(counted(static_cast<std::size_t>(survey.stops), "stop", "stops"));
+  }
+  if (!without.empty()) {
+    text.add("cycle time", fmt::format("without {}", fmt::join(without, ", ")));
+  }
+}
+
+// Every control has a tool table of its own.
+std::string tools_needed(const ProgramSurvey& survey) {
+  if (survey.has_tool_table || survey.tools.empty()) return "";
+  std::vector<std::string> names;
+  for (const auto& [number, tool] : survey.tools) names.push_back(fmt::format("T{}", number));
+  return fmt::format(" (with {} in its tool table)", fmt::join(names, ", "));
+}
+
+void add_readers(const ProgramSurvey& survey, Text& text) {
+  std::vector<std::string_view> names;
+  for (const ReaderVerdict& one : survey.readers) {
+    if (!one.stop) names.push_back(one.reader);
+  }
+  text.add("read by", names.empty()
+                          ? "none of the controls"
+                          : fmt::format("{}{}", fmt::join(names, ", "), tools_needed(survey)));
+  for (const ReaderVerdict& one : survey.readers) {
+    if (!one.stop) continue;
+    text.add("not read by",
+             fmt::format("{}: {}: {}", one.reader, to_string(one.stop->place), one.stop->message));
+  }
+}
+
+}  // namespace
+
+std::string to_text(const ProgramSurvey& survey) {
+  Text text;
+  if (survey.read_to > 0) {
+    text.add("read", fmt::format("up to line {}, which has the first fault", survey.read_to));
+  }
+  add_units(survey, text);
+  add_work_offsets(survey, text);
+  add_tools(survey, text);
+  add_work_extent(survey, text);
+  add_machine_extent(survey, text);
+  add_cycle_time(survey, text);
+  add_readers(survey, text);
+  return text.take();
+}
+
+namespace {
+
+std::string quoted(std::string_view text) { return fmt::format("\"{}\"", json_escaped(text)); }
+
+std::string number_or_null(const std::optional<double>& value, double unit) {
+  return value ? fmt::format("{:.9g}", *value / unit) : "null";
+}
+
+// Where a list of lines is 0, the control starts with the word.
+std::string uses_json(const std::vector<FirstUse>& uses) {
+  std::vector<std::string> out;
+  for (const FirstUse& use : uses) {
+    out.push_back(fmt::format(R"({{"word": {}, "line": {}}})", quoted(use.word),
+                              use.line > 0 ? std::to_string(use.line) : "null"));
+  }
+  return fmt::format("[{}]", fmt::join(out, ", "));
+}
+
+// Less than a picometre is rounding.
+double rounded(double position) { return std::round(position * 1e9) / 1e9 + 0.0; }
+
+std::string ranges_json(const AxisRanges& ranges) {
+  std::vector<std::string> out;
+  for (const Axis axis : kAllAxes) {
+    const AxisRange& range = ranges[static_cast<std::size_t>(index_of(axis))];
+    if (!range.is_known()) continue;
+    out.push_back(fmt::format(R"("{}": [{:.9g}, {:.9g}])", letter(axis),
+                              rounded(range.lower / unit_of(axis)),
+                              rounded(range.upper / unit_of(axis))));
+  }
+  return fmt::format("{{{}}}", fmt::join(out, ", "));
+}
+
+std::string tools_json(const ProgramSurvey& survey) {
+  std::vector<std::string> out;
+  for (const auto& [number, tool] : survey.tools) {
+    out.push_back(fmt::format(
+        R"({{"number": {}, "line": {}, "in_table": {}, "length_mm": {}, "diameter_mm": {}, )"
+        R"("loaded": {}, "uses_length": {}, "uses_diameter": {}}})",
+        number, tool.first_line, tool.is_in_table, number_or_null(tool.length, mm),
+        number_or_null(tool.diameter, mm), tool.is_loaded, tool.uses_length, tool.uses_diameter));
+  }
+  return fmt::format("[{}]", fmt::join(out, ", "));
+}
+
+std::string extent_json(const ProgramSurvey& survey) {
+  std::vector<std::string> work, unknown;
+  for (const auto& [system, ranges] : survey.extent.work()) {
+    work.push_back(fmt::format(R"({}: {{"motion": {}, "feed": {}}})",
+                               quoted(kWorkSystems[static_cast<std::size_t>(system - 1)]),
+                               ranges_json(ranges.motion), ranges_json(ranges.feed)));
+  }
+  for (const Axis axis : kAllAxes) {
+    const auto i = static_cast<std::size_t>(index_of(axis));
+    const int line = survey.extent.unknown_work(i), machine = survey.extent.unknown_machine(i);
+    if (line == 0 && machine == 0) continue;
+    unknown.push_back(fmt::format(R"("{}": {{"work": {}, "machine": {}}})", letter(axis),
+                                  line > 0 ? std::to_string(line) : "null",
+                                  machine > 0 ? std::to_string(machine) : "null"));
+  }
+  return fmt::format(R"({{"work": {{{}}}, "machine": {}, "unknown_from_line": {{{}}}}})",
+                     fmt::join(work, ", "), ranges_json(survey.extent.machine()),
+                     fmt::join(unknown, ", "));
+}
+
+std::string cycle_time_json(const ProgramSurvey& survey) {
+  if (!survey.cycle_time) return "null";
+  const CycleTime& time = *survey.cycle_time;
+  const bool is_known = time.why_unknown.empty();
+  return fmt::format(R"({{"machine": {}, "s": {}, "why_unknown": {}, "left_out_lines": [{}]}})",
+                     quoted(time.machine), is_known ? fmt::format("{:.9g}", time.duration) : "null",
+                     is_known ? "null" : quoted(time.why_unknown), fmt::join(time.left_out, ", "));
+}
+
+std::string readers_json(const ProgramSurvey& survey) {
+  std::vector<std::string> out;
+  for (const ReaderVerdict& one : survey.readers) {
+    if (!one.stop) {
+      out.push_back(fmt::format(R"({}: {{"reads": true}})", quoted(one.reader)));
+      continue;
+    }
+    const Place& place = one.stop->place;
+    out.push_back(
+        fmt::format(R"({}: {{"reads": false, "file": {}, "line": {}, "column": {}, "why": {}}})",
+                    quoted(one.reader), quoted(place.file), place.line, place.column,
+                    quoted(one.stop->message)));
+  }
+  return fmt::format("{{{}}}", fmt::join(out, ", "));
+}
+
+}  // namespace
+
+std::string to_json(const ProgramSurvey& survey) {
+  return fmt::format(
+      R"({{"file": {}, "units": {}, "work_offsets": {}, "offsets_changed_by": {}, "tools": {}, )"
+      R"("extent": {}, "cycle_time": {}, "tool_changes": {}, "stops": {}, "readers": {}, )"
+      R"("first_fault_line": {}}})",
+      quoted(survey.file), uses_json(survey.units), uses_json(survey.work_systems),
+      uses_json(survey.shifts), tools_json(survey), extent_json(survey), cycle_time_json(survey),
+      survey.tool_changes, survey.stops, readers_json(survey),
+      survey.read_to > 0 ? std::to_string(survey.read_to) : "null");
+}
+
+}  // namespace servomill::sim
