@@ -1,4 +1,5 @@
 #include "sim/sweep/merge.h"
+#include "sim/sweep/table_header.h"
 
 #include <fmt/format.h>
 

@@ -15,31 +15,12 @@
 #include "sim/records/hdf5_file.h"
 #include "sim/sweep/selection.h"
 #include "sim/sweep/sweep.h"
+#include "sim/sweep/table_columns.h"
 
 namespace servomill::sim {
 
-/// Version of the layout of sweep files; a file of another one is refused.
-inline constexpr int kSweepSchemaVersion = 3;
-
 /// Number of points of each status.
 using StatusCounts = std::array<std::uint64_t, kPointStatuses>;
-
-/// One column of numbers.
-struct TableColumn {
-  std::string name;  // of the dataset: letters, digits and '_'
-  Meaning meaning;
-  Storage storage = Storage::float64;
-  double fill = 0.0;                                            // where a point was not run
-  std::vector<std::pair<std::string, std::string>> attributes;  // what it is a column of
-  std::vector<std::string> texts;                               // of a column of their places
-};
-
-/// What the table of a scenario's sweep has beside point, status, reason and the instructions that
-/// computed it: a column for each key of the sweep, then one for each line of the comparison.
-std::vector<TableColumn> columns_of(const Scenario& base);
-
-/// The same of a file that is there. @throws InputError
-std::vector<TableColumn> columns_of(const InputFile& file);
 
 /// The table under construction. Layout of the file: README, section "Sweeps".
 ///
@@ -95,27 +76,5 @@ class SweepTable {
   std::set<SimdLevel> levels_;
   std::optional<OutputFile> file_;
 };
-
-/// A file of `after` that is not the same in `before` (Scenario::swept_files); empty: there is
-/// none.
-std::string changed_file(const std::string& before, const std::string& after);
-
-/// What the header of a sweep file says.
-struct SweepHeader {
-  Scenario base;  // as stored; the keys of its sweep may stand in another order
-  std::uint64_t points = 0;
-  Selection selection;
-};
-
-/// @throws InputError if the file is no table of a sweep of this version
-SweepHeader read_sweep_header(const InputFile& file);
-
-/// "OUT.csv" for "OUT.h5".
-std::string csv_name(const std::string& path);
-
-/// The table as comma-separated values: the columns of the HDF5 file, texts in place of their
-/// numbers, statuses by name; numbers so that they read again to the same bits.
-/// @throws SystemError
-void write_csv(const std::string& table, const std::string& csv);
 
 }  // namespace servomill::sim

@@ -33,7 +33,7 @@ SIM_ROOMS = {
     "input": ["config", "evaluation", "metrology", "model", "system"],
     "preparation": ["engine", "evaluation", "frequency", "input", "metrology", "model", "system"],
     "run": ["config", "engine", "evaluation", "frequency", "input", "model", "preparation", "records", "system"],
-    "sweep": ["config", "input", "model", "preparation", "records", "run", "system"],
+    "sweep": ["config", "evaluation", "input", "model", "preparation", "records", "run", "system"],
     "programs": ["config", "input", "model", "preparation", "run", "sweep", "system"],
 }
 # Upward includes that are still to be cut; the list may only shrink.

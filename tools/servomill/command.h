@@ -6,8 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/sweep/table.h"
-
 namespace servomill::tools {
 
 /// Exit status of the program.
@@ -92,12 +90,6 @@ class ProgressBar {
   double begin_;  // s
   std::size_t shown_ = 0;
 };
-
-/// "98 points done, 2 points refused".
-std::string points_by_status(const sim::StatusCounts& counts);
-
-/// Says on standard error if points of a table were computed at several levels of instructions.
-void tell_mixed_levels(const std::string& path, const std::vector<SimdLevel>& levels);
 
 /// What --threads says. @throws InputError
 unsigned thread_count(const Options& options);

@@ -4,6 +4,7 @@
 #include "sim/run/store.h"
 #include "sim/sweep/merge.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/sweep_lines.h"
 
 namespace servomill::tools {
 

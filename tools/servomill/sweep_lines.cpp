@@ -115,4 +115,29 @@ void SweepLines::print(const Said& said) {
   fmt::print("{}", said.out);
 }
 
+std::string points_by_status(const sim::StatusCounts& counts) {
+  std::string text;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    // done first, then all others that there are
+    const std::size_t status = i == 0 ? 1 : i == 1 ? 0 : i;
+    if (status != 1 && counts[status] == 0) continue;
+    std::string name(sim::name_of(static_cast<sim::PointStatus>(status)));
+    std::replace(name.begin(), name.end(), '_', ' ');
+    text += fmt::format("{}{} points {}", text.empty() ? "" : ", ", counts[status], name);
+  }
+  return text;
+}
+
+void tell_mixed_levels(const std::string& path, const std::vector<SimdLevel>& levels) {
+  // those with fused multiply-add give the same bits
+  if (levels.size() < 2 || levels.front() != SimdLevel::baseline) return;
+  std::vector<std::string_view> names;
+  for (const SimdLevel level : levels) names.push_back(name_of(level));
+  fmt::print(
+      stderr,
+      "{}: points were computed with different instructions ({}; column simd_level): they "
+      "are alike but for their last bits; SERVOMILL_SIMD={} gives the same bits everywhere\n",
+      path, fmt::join(names, ", "), names.front());
+}
+
 }  // namespace servomill::tools

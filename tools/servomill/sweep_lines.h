@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "plant/vocabulary/simd.h"
 #include "sim/evaluation/comparison.h"
 #include "sim/sweep/sweep.h"
+#include "sim/sweep/table.h"
 
 namespace servomill::tools {
 
@@ -45,5 +47,11 @@ class SweepLines {
   std::uint64_t next_ = 0;                 // place
   bool headed_ = false;
 };
+
+/// "98 points done, 2 points refused".
+std::string points_by_status(const sim::StatusCounts& counts);
+
+/// Says on standard error if points of a table were computed at several levels of instructions.
+void tell_mixed_levels(const std::string& path, const std::vector<SimdLevel>& levels);
 
 }  // namespace servomill::tools

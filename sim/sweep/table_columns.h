@@ -1,0 +1,41 @@
+/// The columns of the table of a sweep.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/model/scenario.h"
+#include "sim/records/hdf5_file.h"
+
+namespace servomill::sim {
+
+/// Group of the table in a sweep file.
+inline const std::string kSweepGroup = "/sweep";
+
+/// Rows that are read or written at once.
+inline constexpr std::size_t kSweepBlockRows = 4096;
+
+/// A number that there is not.
+inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+/// One column of numbers.
+struct TableColumn {
+  std::string name;  // of the dataset: letters, digits and '_'
+  Meaning meaning;
+  Storage storage = Storage::float64;
+  double fill = 0.0;                                            // where a point was not run
+  std::vector<std::pair<std::string, std::string>> attributes;  // what it is a column of
+  std::vector<std::string> texts;                               // of a column of their places
+};
+
+/// What the table of a scenario's sweep has beside point, status, reason and the instructions that
+/// computed it: a column for each key of the sweep, then one for each line of the comparison.
+std::vector<TableColumn> columns_of(const Scenario& base);
+
+/// The same of a file that is there. @throws InputError
+std::vector<TableColumn> columns_of(const InputFile& file);
+
+}  // namespace servomill::sim

@@ -1,0 +1,20 @@
+/// The table of a sweep as comma-separated values.
+#pragma once
+
+#include <string>
+
+namespace servomill::sim {
+
+/// "OUT.csv" for "OUT.h5".
+std::string csv_name(const std::string& path);
+
+/// The table as comma-separated values: the columns of the HDF5 file, texts in place of their
+/// numbers, statuses by name; numbers so that they read again to the same bits.
+/// @throws SystemError
+void write_csv(const std::string& table, const std::string& csv);
+
+/// A CSV file of a sweep may be replaced where `force` is set, no other.
+/// @throws InputError
+void refuse_foreign_csv(const std::string& path, bool force);
+
+}  // namespace servomill::sim

@@ -1,0 +1,79 @@
+#include "sim/sweep/table_header.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "sim/run/store.h"
+#include "sim/sweep/table_columns.h"
+
+namespace servomill::sim {
+
+std::string why_other(const SweepHeader& header, const Scenario& base, const Selection& selection) {
+  if (header.base.resolved != base.resolved) {
+    return header.base.name == base.name
+               ? "holds a sweep of this scenario as it was before it changed"
+               : fmt::format("holds a sweep of the scenario '{}'", header.base.name);
+  }
+  if (const std::string file = changed_file(header.base.swept_files, base.swept_files);
+      !file.empty()) {
+    return fmt::format("holds a sweep of this scenario as it was before its file '{}' changed",
+                       file);
+  }
+  if (!(header.selection == selection)) {
+    const auto said = [](const Selection& s) {
+      return fmt::format("points {} to {}, shard {} of {}", s.first + 1, s.last, s.shard, s.shards);
+    };
+    return fmt::format("holds {} of the sweep; asked for are {}", said(header.selection),
+                       said(selection));
+  }
+  return {};
+}
+
+std::string changed_file(const std::string& before, const std::string& after) {
+  if (before == after) return {};
+  const std::vector<std::string> others = split_lines(before);
+  for (const std::string& line : split_lines(after)) {
+    if (std::find(others.begin(), others.end(), line) != others.end()) continue;
+    return line.substr(line.find(' ') + 1);
+  }
+  return {};
+}
+
+SweepHeader read_sweep_header(const InputFile& file) {
+  const std::string& path = file.path();
+  if (!file.has_attribute("/", "schema_version")) {
+    throw InputError({path}, "is not a result file of servomill");
+  }
+  if (file.text("/", "kind") != "sweep") {
+    throw InputError({path}, fmt::format("holds a {}, not a sweep", file.text("/", "kind")));
+  }
+  const auto version = static_cast<int>(file.number("/", "schema_version"));
+  if (version != kSweepSchemaVersion) {
+    throw InputError({path}, fmt::format("holds a sweep of schema version {}; this program reads "
+                                         "version {}",
+                                         version, kSweepSchemaVersion));
+  }
+  if (!file.has(kSweepGroup) || !file.has_attribute(kSweepGroup, "points")) {
+    throw InputError({path}, "was left before its table was complete");
+  }
+  SweepHeader header;
+  const std::string resolved = file.text("/inputs", "resolved");
+  header.base = read_resolved_scenario(resolved, path + ":/inputs");
+  header.base.name = file.text("/", "scenario");
+  header.base.text = file.text("/inputs", "scenario");
+  header.base.machine_text = file.text("/inputs", "machine");
+  header.base.resolved = resolved;
+  if (file.has_attribute("/inputs", "swept_files")) {
+    header.base.swept_files = file.text("/inputs", "swept_files");
+  }
+  const auto number = [&](const std::string& name) {
+    return static_cast<std::uint64_t>(file.number(kSweepGroup, name));
+  };
+  header.points = number("points");
+  header.selection = {number("first") - 1, number("last"), number("shard"), number("shards")};
+  return header;
+}
+
+}  // namespace servomill::sim

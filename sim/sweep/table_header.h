@@ -1,0 +1,33 @@
+/// What a sweep file says of itself before its table.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "sim/model/scenario.h"
+#include "sim/records/hdf5_file.h"
+#include "sim/sweep/selection.h"
+
+namespace servomill::sim {
+
+/// Version of the layout of sweep files; a file of another one is refused.
+inline constexpr int kSweepSchemaVersion = 3;
+
+/// A file of `after` that is not the same in `before` (Scenario::swept_files); empty: there is
+/// none.
+std::string changed_file(const std::string& before, const std::string& after);
+
+/// What the header of a sweep file says.
+struct SweepHeader {
+  Scenario base;  // as stored; the keys of its sweep may stand in another order
+  std::uint64_t points = 0;
+  Selection selection;
+};
+
+/// @throws InputError if the file is no table of a sweep of this version
+SweepHeader read_sweep_header(const InputFile& file);
+
+/// Why a file is not the table of this sweep; empty: it is.
+std::string why_other(const SweepHeader& header, const Scenario& base, const Selection& selection);
+
+}  // namespace servomill::sim
