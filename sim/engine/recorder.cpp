@@ -164,7 +164,8 @@ class Recorder::Rows {
   Rows(const MachineSettings& machine, const plant::VolumetricModel& truth,
        const plant::VolumetricModel* imposed, const ProgramPath& path,
        const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
-       bool rotary_displaced, std::vector<const strategies::Strategy*> correcting, bool cuts)
+       bool rotary_displaced, std::vector<const strategies::Strategy*> correcting, bool cuts,
+       RowKeeping keeping)
       : machine_(machine),
         truth_(truth),
         imposed_(imposed),
@@ -172,7 +173,8 @@ class Recorder::Rows {
         tips_(tips),
         rotary_displaced_(rotary_displaced),
         correcting_(std::move(correcting)),
-        cuts_(cuts) {
+        cuts_(cuts),
+        keeping_(std::move(keeping)) {
     for (int joint = 0; joint < kJoints; ++joint) {
       if (!machine.chain.layout.has(joint)) continue;
       (joint < kLinearJoints ? linear_ : rotary_).push_back(joint);
@@ -180,25 +182,35 @@ class Recorder::Rows {
     std::vector<Signal> all = signals(letters(machine, linear_), letters(machine, rotary_),
                                       imposed != nullptr, !correcting_.empty(), cuts_);
     apply(format, all);
-    series_ = Series(std::move(all));
-    rounding_ = Rounding(series_);
+    const Series columns(std::move(all));
+    signals_ = columns.signals();
+    width_ = columns.width();
+    rounding_ = Rounding(columns);
   }
 
-  Series& series() { return series_; }
+  void expect(std::size_t rows) { keeper_.emplace(signals_, keeping_, rows); }
+
+  Series take() {
+    if (!keeper_) expect(0);
+    return keeper_->take();
+  }
 
   void add(const std::vector<Snapshot>& block, std::span<const double> directions) {
     const std::size_t plays = truth_.plays().size();
-    double* row = series_.add_rows(block.size());
+    if (!keeper_) expect(0);
+    rows_.resize(block.size() * width_);
+    double* row = rows_.data();
     for (std::size_t first = 0; first < block.size();) {
       const std::size_t end = find_places(block, first);
       find_poses(directions.subspan(first * plays, (end - first) * plays));
       for (std::size_t n = first; n < end; ++n) {
         make_row(block[n], n - first, row);
         rounding_.apply(row);
-        row += series_.width();
+        row += width_;
       }
       first = end;
     }
+    keeper_->add(rows_);
   }
 
  private:
@@ -225,8 +237,12 @@ class Recorder::Rows {
   std::vector<Joints> Q_prog_, Q_true_;
   std::vector<ToolPose> nominal_, actual_;
   std::vector<Eigen::Vector3d> displacement_;
-  Series series_;
-  Rounding rounding_{series_};
+  const RowKeeping keeping_;
+  std::vector<Signal> signals_;
+  std::size_t width_ = 0;
+  Rounding rounding_{Series()};
+  std::vector<double> rows_;  // of a block
+  std::optional<RowKeeper> keeper_;
 };
 
 // Where the original program is, from `first` on up to a change of the tool. Returns the row of it.
@@ -339,16 +355,16 @@ Recorder::Recorder(const MachineSettings& machine, const plant::VolumetricModel&
                    const plant::VolumetricModel* imposed, const ProgramPath& path,
                    const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
                    bool rotary_displaced, std::vector<const strategies::Strategy*> correcting,
-                   bool cuts)
+                   bool cuts, RowKeeping keeping)
     : rows_(std::make_unique<Rows>(machine, truth, imposed, path, tips, format, rotary_displaced,
-                                   std::move(correcting), cuts)) {
+                                   std::move(correcting), cuts, std::move(keeping))) {
   filling_.snapshots.reserve(kBlockRows);
   filling_.directions.reserve(kBlockRows * truth.plays().size());
 }
 
 Recorder::~Recorder() = default;
 
-void Recorder::reserve(std::size_t rows) { rows_->series().reserve(rows); }
+void Recorder::expect(std::size_t rows) { rows_->expect(rows); }
 
 void Recorder::record(const Snapshot& now, std::span<const double> directions) {
   filling_.snapshots.push_back(now);
@@ -370,7 +386,7 @@ Series Recorder::take() {
   background_.wait();
   rows_->add(filling_.snapshots, filling_.directions);
   filling_ = {};
-  return std::move(rows_->series());
+  return rows_->take();
 }
 
 }  // namespace servomill::sim

@@ -11,6 +11,7 @@
 #include "sim/engine/program_path.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"
+#include "sim/records/row_keeper.h"
 #include "sim/records/series.h"
 #include "sim/system/background.h"
 #include "strategies/strategy.h"
@@ -43,17 +44,19 @@ class Recorder {
   /// @param rotary_displaced  the program that runs turns rotary axes elsewhere than `path` does:
   ///                          where s stands, they are compared with the nearest programmed place
   /// @param cuts  force of the cut and deflection are recorded; the deflection moves the tip
+  /// @param keeping  where rows are kept
   /// @param correcting  strategies of which is recorded what they cannot correct, in all
   Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
            const plant::VolumetricModel* imposed, const ProgramPath& path,
            const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format = {},
            bool rotary_displaced = false, std::vector<const strategies::Strategy*> correcting = {},
-           bool cuts = false);
+           bool cuts = false, RowKeeping keeping = {});
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  void reserve(std::size_t rows);
+  /// Says how many rows will come, about; before the first.
+  void expect(std::size_t rows);
   /// @param directions  in which axes have travelled: of each of the truth's plays()
   void record(const Snapshot& now, std::span<const double> directions = {});
   /// All rows; once.

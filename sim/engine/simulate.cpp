@@ -177,12 +177,13 @@ class CaseRun {
         reference_(references.of(in.reference, 0.0)),
         recorded_(references.of(in.reference, set_point_.delay())),
         recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format,
-                  in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr),
+                  in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
+                  in.keeping),
         travel_(in.truth, Joints::Zero()),
         last_ticks_(in.machine.joints()) {
     end_ =
         static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
-    recorder_.reserve(static_cast<std::size_t>(end_ / in.record_period + 1));
+    recorder_.expect(static_cast<std::size_t>(end_ / in.record_period + 1));
     settle();
   }
 
@@ -403,12 +404,14 @@ class IdealRun {
         set_point_(in.machine.nc, in.reference, std::move(in.set_points)),
         feedback_(in.feedback ? in.feedback->feedback(model_period_of(in)) : nullptr),
         recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format,
-                  in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr),
+                  in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
+                  in.keeping),
         travel_(in.truth, Joints::Zero()) {}
 
   CaseResult run(const StopFlag& stop, std::atomic<float>& progress) {
     CaseResult result;
     const double end = in_.reference.duration() + in_.settle_time;
+    recorder_.expect(static_cast<std::size_t>(end / periods_.seconds(in_.record_period) + 1.0));
     Tick n = 0;
     AxisSetPoint set = set_point_.settle();
     travel_ = {in_.truth, Q_true_of(set)};

@@ -16,6 +16,7 @@
 #include "sim/engine/program_path.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"
+#include "sim/records/row_keeper.h"
 #include "sim/records/series.h"
 #include "strategies/strategy.h"
 
@@ -36,6 +37,7 @@ struct CaseInputs {
   Tick record_period = 100;
   double settle_time = 0.1;  // s, recorded after the program's end
   RecordFormat format = {};
+  RowKeeping keeping = {};
   bool program_displaces_rotary = false;  // the NC runs another program than `path` also there
   // of which is recorded what they cannot correct
   std::vector<const strategies::Strategy*> recorded_corrections = {};

@@ -411,7 +411,7 @@ double PreparedCase::duration() const { return parts_->motion->trajectory.durati
 PreparedCase::~PreparedCase() = default;
 PreparedCase::PreparedCase(PreparedCase&&) noexcept = default;
 
-CaseInputs PreparedCase::inputs() const {
+CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const {
   const Parts& p = *parts_;
   FeedbackHardware hardware = p.scenario.hardware;
   hardware.connected = p.spec.feedback_hardware;
@@ -427,7 +427,8 @@ CaseInputs PreparedCase::inputs() const {
                     nullptr,
                     p.scenario.record_period,
                     p.scenario.settle_time,
-                    p.scenario.record.format};
+                    p.scenario.record.format,
+                    {.folder = scratch_folder, .compression = p.scenario.record.compression}};
   inputs.pieces = p.program->path.pieces_of(*p.motion->moves);
   if (p.cutting) {
     inputs.cutting = &p.cutting->table;
@@ -473,8 +474,9 @@ CaseOutput PreparedCase::output(CaseResult result) const {
   return out;
 }
 
-CaseOutput PreparedCase::run(const StopFlag& stop, std::atomic<float>& progress) const {
-  CaseInputs given = inputs();
+CaseOutput PreparedCase::run(const StopFlag& stop, std::atomic<float>& progress,
+                             const std::string& scratch_folder) const {
+  CaseInputs given = inputs(scratch_folder);
   CaseOutput out = output(simulate(given, stop, progress));
   const NotedCase noted = parts_->noted();
   for (std::string& note : notes_of_uncorrectable(noted)) out.notes.push_back(std::move(note));

@@ -61,12 +61,14 @@ class PreparedCase {
   std::vector<Fault> circular_faults(PreparationCache* cache = nullptr) const;
 
   /// What one run needs; refers to this and to the scenario.
-  CaseInputs inputs() const;
+  /// @param scratch_folder  of recordings that are long; empty: that of temporary files
+  CaseInputs inputs(const std::string& scratch_folder = {}) const;
   /// What there is to say about a run of `inputs()`.
   CaseOutput output(CaseResult result) const;
 
   /// output(simulate(inputs())), and all notes of sim/run/case_notes.h
-  CaseOutput run(const StopFlag& stop, std::atomic<float>& progress) const;
+  CaseOutput run(const StopFlag& stop, std::atomic<float>& progress,
+                 const std::string& scratch_folder = {}) const;
 
  private:
   struct Parts;

@@ -11,6 +11,24 @@ Series::Series(std::vector<Signal> signals) : signals_(std::move(signals)) {
   }
 }
 
+Series::Series(std::vector<Signal> signals, std::shared_ptr<const ColumnPages> pages)
+    : Series(std::move(signals)) {
+  pages_ = std::move(pages);
+  residents_.resize(width_);
+}
+
+// Neighbouring rows are often asked for in turn, on both sides of the end of a page.
+double Series::at_other_page(std::size_t row_index, std::size_t column_index) const {
+  auto& [latest, former] = residents_[column_index];
+  std::swap(latest, former);
+  if (row_index - latest.first >= latest.values.size()) {
+    const std::size_t page = row_index / pages_->page_rows();
+    pages_->read(column_index, page, latest.values);
+    latest.first = page * pages_->page_rows();
+  }
+  return latest.values[row_index - latest.first];
+}
+
 double* Series::add_rows(std::size_t count) {
   data_.resize(data_.size() + count * width_, 0.0);
   return data_.data() + data_.size() - count * width_;

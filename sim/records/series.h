@@ -1,7 +1,10 @@
 /// Recorded signals: rows of named signals, in the units that a reader of the file sees.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,16 +27,38 @@ struct Signal {
   std::size_t columns() const { return labels.empty() ? 1 : labels.size(); }
 };
 
-/// A table of rows. Storage grows in blocks outside of what a tick does.
+/// Rows that lie on a disk, read by pages: some rows of one column.
+class ColumnPages {
+ public:
+  virtual ~ColumnPages() = default;
+  virtual std::size_t rows() const = 0;
+  virtual std::size_t page_rows() const = 0;  // of each page but the last
+  virtual void read(std::size_t column, std::size_t page, std::vector<double>& values) const = 0;
+  /// The page as a ChunkEncoder made it, if it is kept so.
+  virtual bool read_encoded(std::size_t column, std::size_t page,
+                            std::vector<std::uint8_t>& chunk) const = 0;
+};
+
+/// A table of rows, in memory or, if there are many, on a disk. In memory, storage grows in blocks
+/// outside of what a tick does.
 class Series {
  public:
   Series() = default;
   /// @param signals  their offsets are set here, in order
   explicit Series(std::vector<Signal> signals);
+  /// Rows that stay where they are. Two pages of each column that is asked for are held, so rows
+  /// are best read in their order; by one thread at a time.
+  Series(std::vector<Signal> signals, std::shared_ptr<const ColumnPages> pages);
 
   const std::vector<Signal>& signals() const { return signals_; }
   std::size_t width() const { return width_; }
-  std::size_t rows() const { return width_ == 0 ? 0 : data_.size() / width_; }
+  std::size_t rows() const {
+    if (pages_ != nullptr) return pages_->rows();
+    return width_ == 0 ? 0 : data_.size() / width_;
+  }
+  /// Where the rows lie; nullptr: in memory.
+  const ColumnPages* pages() const { return pages_.get(); }
+  /// @pre of these two: in memory
   const double* row(std::size_t index) const { return data_.data() + index * width_; }
   const std::vector<double>& data() const { return data_; }
 
@@ -48,13 +73,25 @@ class Series {
   std::optional<std::size_t> column(std::string_view name, char label = '\0') const;
 
   double at(std::size_t row_index, std::size_t column_index) const {
-    return data_[row_index * width_ + column_index];
+    if (pages_ == nullptr) return data_[row_index * width_ + column_index];
+    const Resident& page = residents_[column_index].front();
+    if (row_index - page.first < page.values.size()) return page.values[row_index - page.first];
+    return at_other_page(row_index, column_index);
   }
 
  private:
+  // A page that is held: those rows from `first` on.
+  struct Resident {
+    std::size_t first = 0;
+    std::vector<double> values;
+  };
+  double at_other_page(std::size_t row_index, std::size_t column_index) const;
+
   std::vector<Signal> signals_;
   std::size_t width_ = 0;
   std::vector<double> data_;
+  std::shared_ptr<const ColumnPages> pages_;
+  mutable std::vector<std::array<Resident, 2>> residents_;  // of each column, the latest first
 };
 
 }  // namespace servomill::sim

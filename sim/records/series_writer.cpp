@@ -32,8 +32,11 @@ SeriesWriter::SeriesWriter(Hdf5Group group, SeriesLayout layout)
   }
   add_channel({layout_.index, layout_.index_meaning, "", Storage::float64}, scales);
   for (const Channel& channel : layout_.channels) add_channel(channel, scales);
+  if (!layout_.is_encoded) allocate();
+  group_.flush_file();
+}
 
-  // all memory
+void SeriesWriter::allocate() {
   filling_.resize(layout_.chunk_rows * width_);
   writing_.resize(filling_.size());
   chunks_.resize(width_);
@@ -42,7 +45,6 @@ SeriesWriter::SeriesWriter(Hdf5Group group, SeriesLayout layout)
     neighbours_.push_back({begin, end, std::vector<double>((end - begin) * layout_.chunk_rows),
                            ChunkEncoder(layout_.compression)});
   }
-  group_.flush_file();
 }
 
 SeriesWriter::~SeriesWriter() {
@@ -83,7 +85,7 @@ std::size_t SeriesWriter::offset_of(std::string_view channel) const {
 }
 
 void SeriesWriter::append(std::span<const double> row) {
-  assert(row.size() == width_ && !finished_);
+  assert(row.size() == width_ && !finished_ && !layout_.is_encoded);
   std::copy(row.begin(), row.end(), filling_.begin() + static_cast<std::ptrdiff_t>(rows_ * width_));
   if (++rows_ == layout_.chunk_rows) hand_over();
 }
@@ -117,11 +119,22 @@ void SeriesWriter::write_block(const std::vector<double>& block, std::size_t row
   const auto useful = static_cast<unsigned>(1 + rows * width_ / kValuesPerThread);
   for_each_index(neighbours_.size(), std::min(thread_count(layout_.threads), useful),
                  [&](std::size_t i) { encode(neighbours_[i], block, rows); });
+  write_chunks(rows, chunks_);
+}
+
+void SeriesWriter::append_encoded(std::size_t rows,
+                                  std::span<const std::vector<std::uint8_t>> chunks) {
+  assert(layout_.is_encoded && !finished_ && chunks.size() == width_);
+  write_chunks(rows, chunks);
+}
+
+void SeriesWriter::write_chunks(std::size_t rows,
+                                std::span<const std::vector<std::uint8_t>> chunks) {
   std::size_t bytes = width_ * kBytesPerChunk;
-  for (const auto& chunk : chunks_) bytes += chunk.size();
+  for (const auto& chunk : chunks) bytes += chunk.size();
   group_.reserve(bytes);
   for (Dataset& one : datasets_) {
-    one.dataset.append(rows, std::span(chunks_).subspan(one.offset, one.columns));
+    one.dataset.append(rows, chunks.subspan(one.offset, one.columns));
   }
   group_.flush_file();
 }

@@ -35,8 +35,9 @@ struct SeriesLayout {
   std::vector<ColumnLabels> labels;
   std::vector<Channel> channels;
   std::size_t chunk_rows = 16384;
-  int compression = 1;   // kNoCompression to kMostCompression
-  unsigned threads = 0;  // that compress; 0: one a core; the file does not depend on it
+  int compression = 1;      // kNoCompression to kMostCompression
+  unsigned threads = 0;     // that compress; 0: one a core; the file does not depend on it
+  bool is_encoded = false;  // rows come as chunks (append_encoded); none can be appended
 };
 
 /// The file must outlive the writer.
@@ -66,6 +67,12 @@ class SeriesWriter {
   ///         that, and every later call throws the same
   void append(std::span<const double> row);
 
+  /// Adds a block of rows that is encoded: one chunk a column, in the order of a row. None follows
+  /// one of fewer rows than `chunk_rows`.
+  /// @pre is_encoded of the layout
+  /// @throws SystemError
+  void append_encoded(std::size_t rows, std::span<const std::vector<std::uint8_t>> chunks);
+
   /// Writes the rows of a block that is not full and waits for it. Nothing can be added afterwards.
   /// @throws SystemError as append
   void finish();
@@ -84,8 +91,10 @@ class SeriesWriter {
   };
 
   void add_channel(const Channel& channel, std::vector<Hdf5Dataset>& scales);
+  void allocate();
   void hand_over();
   void write_block(const std::vector<double>& block, std::size_t rows);
+  void write_chunks(std::size_t rows, std::span<const std::vector<std::uint8_t>> chunks);
   void encode(Neighbours& columns, const std::vector<double>& block, std::size_t rows);
 
   Hdf5Group group_;

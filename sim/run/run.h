@@ -14,6 +14,8 @@ struct RunControl {
   unsigned threads = 0;  // 0: as many as there are cores
   const StopFlag* stop = nullptr;
   PreparationCache* cache = nullptr;  // shared with other runs, may be null
+  std::string scratch_folder;         // of long recordings until they are compared; empty: that of
+                                      // temporary files
   // every fault of the input is found, and what the run takes is known; called once
   std::function<void(const RunEstimate&)> prepared;
   std::function<void(double)> progress;  // share done, 0 to 1; called from one thread

@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <stdexcept>
 
 #include "plant/vocabulary/simd.h"
+#include "sim/records/series_spool.h"
 #include "sim/records/series_writer.h"
 #include "sim/run/build_identity.h"
 #include "sim/run/store_errors.h"
@@ -22,17 +24,10 @@ namespace {
 
 constexpr const char* kUnfinished = "unfinished";  // group of a case until it is complete
 
-// Chunks of equal length, so that the last one holds little that is nothing.
-std::size_t chunk_rows(std::size_t rows) {
-  constexpr std::size_t kMostRows = 16384;
-  const std::size_t chunks = std::max<std::size_t>(1, (rows + kMostRows - 1) / kMostRows);
-  return std::max<std::size_t>(1, (rows + chunks - 1) / chunks);
-}
-
 SeriesLayout layout_of(const Series& series, const std::string& index) {
   SeriesLayout layout;
   layout.index = index;
-  layout.chunk_rows = chunk_rows(series.rows());
+  layout.chunk_rows = even_chunk_rows(series.rows());
   for (const Signal& signal : series.signals()) {
     if (signal.name == index) {
       layout.index_meaning = {signal.units, signal.long_name};
@@ -197,9 +192,28 @@ void RunStore::write_series(Hdf5Group group, const Series& series) const {
   SeriesLayout layout = layout_of(series, "time");
   layout.compression = compression_;
   layout.threads = threads_;
+  if (series.pages() != nullptr) return write_pages(std::move(group), std::move(layout), series);
   SeriesWriter writer(std::move(group), std::move(layout));
   for (std::size_t row = 0; row < series.rows(); ++row) {
     writer.append({series.row(row), series.width()});
+  }
+  writer.finish();
+}
+
+// The pages of a recording on the disk are chunks of the file as they are.
+void RunStore::write_pages(Hdf5Group group, SeriesLayout layout, const Series& series) {
+  const ColumnPages& pages = *series.pages();
+  layout.chunk_rows = pages.page_rows();
+  layout.is_encoded = true;
+  SeriesWriter writer(std::move(group), std::move(layout));
+  std::vector<std::vector<std::uint8_t>> chunks(series.width());
+  for (std::size_t first = 0; first < pages.rows(); first += pages.page_rows()) {
+    for (std::size_t column = 0; column < chunks.size(); ++column) {
+      if (!pages.read_encoded(column, first / pages.page_rows(), chunks[column])) {
+        throw std::logic_error("recorded signals are not encoded");
+      }
+    }
+    writer.append_encoded(std::min(pages.page_rows(), pages.rows() - first), chunks);
   }
   writer.finish();
 }

@@ -11,6 +11,8 @@
 
 namespace servomill::sim {
 
+struct SeriesLayout;
+
 /// Version of the layout of result files; a file of another one is refused.
 inline constexpr int kSchemaVersion = 1;
 
@@ -38,6 +40,7 @@ class RunStore {
 
  private:
   void write_series(Hdf5Group group, const Series& series) const;
+  static void write_pages(Hdf5Group group, SeriesLayout layout, const Series& series);
 
   OutputFile file_;
   int compression_;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -110,6 +111,7 @@ int run_command(const Arguments& arguments) {
   sim::RunControl control;
   control.threads = thread_count(options);
   control.stop = &stop;
+  control.scratch_folder = std::filesystem::absolute(path).parent_path().string();
   control.progress = [&](double share) { bar.show(share); };
   Kept kept(scenario);
   const KeptWhenInterrupted told([&kept] { return kept.said(); });

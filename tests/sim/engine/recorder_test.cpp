@@ -37,8 +37,10 @@ class Recording : public testing::Test {
       snapshots_.push_back(now);
     }
   }
-  Series record(const RecordFormat& format = {}) const {
-    Recorder recorder(scenario_.machine, truth_, nullptr, path_, tips_, format);
+  Series record(const RecordFormat& format = {}, const RowKeeping& keeping = {}) const {
+    Recorder recorder(scenario_.machine, truth_, nullptr, path_, tips_, format, false, {}, false,
+                      keeping);
+    recorder.expect(kRows);
     for (const Snapshot& now : snapshots_) recorder.record(now);
     return recorder.take();
   }
@@ -50,6 +52,19 @@ class Recording : public testing::Test {
   const std::map<int, Eigen::Vector3d> tips_;
   std::vector<Snapshot> snapshots_;
 };
+
+TEST_F(Recording, IsTheSameInMemoryAndOnTheDisk) {
+  const Series in_memory = record();
+  const Series on_disk = record({}, {.folder = testing::TempDir(), .most_in_memory = 0.0});
+  EXPECT_EQ(in_memory.pages(), nullptr);
+  ASSERT_NE(on_disk.pages(), nullptr);
+  ASSERT_EQ(on_disk.rows(), kRows);
+  for (std::size_t row = 0; row < kRows; ++row) {
+    for (std::size_t c = 0; c < in_memory.width(); ++c) {
+      ASSERT_EQ(on_disk.at(row, c), in_memory.at(row, c));
+    }
+  }
+}
 
 TEST_F(Recording, HasARowForEverySnapshotInOrder) {
   const Series series = record();

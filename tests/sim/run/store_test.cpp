@@ -7,6 +7,7 @@
 
 #include <fstream>
 
+#include "sim/records/series_spool.h"
 #include "tests/sim/records/file_snapshots.h"
 #include "tests/sim/small_scenario.h"
 
@@ -101,6 +102,22 @@ TEST_F(RunFile, IsTheSameForTheSameCases) {
   }
   EXPECT_EQ(bytes(path("a.h5")), bytes(path("b.h5")));
   EXPECT_GT(bytes(path("a.h5")).size(), 1000U);
+}
+
+TEST_F(RunFile, TakesRowsFromTheDiskAsTheyAre) {
+  const Scenario described = scenario();
+  const CaseOutput in_memory = output(0);
+  const Series& servo = in_memory.result.servo;
+  auto spool = std::make_shared<SeriesSpool>(
+      servo.signals(), SpoolFormat{folder_, 16, described.record.compression});
+  spool->append(servo.data());
+  spool->finish();
+  CaseOutput on_disk = in_memory;
+  on_disk.result.servo = Series(servo.signals(), std::move(spool));
+  RunStore store(path("out.h5"), false, described);
+  store.add(on_disk);
+  store.commit({});
+  EXPECT_EQ(read_run(path("out.h5")).cases.at(0).servo->data(), servo.data());
 }
 
 TEST_F(RunFile, SpeaksNotOfUnfinishedCasesWhenItIsComplete) {

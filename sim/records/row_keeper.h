@@ -1,0 +1,39 @@
+/// Keeps recorded rows: few of them in memory, many on the disk.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/records/series.h"
+#include "sim/records/series_spool.h"
+
+namespace servomill::sim {
+
+/// Where the rows of a case are kept until they have been compared.
+struct RowKeeping {
+  std::string folder;            // of what memory is not to hold; empty: that of temporary files
+  double most_in_memory = 64e6;  // bytes of the rows of a case; more go to the disk
+  int compression = 1;           // there
+};
+
+/// Rows of one case. What it holds in memory does not grow with their number, once that is large.
+class RowKeeper {
+ public:
+  /// @param rows  that will come, about
+  /// @throws SystemError, as all members
+  RowKeeper(std::vector<Signal> signals, const RowKeeping& keeping, std::size_t rows);
+
+  /// Adds whole rows, one behind the other.
+  void add(std::span<const double> rows);
+  /// All rows; once.
+  Series take();
+
+ private:
+  Series series_;                       // in memory
+  std::shared_ptr<SeriesSpool> spool_;  // or there
+};
+
+}  // namespace servomill::sim
