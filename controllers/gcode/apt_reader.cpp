@@ -259,7 +259,7 @@ class AptReader : ClReader {
         direction_ = direction;
       } else if (is(word, "SFM") || is(word, "SMM")) {
         fail(word.spot(), "a cutting speed (SFM, SMM) is not supported; give the speed in RPM");
-      } else if (const auto value = number_in(word.text)) {
+      } else if (const auto value = signed_number_in(word.text)) {
         need(word.spot(), *value > 0.0, "the speed of the spindle must be > 0");
         spindle_ = *value * rpm;
       } else if (!is(word, "ON") && !is(word, "RPM")) {

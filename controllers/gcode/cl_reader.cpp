@@ -43,7 +43,7 @@ std::string in_capitals(std::string text) {
   return text;
 }
 
-std::optional<double> number_in(std::string_view text) {
+std::optional<double> signed_number_in(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double x = 0.0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), x);
@@ -52,7 +52,7 @@ std::optional<double> number_in(std::string_view text) {
 }
 
 double ClReader::number(const PlacedText& word) const {
-  if (const auto x = number_in(word.text)) return *x;
+  if (const auto x = signed_number_in(word.text)) return *x;
   if (word.text.empty()) fail(word.spot(), "a number is missing");
   fail(word.spot(), fmt::format("'{}' is not a number", word.text));
 }

@@ -43,7 +43,7 @@ std::vector<PlacedText> split(const PlacedText& whole, std::size_t from, char at
 std::string in_capitals(std::string text);
 
 /// The number that a text is; none if it is not one or not finite.
-std::optional<double> number_in(std::string_view text);
+std::optional<double> signed_number_in(std::string_view text);
 
 /// What readers of both forms of CL data share: the result, and everything that is said about the
 /// file.
