@@ -1,12 +1,15 @@
 /// A TOML document: read, changed from the command line or by another document, written back.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include "sim/config/value.h"
 
 namespace servomill::sim {
+
+class KeyLog;
 
 class Document {
  public:
@@ -34,11 +37,17 @@ class Document {
   /// The document as changed, as TOML that reads again to the same values; comments are gone.
   std::string to_toml() const;
 
+  /// Records the keys that readers ask this document and its copies for.
+  void record_keys(std::shared_ptr<KeyLog> log) { key_log_ = std::move(log); }
+  /// nullptr: they are not recorded.
+  KeyLog* key_log() const { return key_log_.get(); }
+
  private:
   Document(std::string name, Value root);
 
   std::string name_;
   Value root_;
+  std::shared_ptr<KeyLog> key_log_;
 };
 
 }  // namespace servomill::sim

@@ -7,29 +7,19 @@
 #include <charconv>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "sim/config/key_log.h"
+
 namespace servomill::sim {
 namespace {
 
+constexpr double kNone = std::numeric_limits<double>::infinity();  // a default that is none
 constexpr std::size_t kLongestShown = 60;  // characters of a value in a message
-
-constexpr std::string_view symbol_of(Rule::Comparison comparison) {
-  switch (comparison) {
-    case Rule::Comparison::above:
-      return ">";
-    case Rule::Comparison::at_least:
-      return ">=";
-    case Rule::Comparison::below:
-      return "<";
-    case Rule::Comparison::at_most:
-      return "<=";
-  }
-  return "";
-}
 
 bool holds(const Rule& rule, double value) {
   switch (rule.comparison) {
@@ -71,6 +61,20 @@ std::string shown(const Value& value) {
 }
 
 }  // namespace
+
+std::string_view symbol_of(Rule::Comparison comparison) {
+  switch (comparison) {
+    case Rule::Comparison::above:
+      return ">";
+    case Rule::Comparison::at_least:
+      return ">=";
+    case Rule::Comparison::below:
+      return "<";
+    case Rule::Comparison::at_most:
+      return "<=";
+  }
+  return "";
+}
 
 // Faults and read keys of one document.
 struct Reader::State {
@@ -148,6 +152,14 @@ Reader::Reader(std::shared_ptr<State> state, const Value* table, std::string pat
   if (!silent_) state_->tables[table_].path = path_;
 }
 
+bool Reader::logs() const { return !silent_ && state_->document.key_log() != nullptr; }
+
+void Reader::log(std::string_view key, KeyUse use) const {
+  use.table = without_items(path_);
+  use.key = key;
+  state_->document.key_log()->add(std::move(use));
+}
+
 const Value* Reader::find(std::string_view key) {
   if (silent_) return nullptr;
   state_->know(table_, key);
@@ -222,6 +234,7 @@ double Reader::number(const Value& value, std::string_view key, std::optional<st
 }
 
 double Reader::real(std::string_view key, Quantity quantity, Rules rules) {
+  if (logs()) log(key, number_request(KeyType::number, key, quantity, rules, {}));
   const Value* value = find(key);
   if (value != nullptr) return number(*value, key, {}, quantity, rules);
   missing(key);
@@ -229,6 +242,7 @@ double Reader::real(std::string_view key, Quantity quantity, Rules rules) {
 }
 
 double Reader::real_or(std::string_view key, double fallback, Quantity quantity, Rules rules) {
+  if (logs()) log(key, number_request(KeyType::number, key, quantity, rules, fallback));
   const Value* value = find(key);
   return value == nullptr ? fallback : number(*value, key, {}, quantity, rules);
 }
@@ -240,31 +254,37 @@ std::int64_t Reader::whole(const Value& value, std::string_view key, Rules rules
 }
 
 std::int64_t Reader::integer(std::string_view key, Rules rules) {
+  if (logs()) log(key, integer_request(rules, {}));
   const Value* value = require(key, Value::Type::integer);
   return value == nullptr ? 0 : whole(*value, key, rules);
 }
 
 std::int64_t Reader::integer_or(std::string_view key, std::int64_t fallback, Rules rules) {
+  if (logs()) log(key, integer_request(rules, fallback));
   const Value* value = optional(key, Value::Type::integer);
   return value == nullptr ? fallback : whole(*value, key, rules);
 }
 
 bool Reader::boolean(std::string_view key) {
+  if (logs()) log(key, required_request(KeyType::boolean));
   const Value* value = require(key, Value::Type::boolean);
   return value != nullptr && value->boolean;
 }
 
 bool Reader::boolean_or(std::string_view key, bool fallback) {
+  if (logs()) log(key, optional_request(KeyType::boolean, fallback ? "true" : "false"));
   const Value* value = optional(key, Value::Type::boolean);
   return value == nullptr ? fallback : value->boolean;
 }
 
 std::string Reader::text(std::string_view key) {
+  if (logs()) log(key, required_request(KeyType::text));
   const Value* value = require(key, Value::Type::text);
   return value == nullptr ? std::string() : value->text;
 }
 
 std::string Reader::text_or(std::string_view key, std::string_view fallback) {
+  if (logs()) log(key, optional_request(KeyType::text, fallback));
   const Value* value = optional(key, Value::Type::text);
   return value == nullptr ? std::string(fallback) : value->text;
 }
@@ -279,12 +299,14 @@ std::size_t Reader::named(const Value& value, std::string_view key,
 }
 
 std::size_t Reader::choice(std::string_view key, std::span<const std::string_view> names) {
+  if (logs()) log(key, choice_request(names, {}));
   const Value* value = require(key, Value::Type::text);
   return value == nullptr ? 0 : named(*value, key, names);
 }
 
 std::size_t Reader::choice_or(std::string_view key, std::size_t fallback,
                               std::span<const std::string_view> names) {
+  if (logs()) log(key, choice_request(names, fallback));
   const Value* value = optional(key, Value::Type::text);
   return value == nullptr ? fallback : named(*value, key, names);
 }
@@ -299,12 +321,14 @@ std::vector<double> Reader::numbers(const Value& list, std::string_view key, Qua
 }
 
 std::vector<double> Reader::reals(std::string_view key, Quantity quantity, Rules rules) {
+  if (logs()) log(key, number_request(KeyType::numbers, key, quantity, rules, {}));
   const Value* list = require(key, Value::Type::list);
   return list == nullptr ? std::vector<double>{} : numbers(*list, key, quantity, rules);
 }
 
 std::vector<double> Reader::reals_or(std::string_view key, std::vector<double> fallback,
                                      Quantity quantity, Rules rules) {
+  if (logs()) log(key, number_request(KeyType::numbers, key, quantity, rules, kNone));
   const Value* list = optional(key, Value::Type::list);
   return list == nullptr ? std::move(fallback) : numbers(*list, key, quantity, rules);
 }
@@ -321,11 +345,13 @@ std::vector<std::string> Reader::strings(const Value& list, std::string_view key
 }
 
 std::vector<std::string> Reader::texts(std::string_view key) {
+  if (logs()) log(key, required_request(KeyType::texts));
   const Value* list = require(key, Value::Type::list);
   return list == nullptr ? std::vector<std::string>{} : strings(*list, key);
 }
 
 std::vector<std::string> Reader::texts_or(std::string_view key, std::vector<std::string> fallback) {
+  if (logs()) log(key, optional_request(KeyType::texts, ""));
   const Value* list = optional(key, Value::Type::list);
   return list == nullptr ? std::move(fallback) : strings(*list, key);
 }
@@ -335,12 +361,14 @@ Reader Reader::silent_reader(std::string_view key) const {
 }
 
 Reader Reader::table(std::string_view key) {
+  if (logs()) log(key, required_request(KeyType::table));
   const Value* value = require(key, Value::Type::table);
   return value == nullptr ? silent_reader(key)
                           : Reader(state_, value, joined_key(path_, key), false);
 }
 
 Reader Reader::table_or_empty(std::string_view key) {
+  if (logs()) log(key, optional_request(KeyType::table, ""));
   const bool absent = !silent_ && !has(key);
   const Value* value = optional(key, Value::Type::table);
   if (absent) return {state_, &state_->nothing, joined_key(path_, key), false};
@@ -360,6 +388,7 @@ std::vector<Reader> Reader::readers(const Value& list, std::string_view key) {
 }
 
 std::vector<Reader> Reader::tables(std::string_view key) {
+  if (logs()) log(key, required_request(KeyType::tables));
   const Value* list = require(key, Value::Type::list);
   if (list == nullptr) return {};
   if (list->children.empty()) note(*list, joined_key(path_, key), "must have at least one item");
@@ -367,11 +396,13 @@ std::vector<Reader> Reader::tables(std::string_view key) {
 }
 
 std::vector<Reader> Reader::tables_or_none(std::string_view key) {
+  if (logs()) log(key, optional_request(KeyType::tables, ""));
   const Value* list = optional(key, Value::Type::list);
   return list == nullptr ? std::vector<Reader>{} : readers(*list, key);
 }
 
 bool Reader::has(std::string_view key) {
+  if (logs()) log(key, optional_request(KeyType::asked, ""));
   if (silent_) return false;
   state_->know(table_, key);
   return table_->find(key) != nullptr;
@@ -387,7 +418,10 @@ std::vector<std::string> Reader::keys() const {
   return out;
 }
 
-const Value* Reader::raw(std::string_view key) { return find(key); }
+const Value* Reader::raw(std::string_view key) {
+  if (logs()) log(key, optional_request(KeyType::asked, ""));
+  return find(key);
+}
 
 void Reader::fault(std::string_view key, std::string_view rule) {
   if (silent_) return;

@@ -27,12 +27,17 @@
 
 namespace servomill::sim {
 
+struct KeyUse;
+
 /// A bound on a number, in SI. Rules are data, so that a message can say what was violated.
 struct Rule {
   enum class Comparison : std::uint8_t { above, at_least, below, at_most };
   Comparison comparison;
   double bound;
 };
+
+/// ">", ">=", "<", "<="
+std::string_view symbol_of(Rule::Comparison comparison);
 
 constexpr Rule above(double bound) { return {Rule::Comparison::above, bound}; }
 constexpr Rule at_least(double bound) { return {Rule::Comparison::at_least, bound}; }
@@ -127,6 +132,8 @@ class Reader {
   struct State;
   Reader(std::shared_ptr<State> state, const Value* table, std::string path, bool silent);
 
+  bool logs() const;
+  void log(std::string_view key, KeyUse use) const;
   const Value* find(std::string_view key);
   const Value* require(std::string_view key, Value::Type type);
   const Value* optional(std::string_view key, Value::Type type);

@@ -1,30 +1,22 @@
 #!/usr/bin/python3
-"""Every key that the readers of a machine know stands in scenarios/machines/README.md, and no other.
+"""Every key of a machine that `servomill list keys` knows stands in scenarios/machines/README.md, and no other.
 
-    machine_keys.py SOURCE_DIR
+    machine_keys.py SOURCE_DIR SERVOMILL
 """
 import pathlib
 import re
 import sys
 
-SOURCES = ("read_machine.cpp", "read_drive.cpp", "read_servo.cpp", "read_encoder.cpp")
-CALL = re.compile(r'(?:real|real_or|reals|integer_or|boolean_or|text|text_or|choice|choice_or|table|tables_or_none|'
-                  r'filter_frequency|needed_if)\(\s*(?:filter, |table, |axis, )?(?:[^,"()]*,\s*)?"(\w+)"')
-NAMED = re.compile(r'^  const std::string_view key = linear \? "(\w+)" : "(\w+)"', re.MULTILINE)
-PERIOD = re.compile(r'period\(nc, "(\w+)"')
-STEPS = re.compile(r'read_either\(axis, "(\w+)", "(\w+)"')
-STRUCTURE = {"nc", "axis", "marks", "scale", "motor", "screw", "friction", "winding", "cogging", "filter",
-             "friction_compensation", "backlash_compensation", "errors", "Z"}  # tables: they are headings
+import scenario_keys
+
+MODELS = {"set_valued", "regularised", "lugre"}  # rows of a table that is not about keys
 
 
-def known_keys(folder):
-    keys = set()
-    for name in SOURCES:
-        text = (folder / "sim" / name).read_text(encoding="utf-8")
-        keys |= set(CALL.findall(text)) | set(PERIOD.findall(text))
-        for pattern in (NAMED, STEPS):
-            keys |= {key for pair in pattern.findall(text) for key in pair}
-    return keys - STRUCTURE
+def known_keys(servomill):
+    """Keys of the machine and its sections; tables are headings there."""
+    listed = scenario_keys.listed_keys(servomill, "machine")
+    return {key for section, keys in listed.items() for key, kind in keys.items()
+            if not re.match(r"(list of )?tables?\b", kind) and section != "machine.axis"} - {"errors"} | {"lead_error"}
 
 
 def described_keys(folder):
@@ -36,11 +28,9 @@ def described_keys(folder):
 
 
 def main():
-    folder = pathlib.Path(sys.argv[1])
-    known, described = known_keys(folder), described_keys(folder)
-    models = {"set_valued", "regularised", "lugre"}  # rows of a table that is not about keys
-    missing, unknown = known - described, described - known - models
-    assert len(known) > 80, f"found {len(known)} keys only: the readers are written differently now"
+    known, described = known_keys(sys.argv[2]), described_keys(pathlib.Path(sys.argv[1]))
+    missing, unknown = known - described, described - known - MODELS
+    assert len(known) > 80, f"found {len(known)} keys only: they are listed differently now"
     for key in sorted(missing):
         print(f"scenarios/machines/README.md says nothing of {key}")
     for key in sorted(unknown):

@@ -22,7 +22,7 @@ SLOW = (  # take longer than 5 s: parsed only
     r"budget |converge |sweep ",
     r"run scenarios/(iso|parts)/",
 )
-PLACEHOLDER = re.compile(r"\b(SCENARIO|PROGRAM|COMMAND|OUT|SHARD|FILE|KEY|NAME|FORMAT|FOLDER|PART|M\.toml|I/N|I-of-N|A-B)\b|\.\.\.|\.\*|\*")
+PLACEHOLDER = re.compile(r"\b(SCENARIO|SECTION|PROGRAM|COMMAND|OUT|SHARD|FILE|KEY|NAME|FORMAT|FOLDER|PART|M\.toml|I/N|I-of-N|A-B)\b|\.\.\.|\.\*|\*")
 INPUT = re.compile(r"\.(toml|ngc|cls|h5|tbl|var|csv|nc)$")
 
 

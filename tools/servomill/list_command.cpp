@@ -6,6 +6,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/input/catalogue.h"
+#include "sim/input/key_list.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {
@@ -28,19 +29,35 @@ void list_files(const std::string& folder, bool machines) {
   for (const std::string& file : files) fmt::print("{:<50} {}\n", file, sim::title_of(file));
 }
 
+void list_keys_of(const Options& options) {
+  const std::vector<std::string> words = options.words();
+  if (words.size() > 2) {
+    throw InputError({"servomill list keys"},
+                     fmt::format("takes one section, got {}; see --help", words.size() - 1));
+  }
+  fmt::print("{}", sim::describe_keys(words.size() == 2 ? words[1] : ""));
+}
+
 }  // namespace
 
 int list_command(const Arguments& arguments) {
   namespace po = boost::program_options;
   Options options(
-      "list", "strategies|machines|scenarios|quantities|rules",
+      "list", "strategies|machines|scenarios|quantities|rules|keys [SECTION]",
       "Prints the strategies with their keys, the quantities that a comparison can hold, "
-      "the rules by which programs are read beyond LinuxCNC's, or the machines and scenarios of a "
-      "folder.",
-      "strategies|machines|scenarios|quantities|rules");
+      "the rules by which programs are read beyond LinuxCNC's, the machines and scenarios of a "
+      "folder, or every key of scenarios and machines: what it does, type, unit, range, default. "
+      "SECTION is one such as program or machine.axis.X, with those below it; top has the keys "
+      "outside "
+      "of sections. Machine files leave out 'machine.'. Required keys are so where they apply.",
+      "strategies|machines|scenarios|quantities|rules|keys");
   options.add()("folder", po::value<std::string>()->default_value("scenarios")->value_name("DIR"),
                 "where machines and scenarios are looked for");
   if (!options.parse(arguments)) return kDone;
+  if (const auto words = options.words(); !words.empty() && words.front() == "keys") {
+    list_keys_of(options);
+    return kDone;
+  }
   const std::string what = options.word();
   if (what == "strategies") {
     fmt::print("{}", sim::describe_strategies());
@@ -51,8 +68,8 @@ int list_command(const Arguments& arguments) {
   } else if (what == "machines" || what == "scenarios") {
     list_files(options.get<std::string>("folder"), what == "machines");
   } else {
-    constexpr std::string_view kWhat[] = {"strategies", "machines", "scenarios", "quantities",
-                                          "rules"};
+    constexpr std::string_view kWhat[] = {"strategies", "machines", "scenarios",
+                                          "quantities", "rules",    "keys"};
     throw InputError({"servomill list"},
                      fmt::format("cannot list '{}'{}", what, did_you_mean(what, kWhat)));
   }

@@ -49,7 +49,7 @@ constexpr std::array<Command, 15> kCommands = {{
      canon_command},
     {"post", "PART.cls --machine M.toml [-o OUT.ngc]", "posts cutter locations to G-code",
      post_command},
-    {"list", "strategies|machines|scenarios|quantities", "prints what there is", list_command},
+    {"list", "strategies|machines|scenarios|quantities|keys", "prints what there is", list_command},
 }};
 
 void print_usage(std::FILE* to) {

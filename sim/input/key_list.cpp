@@ -1,0 +1,236 @@
+#include "sim/input/key_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <regex>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/input/input_files.h"
+#include "sim/input/key_specimens.h"
+#include "sim/input/scenario_document.h"
+#include "sim/model/scenario.h"
+#include "strategies/registry.h"
+
+namespace servomill::sim {
+namespace {
+
+// All requests of the readers for one key.
+struct Requests {
+  std::string section, key;
+  std::vector<KeyUse> uses;
+};
+
+// A component error over mm: listed with those.
+constexpr std::string_view kLeadError = "machine.axis.X.screw.lead_error";
+constexpr std::string_view kTop = "top";  // the section of keys without one
+constexpr std::size_t kMostWords = 8;     // of a choice that are printed
+
+struct Renaming {
+  std::regex pattern;
+  std::string to;
+};
+
+// One name for sections and keys that any name, axis or error may have.
+std::string common_name(std::string name) {
+  static const std::array<Renaming, 7> kNames = {{
+      {std::regex(R"(^machine\.errors)"), "errors"},
+      {std::regex(R"(\baxis\.[XYZABC]\b)"), "axis.X"},
+      {std::regex(R"(\bE[XYZ]0[XYZABC]\b)"), "EX0C"},
+      {std::regex(R"(\bE[ABC]0[XYZABC]\b)"), "EC0Y"},
+      {std::regex(R"(\bE[XYZABC][XYZABC]\b)"), "EXX"},
+      {std::regex(R"(^errors\.OTHER)"), "errors.NAME"},
+      {std::regex(R"(^sweep\.(?!samples|together).+)"), "sweep.KEY"},
+  }};
+  for (const Renaming& one : kNames) name = std::regex_replace(name, one.pattern, one.to);
+  return name;
+}
+
+std::string common_key(const std::string& section, const std::string& key) {
+  if (section == "machine.axis") return "X";
+  if (section == "sweep" && key != "samples" && key != "together") return "KEY";
+  if (section == "sweep.together") return "KEY";
+  if (section == "errors") return "NAME";
+  if (section == "program.subroutines") return "NAME";
+  if (section == "program.parameters") return "#101";
+  if (section.ends_with("work_offset") || section.ends_with("start")) {
+    return key.ends_with("_mm") ? "X_mm" : "C_deg";
+  }
+  return common_name(key);
+}
+
+std::shared_ptr<KeyLog> requests_of_readers() {
+  auto log = std::make_shared<KeyLog>();
+  for (const std::string_view text : key_specimens()) {
+    InputFiles files;
+    Document document = Document::from_text(text, "specimen");
+    document.record_keys(log);
+    const std::string name(document.root().find("title")->text);
+    read_document(with_machine(std::move(document), {}, files), name, files);
+  }
+  return log;
+}
+
+bool is_parameter_of_strategy(std::string_view key) {
+  const auto has_it = [key](const strategies::Entry& entry) {
+    return std::any_of(entry.parameters.begin(), entry.parameters.end(),
+                       [key](const ParameterSpec& one) { return one.name == key; });
+  };
+  return std::any_of(strategies::entries().begin(), strategies::entries().end(), has_it);
+}
+
+// Sections in the order in which they are read, tables themselves left out where they have keys.
+std::vector<Requests> grouped() {
+  const auto log = requests_of_readers();
+  std::vector<Requests> out;
+  for (const KeyUse& use : log->uses()) {
+    const std::string section = common_name(use.table);
+    const std::string key = common_key(section, use.key);
+    if (section == "case.strategy" && is_parameter_of_strategy(key)) continue;
+    if (section == kLeadError) continue;
+    auto at = std::find_if(out.begin(), out.end(), [&](const Requests& one) {
+      return one.section == section && one.key == key;
+    });
+    if (at == out.end()) {
+      // keys of a section stay together
+      const auto last = std::find_if(out.rbegin(), out.rend(),
+                                     [&](const Requests& one) { return one.section == section; });
+      at = out.insert(last == out.rend() ? out.end() : last.base(), {section, key, {}});
+    }
+    at->uses.push_back(use);
+  }
+  return out;
+}
+
+std::string quoted_words(const std::vector<std::string>& words) {
+  return fmt::format("\"{}\"", fmt::join(words, "\" | \""));
+}
+
+std::string type_of(const KeyUse& use) {
+  const std::string unit = use.unit.empty() ? "" : " in " + use.unit;
+  switch (use.type) {
+    case KeyType::asked:
+      return "";
+    case KeyType::number:
+      return "number" + unit;
+    case KeyType::integer:
+      return "integer";
+    case KeyType::boolean:
+      return "true | false";
+    case KeyType::text:
+      return "text";
+    case KeyType::choice:
+      return use.words.size() > kMostWords ? fmt::format("one of {} names", use.words.size())
+                                           : quoted_words(use.words);
+    case KeyType::numbers:
+      return "list of numbers" + unit;
+    case KeyType::texts:
+      return "list of texts";
+    case KeyType::table:
+      return "table";
+    case KeyType::tables:
+      return "list of tables";
+  }
+  return "";
+}
+
+void append_new(std::string& list, const std::string& item, std::string_view separator) {
+  const std::string bounded = fmt::format("{0}{1}{0}", separator, list);
+  if (item.empty() || bounded.find(fmt::format("{0}{1}{0}", separator, item)) != std::string::npos)
+    return;
+  list += (list.empty() ? "" : std::string(separator)) + item;
+}
+
+// A key that a reader looks for before it requires it may be absent.
+std::string presence_of(const std::vector<KeyUse>& uses) {
+  bool asked = false, required = false, optional = false;
+  std::vector<std::string> defaults;
+  const bool is_choice = uses.back().type == KeyType::choice;
+  for (const KeyUse& use : uses) {
+    if (use.type == KeyType::asked) asked = asked || !required;
+    if (use.type == KeyType::asked) continue;
+    required = required || (use.required && !asked);
+    optional = optional || !use.required;
+    if (!use.fallback || use.fallback->empty()) continue;
+    const std::string text = is_choice ? '"' + *use.fallback + '"' : *use.fallback;
+    if (std::find(defaults.begin(), defaults.end(), text) == defaults.end())
+      defaults.push_back(text);
+  }
+  if (required && optional) return "required in some cases";
+  if (required) return "required";
+  if (defaults.size() == 1) return "default " + defaults.front();
+  return defaults.empty() ? "optional" : "default follows from other keys";
+}
+
+KeyEntry entry_of(const Requests& requests) {
+  KeyEntry out{requests.section,
+               requests.key,
+               "",
+               "",
+               presence_of(requests.uses),
+               help_of_key(requests.section, requests.key)};
+  for (const KeyUse& use : requests.uses) {
+    append_new(out.type, type_of(use), " | ");
+    if (!use.range.empty() && !out.range.empty() && use.range != out.range) {
+      out.range = "bounds follow from other keys";
+    } else if (!use.range.empty()) {
+      out.range = use.range;
+    }
+  }
+  if (out.type.empty()) out.type = "any";
+  return out;
+}
+
+// The keys of one strategy, from its own table.
+void append_strategies(std::vector<KeyEntry>& out) {
+  constexpr double kNoBound = 1e300;  // of a parameter's specification
+  for (const strategies::Entry& entry : strategies::entries()) {
+    for (const ParameterSpec& spec : entry.parameters) {
+      std::string type;
+      if (spec.is_number) {
+        type = spec.unit.empty() ? "number" : "number in " + std::string(spec.unit);
+        if (spec.min > -kNoBound) type += fmt::format(", >= {:g}", spec.min);
+        if (spec.max < kNoBound) type += fmt::format(", <= {:g}", spec.max);
+      }
+      for (const std::string_view word : spec.words) {
+        type += fmt::format("{}\"{}\"", type.empty() ? "" : " | ", word);
+      }
+      const std::string presence =
+          spec.default_text.empty() ? "required" : "default " + std::string(spec.default_text);
+      out.push_back({fmt::format("case.strategy.{}", entry.name), std::string(spec.name), type, "",
+                     presence, spec.help});
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<KeyEntry> list_keys() {
+  std::vector<KeyEntry> out;
+  for (const Requests& one : grouped()) out.push_back(entry_of(one));
+  append_strategies(out);
+  return out;
+}
+
+std::string describe_keys(std::string_view section) {
+  std::string out, last;
+  std::vector<std::string> names;
+  for (const KeyEntry& one : list_keys()) {
+    const std::string name = one.section.empty() ? std::string(kTop) : one.section;
+    const bool begins = name != last;
+    last = name;
+    if (begins) names.push_back(name);
+    if (!section.empty() && name != section && !name.starts_with(fmt::format("{}.", section)))
+      continue;
+    if (begins) out += fmt::format("{}[{}]\n", out.empty() ? "" : "\n", name);
+    out += fmt::format("  {:<24} {} [{}{}{}; {}]\n", one.key, one.help, one.type,
+                       one.range.empty() ? "" : ", ", one.range, one.presence);
+  }
+  if (!out.empty()) return out;
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  throw InputError({"servomill list keys"},
+                   fmt::format("no section '{}'{}", section, did_you_mean(section, views)));
+}
+
+}  // namespace servomill::sim

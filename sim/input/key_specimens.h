@@ -1,0 +1,14 @@
+/// Scenarios that have every section and every form of every key, for the list of keys. They are
+/// read, never run.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace servomill::sim {
+
+/// Complete documents. Together they make the readers ask for every key; defaults that follow from
+/// other keys differ between them.
+std::array<std::string_view, 3> key_specimens();
+
+}  // namespace servomill::sim

@@ -1,0 +1,118 @@
+/// The list of keys is what the readers ask for, and every key has its sentence.
+#include "sim/input/key_list.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "plant/vocabulary/input_error.h"
+
+namespace servomill::sim {
+namespace {
+
+// Read once: the readers go over all specimens each time.
+const std::vector<KeyEntry>& all_keys() {
+  static const std::vector<KeyEntry> kKeys = list_keys();
+  return kKeys;
+}
+
+KeyEntry entry(const std::string& section, const std::string& key) {
+  for (const KeyEntry& one : all_keys()) {
+    if (one.section == section && one.key == key) return one;
+  }
+  ADD_FAILURE() << "no key " << key << " in " << section;
+  return {};
+}
+
+std::string facts(const std::string& section, const std::string& key) {
+  const KeyEntry one = entry(section, key);
+  return one.type + "; " + one.range + "; " + one.presence;
+}
+
+TEST(KeyList, HasASentenceForEveryKey) {
+  for (const KeyEntry& one : all_keys()) {
+    EXPECT_FALSE(one.help.empty()) << "sim/input/key_help.cpp: " << one.section << "." << one.key;
+  }
+}
+
+TEST(KeyList, HasNoSentenceForAKeyThatNoReaderKnows) {
+  const std::vector<KeyEntry>& keys = all_keys();
+  for (const auto& [section, key] : keys_with_help()) {
+    EXPECT_TRUE(std::any_of(keys.begin(), keys.end(),
+                            [section = section, key = key](const KeyEntry& one) {
+                              return one.section == section && one.key == key;
+                            }))
+        << "sim/input/key_help.cpp: " << section << "." << key;
+  }
+}
+
+TEST(KeyList, NamesEveryKeyOnce) {
+  std::vector<std::string> names;
+  for (const KeyEntry& one : all_keys()) names.push_back(one.section + "." + one.key);
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
+  EXPECT_GT(names.size(), 300U);
+}
+
+// Units and bounds as the readers have them: in the unit of the key, or else in SI.
+TEST(KeyList, HasTypeUnitRangeAndDefault) {
+  EXPECT_EQ(facts("machine.nc", "Kv"), "number in 1/s; > 0; required");
+  EXPECT_EQ(facts("program", "feed_override"), "number; > 0; default 1");
+  EXPECT_EQ(facts("record", "resolution_nm"), "number in nm; >= 0 and <= 1000; default 0.001");
+  EXPECT_EQ(facts("record", "compression"), "integer; >= 0 and <= 9; default 1");
+  EXPECT_EQ(facts("record", "storage"), "\"float64\" | \"float32\"; ; default \"float64\"");
+  EXPECT_EQ(facts("record", "uncorrectable"), "true | false; ; default false");
+  EXPECT_EQ(facts("program", "tool"), "list of tables; ; optional");
+  EXPECT_EQ(facts("machine.axis.X", "load"), "number in kg | number in kg m^2; > 0; required");
+  EXPECT_EQ(facts("case.strategy.table", "spacing_mm"),
+            "number in mm, >= 0.0001; ; default 1.6384");
+}
+
+TEST(KeyList, TellsKeysThatMayBeAbsentFromRequiredOnes) {
+  EXPECT_EQ(entry("program", "file").presence, "required");
+  EXPECT_EQ(entry("machine.axis.X", "travel_mm").presence, "optional");
+  EXPECT_EQ(entry("machine.axis.X", "stiffness").presence, "required in some cases");
+  EXPECT_EQ(entry("machine.axis.X", "current_slew").presence, "optional");
+}
+
+// Such a default must not be printed as the number that a specimen happens to have.
+TEST(KeyList, PrintsNoNumberForADefaultThatFollowsFromOtherKeys) {
+  for (const auto& [section, key] : {std::pair{"machine.axis.X", "Kv"},
+                                     {"machine.axis.X", "crossover_Hz"},
+                                     {"machine.axis.X.friction", "coulomb_negative"},
+                                     {"machine.nc", "position_period_us"},
+                                     {"program.tool", "flute_length_mm"},
+                                     {"probe.circle", "to_deg"},
+                                     {"case", "wear"},
+                                     {"case", "cutting"}}) {
+    EXPECT_EQ(entry(section, key).presence, "default follows from other keys") << key;
+  }
+  EXPECT_EQ(entry("program.tool", "corner_radius_mm").range, "bounds follow from other keys");
+}
+
+TEST(KeyList, IsPrintedBySections) {
+  EXPECT_EQ(describe_keys("feedback_hardware"),
+            "[feedback_hardware]\n"
+            "  connected                hardware in the signal path also of cases that do not use "
+            "it [true | false; default false]\n"
+            "  signal_delay_us          delay from the scale to the reading of the NC "
+            "[number in us, >= 0 and <= 6e+07; default 10]\n"
+            "  model_period_us          period of the error model; its value acts one period later "
+            "[number in us, > 0 and <= 6e+07; default 60]\n");
+  EXPECT_TRUE(describe_keys("top").starts_with("[top]\n  based_on "));
+  EXPECT_NE(describe_keys("machine.axis.X").find("\n[machine.axis.X.friction]\n"),
+            std::string::npos);
+}
+
+TEST(KeyList, RefusesASectionThatThereIsNot) {
+  try {
+    describe_keys("machine.nx");
+    FAIL() << "must throw";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "servomill list keys: error: no section 'machine.nx'; did you mean 'machine.nc'?");
+  }
+}
+
+}  // namespace
+}  // namespace servomill::sim
