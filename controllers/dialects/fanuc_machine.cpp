@@ -10,6 +10,7 @@ namespace servomill::controllers {
 FanucMachine::FanucMachine(const std::string& file, const ControlSetup& setup,
                            const FanucSettings& settings, const FanucRules& rules)
     : file_(file), setup_(setup), settings_(settings), rules_(rules), position_(setup.start) {
+  take_absent_functions();
   if (rules.modes_are_unknown_at_start) return;
   // a wrong rule: what the manuals call the state at power-on
   modes_ = {.motion = 0,
@@ -23,8 +24,21 @@ FanucMachine::FanucMachine(const std::string& file, const ControlSetup& setup,
             .is_cycle_off = true,
             .is_scaling_off = true,
             .is_rotation_off = true,
-            .is_polar_off = true};
+            .is_polar_off = true,
+            .is_surface_speed_off = true};
+  modes_.is_mirror_off.fill(true);
+  modes_.is_local_off.fill(true);
+  modes_.is_shift_off.fill(true);
   length_ = {FanucLength::Mode::off, 1.0, 0, 0.0, false};
+}
+
+// What the control does not have cannot be in force.
+void FanucMachine::take_absent_functions() {
+  modes_.is_polar_off = !settings_.has_polar;
+  modes_.is_scaling_off = !settings_.has_scaling;
+  modes_.is_surface_speed_off = !settings_.has_surface_speed;
+  modes_.is_mirror_off.fill(!settings_.has_mirror);
+  modes_.is_shift_off.fill(!settings_.has_preset);
 }
 
 void FanucMachine::fail(int column, const std::string& message) const {
@@ -36,9 +50,9 @@ bool FanucMachine::run(const FanucBlock& block) {
   read_codes();
   set_modes();
   check_words();
-  if (has(Group::mirror) || has(Group::contour)) {
-    if (block.words.front().letter != 'G') fail("G5.1 and G50.1 begin their block");
-    return true;  // a switch; its axis words move nothing
+  if (is_switch()) {
+    run_switch();
+    return true;
   }
   set_feed();
   set_spindle();
@@ -114,8 +128,8 @@ void FanucMachine::run_coolant(int M) {
 
 void FanucMachine::forget_positions() { position_ = {}; }
 
-// A macro of the machine builder's moves axes and leaves modes behind. The unit, rotation and
-// scaling stay: nothing was found that a macro changes them.
+// A macro of the machine builder's moves axes and leaves modes behind. The unit, rotation, scaling,
+// mirror images and shifts stay: nothing was found that a macro changes them.
 void FanucMachine::change_tool() {
   if (!selected_) fail(M_.column, "M6 while no T is known");
   tool_ = selected_;
@@ -126,6 +140,10 @@ void FanucMachine::change_tool() {
     modes.is_scaling_off = modes_.is_scaling_off;
     modes.is_rotation_off = modes_.is_rotation_off;
     modes.is_polar_off = modes_.is_polar_off;
+    modes.is_surface_speed_off = modes_.is_surface_speed_off;
+    modes.is_mirror_off = modes_.is_mirror_off;
+    modes.is_local_off = modes_.is_local_off;
+    modes.is_shift_off = modes_.is_shift_off;
     modes_ = modes;
     length_ = {};
     feed_.reset();

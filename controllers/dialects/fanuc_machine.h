@@ -13,7 +13,7 @@ namespace servomill::controllers {
 
 /// Groups of which a block may hold one code each (B-63944EN, preparatory functions).
 enum class FanucGroup : std::uint8_t {
-  one_shot,      // 00: G4 G9 G28 G30 G53
+  one_shot,      // 00: G4 G9 G28 G30 G52 G53 G92.1
   motion,        // 01
   plane,         // 02
   distance,      // 03
@@ -43,7 +43,9 @@ struct FanucModes {
   std::optional<int> work_system;  // 1: G54
   std::optional<PathMode> path;
   bool is_cutter_off = false, is_cycle_off = false, is_scaling_off = false, is_rotation_off = false,
-       is_polar_off = false;
+       is_polar_off = false, is_surface_speed_off = false;
+  /// By axis: G51.1, a shift by G52, a shift by G92
+  std::array<bool, kAxisWords> is_mirror_off{}, is_local_off{}, is_shift_off{};
 };
 
 /// Tool length. The displayed mode and the vector that acts are kept apart: G53 cancels the latter
@@ -75,6 +77,7 @@ class FanucMachine {
 
   [[noreturn]] void fail(int column, const std::string& message) const;
   [[noreturn]] void fail(const std::string& message) const { fail(1, message); }
+  void take_absent_functions();
 
   // reading of the block
   void read_codes();
@@ -94,6 +97,9 @@ class FanucMachine {
   void set_cancels();
   void set_feed();
   void set_spindle();
+  bool is_switch() const;
+  void run_switch();
+  void check_function(int tenths, int column) const;
   void check_words() const;
   void check_modes_of_motion() const;
 
@@ -119,6 +125,7 @@ class FanucMachine {
   MachineAction action(ActionKind kind) const;
   void move_to(MachineAction action);
   double target(int axis, const FanucWord& word);
+  double within_a_turn(int axis, double machine, double offset, int column) const;
   void set_target(MachineAction& out);
   void set_arc(MachineAction& out) const;
   void set_action_feed(MachineAction& out) const;

@@ -30,7 +30,8 @@ constexpr std::array kCodes = {
     KnownCode{300, Group::one_shot},     KnownCode{400, Group::cutter},
     KnownCode{430, Group::length},       KnownCode{440, Group::length},
     KnownCode{490, Group::length},       KnownCode{500, Group::scaling},
-    KnownCode{501, Group::mirror},       KnownCode{530, Group::one_shot},
+    KnownCode{501, Group::mirror},       KnownCode{520, Group::one_shot},
+    KnownCode{530, Group::one_shot},     KnownCode{921, Group::one_shot},
     KnownCode{540, Group::work_system},  KnownCode{550, Group::work_system},
     KnownCode{560, Group::work_system},  KnownCode{570, Group::work_system},
     KnownCode{580, Group::work_system},  KnownCode{590, Group::work_system},
@@ -62,12 +63,53 @@ void FanucMachine::read_codes() {
     if (found == kCodes.end()) {
       fail(one.column, fmt::format("G{:g} is not read here", one.value()));
     }
+    check_function(found->tenths, one.column);
     Code& place = codes_[static_cast<std::size_t>(found->group)];
     if (place.tenths >= 0) {
       fail(one.column, fmt::format("{} and {} of one group in a block", code_text(place.tenths),
                                    code_text(found->tenths)));
     }
     place = {found->tenths, one.column};
+  }
+}
+
+void FanucMachine::check_function(int tenths, int column) const {
+  const std::pair<int, bool> optional[] = {{150, settings_.has_polar},
+                                           {500, settings_.has_scaling},
+                                           {501, settings_.has_mirror},
+                                           {921, settings_.has_preset},
+                                           {970, settings_.has_surface_speed}};
+  for (const auto& [code, is_there] : optional) {
+    if (code != tenths || is_there) continue;
+    fail(column, fmt::format("{} is an alarm on a control without its function", code_text(code)));
+  }
+}
+
+// Codes whose axis words move nothing.
+bool FanucMachine::is_switch() const {
+  const int one_shot = code(Group::one_shot);
+  return has(Group::mirror) || has(Group::contour) || one_shot == 520 || one_shot == 921;
+}
+
+// G50.1 ends the mirror image of the axes named, G52 of 0 their local coordinates in all of G54 ...
+// G59, G92.1 of 0 their shift by G92 (M).
+void FanucMachine::run_switch() {
+  if (block_->words.front().letter != 'G') fail("G5.1, G50.1, G52 and G92.1 begin their block");
+  if (has(Group::contour)) return;
+  const int one_shot = code(Group::one_shot);
+  if (one_shot == 921 && length_.mode == FanucLength::Mode::on) {
+    fail("G92.1 while a tool length is in force cancels it");
+  }
+  auto& is_off = has(Group::mirror) ? modes_.is_mirror_off
+                 : one_shot == 520  ? modes_.is_local_off
+                                    : modes_.is_shift_off;
+  for (const Axis axis : kAllAxes) {
+    const FanucWord* one = word(letter(axis));
+    if (one == nullptr) continue;
+    if (one->mantissa != 0 && !has(Group::mirror)) {
+      fail(one->column, fmt::format("G52 and G92.1 with another value than 0 are not read"));
+    }
+    is_off[static_cast<std::size_t>(index_of(axis))] = true;
   }
 }
 
@@ -145,6 +187,7 @@ void FanucMachine::set_cancels() {
   if (has(Group::scaling)) modes_.is_scaling_off = true;
   if (has(Group::rotation)) modes_.is_rotation_off = true;
   if (has(Group::polar)) modes_.is_polar_off = true;
+  if (has(Group::spindle_mode)) modes_.is_surface_speed_off = true;
 }
 
 // F without a point counts whole mm/min; its increments in other modes are not read.
@@ -167,6 +210,9 @@ void FanucMachine::set_spindle() {
   if (S == nullptr) return;
   if (!S->is_integer()) fail(S->column, "S takes an integer");
   if (S->mantissa < 0) fail(S->column, "S must not be negative");
+  if (!modes_.is_surface_speed_off) {
+    fail(S->column, "S while G97 is not known to be in force: under G96 it is a cutting speed");
+  }
   speed_ = S->value() * rpm;
   const bool switches = M_.tenths >= 3 && M_.tenths <= 5;
   if (!switches && direction_) {
@@ -231,6 +277,9 @@ void FanucMachine::set_length() {
     return change_length(FanucLength::Mode::off, 1.0, 0, at);
   }
   if (H == nullptr) fail(at, "G43 without H");
+  if (settings_.TLB && modes_.normal_axis != 2) {
+    fail(at, "G43 outside G17: where No. 5001#1 (TLB) is 1 the length is of another axis than Z");
+  }
   const double sign = (code(Group::length) == 430 ? 1.0 : -1.0) * rules_.G43_sign;
   change_length(FanucLength::Mode::on, sign, integer('H', 999), at);
 }

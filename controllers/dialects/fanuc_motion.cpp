@@ -34,6 +34,12 @@ void FanucMachine::check_modes_of_motion() const {
   need(modes_.is_scaling_off, "G50");
   need(modes_.is_rotation_off, "G69");
   need(modes_.is_polar_off, "G15");
+  for (const Axis axis : kAllAxes) {
+    if (!is_linear(axis) && word(letter(axis)) == nullptr) continue;
+    if (modes_.is_mirror_off[static_cast<std::size_t>(index_of(axis))]) continue;
+    fail(fmt::format("moves while G51.1 may mirror {}; G50.1 {}0. ends it", letter(axis),
+                     letter(axis)));
+  }
 }
 
 double FanucMachine::required(int axis, int column, const char* reason) const {
@@ -82,7 +88,8 @@ void FanucMachine::run_machine_position() {
     if (one == nullptr) continue;
     const auto i = static_cast<std::size_t>(index_of(axis));
     out.is_commanded[i] = true;
-    out.end[i] = dimension(*one, is_linear(axis));
+    const double value = dimension(*one, is_linear(axis));
+    out.end[i] = is_linear(axis) ? value : within_a_turn(index_of(axis), value, 0.0, one->column);
     if (rules_.G53_ignores_work_offset) continue;
     *out.end[i] += (*setup_.work_offset[0])[index_of(axis)];
   }
@@ -134,7 +141,36 @@ double FanucMachine::target(int axis, const FanucWord& word) {
   if (!offset) {
     fail(word.column, fmt::format("the place of G{} is not known", 53 + *modes_.work_system));
   }
+  const auto k = static_cast<std::size_t>(axis);
+  const std::pair<bool, int> shifts[] = {{modes_.is_local_off[k], 52},
+                                         {modes_.is_shift_off[k], 92}};
+  for (const auto& [is_off, code] : shifts) {
+    if (is_off) continue;
+    fail(word.column,
+         fmt::format("moves {} while a shift by G{} may be in force", word.letter, code));
+  }
+  if (!is_linear) return within_a_turn(axis, (*offset)[axis] + value, (*offset)[axis], word.column);
   return (*offset)[axis] + value + (axis == 2 ? acting_length(word.column) : 0.0);
+}
+
+// Where an absolute position of a rotary axis leads that rolls over: to the same angle by the
+// shorter way (B-63534EN/02 p. 531). From an unknown position the count of turns begins there.
+double FanucMachine::within_a_turn(int axis, double machine, double offset, int column) const {
+  constexpr double kTurn = 360.0 * deg;
+  const auto& before = position_[static_cast<std::size_t>(axis)];
+  if (!settings_.rolls_over[static_cast<std::size_t>(axis - kLinearJoints)] || !before) {
+    return machine;
+  }
+  if (!rules_.rolls_over_by_shorter_way) {
+    return *before + machine - offset - std::fmod(*before - offset, kTurn);
+  }
+  const double way = std::remainder(machine - *before, kTurn);
+  if (std::abs(std::abs(way) - 0.5 * kTurn) < 1e-9) {
+    fail(column, fmt::format("moves {} by half a turn: which way is not determined where No. "
+                             "1008#0 (ROA) is 1",
+                             "XYZABC"[axis]));
+  }
+  return *before + way;
 }
 
 void FanucMachine::set_target(MachineAction& out) {
@@ -152,6 +188,11 @@ void FanucMachine::set_target(MachineAction& out) {
 
 void FanucMachine::run_motion() {
   check_modes_of_motion();
+  if (settings_.TLB && length_.mode == FanucLength::Mode::on && modes_.normal_axis != 2) {
+    fail(
+        "moves outside G17 with a tool length: whether it follows the plane where No. 5001#1 (TLB) "
+        "is 1 was not found in a manual");
+  }
   const int motion = *modes_.motion;
   MachineAction out = action(motion == 0   ? ActionKind::rapid
                              : motion == 1 ? ActionKind::feed

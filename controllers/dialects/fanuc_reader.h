@@ -7,11 +7,12 @@
 /// of them. "M" marks rules that were not found in a manual.
 ///
 /// Read: % O N / ( ); G0 G1 G2 G3 with I J K, G4, G5.1, G9, G15, G17 G18 G19, G20 G21, G28, G30,
-/// G40, G43 G44 G49, G50, G50.1, G53, G54 ... G59, G61 G64, G69, G80, G90 G91, G93 G94 G95, G97,
-/// G98 G99; F S T H; M0 ... M9 and M30. Refused: what needs cycles, macros, cutter compensation,
-/// rotation, scaling, G52 or G92.
+/// G40, G43 G44 G49, G50, G50.1, G52 of 0, G53, G54 ... G59, G61 G64, G69, G80, G90 G91, G92.1,
+/// G93 G94 G95, G97, G98 G99; F S T H; M0 ... M9 and M30. Refused: what needs cycles, macros,
+/// cutter compensation, rotation, scaling, mirror images, shifts by G52 or G92.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,13 +27,25 @@ struct FanucSettings {
   bool TOS = false;      // No. 5006#6: length by shift of coordinates, not by motion of Z (M)
   bool LRP = false;      // No. 1401#1: G0 along a line (B-63844EN/02 p. 48)
   bool is_IS_C = false;  // increment of 0.1 um and 0.0001 deg, not 1 um and 0.001 deg
+  bool TLB = false;  // No. 5001#1: length along the normal of the plane (B-63943EN-1/02 p. 1654)
+  /// No. 1008#0 (ROA) of A, B, C: absolute positions within one turn, reached by the shorter way
+  /// (#1, RAB, and #3, RAA, 0; B-63534EN/02 p. 531).
+  std::array<bool, 3> rolls_over{};
+  // Functions that the control has. What it has may be in force when the program starts; the code
+  // that ends it is an alarm on a control without.
+  bool has_polar = true;          // G15, G16
+  bool has_scaling = true;        // G50, G51
+  bool has_mirror = true;         // G50.1, G51.1
+  bool has_surface_speed = true;  // G96, G97
+  bool has_preset = true;         // G92 with G92.1
 };
 
 /// Name of the settings for messages, such as "EVO=0 TOS=1 LRP=0 IS-B".
 std::string to_string(const FanucSettings& settings);
 
-/// All combinations.
-std::vector<FanucSettings> all_fanuc_settings();
+/// All combinations of the first four, then one with TLB and, where axes may roll over, one in
+/// which they do: these effects do not meet the others.
+std::vector<FanucSettings> all_fanuc_settings(std::array<bool, 3> may_roll_over = {});
 
 /// Rules of the dialect as data, so that tests can prove by wrong ones that each is pinned.
 struct FanucRules {
@@ -53,6 +66,7 @@ struct FanucRules {
   bool G53_ignores_work_offset = true;
   bool G53_is_for_one_block = true;
   bool G28_goes_through_a_point = true;
+  bool rolls_over_by_shorter_way = true;  // B-63534EN/02 p. 531
   bool tool_change_forgets_positions = true;
   bool stop_forgets_positions = true;
   // modes

@@ -54,6 +54,7 @@ Control::Control(const ControlSetup& setup, const HeidenhainSettings& settings,
   state_.is_mirrored = std::array<bool, 3>{};
   state_.rotation = 0.0;
   state_.is_scaled = state_.is_tilted = state_.is_tcp_control = false;
+  state_.is_axis_scaling_off.fill(true);
   state_.is_radius_off = true;
   state_.is_per_revolution = state_.is_shorter_path = state_.is_rotary_feed_in_mm = false;
 }

@@ -23,6 +23,7 @@ struct State {
   std::optional<std::array<bool, 3>> is_mirrored;  // cycle 8
   std::optional<double> rotation;                  // cycle 10; rad
   std::optional<bool> is_scaled;                   // cycle 11
+  std::array<bool, 3> is_axis_scaling_off{};       // cycle 26
   std::optional<bool> is_tilted;                   // cycle 19, PLANE
   std::optional<bool> is_tcp_control;              // M128
   bool has_tilt_angles_zero = false;               // the first of two blocks that end cycle 19
@@ -164,6 +165,7 @@ class Control {
   void mirror(const Words& words);
   void rotate(const Words& words, const Place& place);
   void scale(const Words& words, const Place& place);
+  void scale_axes(const Words& words);
   void tilt(const Words& words);
   void dwell(const Words& words, const Place& place);
   void set_tolerance(int index, const Words& words);

@@ -1,4 +1,4 @@
-// Cycles 7 to 11, 19, 32 and 247, TRANS, PLANE and FUNCTION. The syntax is M.
+// Cycles 7 to 11, 19, 26, 32 and 247, TRANS, PLANE and FUNCTION. The syntax is M.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace servomill::controllers::heidenhain {
 namespace {
 
-constexpr std::array<int, 7> kCycles = {7, 8, 9, 10, 11, 19, 32};
+constexpr std::array<int, 8> kCycles = {7, 8, 9, 10, 11, 19, 26, 32};
 
 struct CycleWord {
   int cycle = 0;
@@ -91,6 +91,7 @@ void Control::continue_cycle(int cycle, int index, const HeidenhainBlock& block)
   if (cycle == 10) return rotate(block.words, block.place);
   if (cycle == 11) return scale(block.words, block.place);
   if (cycle == 19) return tilt(block.words);
+  if (cycle == 26) return scale_axes(block.words);
   set_tolerance(index, block.words);
 }
 
@@ -165,6 +166,25 @@ void Control::scale(const Words& words, const Place& place) {
   state_.is_scaled = false;
 }
 
+// CYCL DEF 26.1 X 1 Y 1: a factor of 1 ends the scaling of the same axis (TNC 620 cycle programming
+// p. 256).
+void Control::scale_axes(const Words& words) {
+  if (words.size() <= 3) fail(place_, "cycle 26 without an axis");
+  for (std::size_t at = 3; at < words.size(); ++at) {
+    const HeidenhainWord& word = words[at];
+    const std::size_t axis = std::string_view("XYZ").find(word.address);
+    if (word.address.size() != 1 || axis == std::string_view::npos) {
+      fail(word.place, fmt::format("cycle 26 with '{}': only X, Y and Z are covered", word.text));
+    }
+    const bool is_split = word.rest.empty() && at + 1 < words.size();
+    const HeidenhainWord& number = is_split ? words[++at] : word;
+    const double factor =
+        heidenhain_number(number, is_split ? number.text : number.rest, {99.999999, 6, true});
+    if (factor != 1.0) fail(number.place, "cycle 26 with a factor other than 1 is not covered");
+    state_.is_axis_scaling_off[axis] = true;
+  }
+}
+
 // Cycle 19 ends with two definitions: all angles 0, then none.
 void Control::tilt(const Words& words) {
   require_tilting(place_, "cycle 19");
@@ -224,10 +244,14 @@ void Control::select_preset(const Words& words, const Place& place) {
   }
   const std::string digits = word.rest.substr(4);
   const double number = heidenhain_number(word, digits, {99999.0, 0, true});
-  if (number < 1.0 || number > 9.0) {
-    fail(word.place, fmt::format("'{}': presets 1 to 9 are covered", word.text));
+  const int index = static_cast<int>(number) - setup_.first_preset;
+  const auto presets = static_cast<int>(setup_.work_offset.size());
+  if (number < 0.0 || index < 0 || index >= presets) {
+    fail(word.place,
+         fmt::format("'{}': presets {} to {} are covered", word.text,
+                     std::max(setup_.first_preset, 0), setup_.first_preset + presets - 1));
   }
-  if (rules_.preset_changes_offset) state_.preset = static_cast<int>(number) - 1;
+  if (rules_.preset_changes_offset) state_.preset = index;
   for (auto& shift : state_.shift) {
     if (shift && *shift != 0.0) shift.reset();
   }

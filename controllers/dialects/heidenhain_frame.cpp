@@ -36,6 +36,11 @@ void Control::require_frame(const Place& place, bool is_machine_position) const 
   if (!s.is_mirrored) fail(place, "cycle 8 may be active from the program before: reset it first");
   if (!s.rotation) fail(place, "cycle 10 may be active from the program before: reset it first");
   if (!s.is_scaled) fail(place, "cycle 11 may be active from the program before: reset it first");
+  for (std::size_t i = 0; i < s.is_axis_scaling_off.size(); ++i) {
+    if (s.is_axis_scaling_off[i]) continue;
+    fail(place, fmt::format("cycle 26 may be active in {} from the program before: reset it first",
+                            "XYZ"[i]));
+  }
   const bool is_changed = is_mirrored(0) || is_mirrored(1) || *s.rotation != 0.0;
   if (is_machine_position && is_changed) {
     fail(place, "M91 while cycle 8 or 10 is active: what it does was not found in a manual");
@@ -59,7 +64,8 @@ double Control::origin(int axis, const Place& place) const {
   const auto i = static_cast<std::size_t>(axis);
   const auto& offset = setup_.work_offset[static_cast<std::size_t>(state_.preset)];
   if (!offset) {
-    fail(place, fmt::format("the work offset of preset {} is unknown", state_.preset + 1));
+    fail(place, fmt::format("the work offset of preset {} is unknown",
+                            setup_.first_preset + state_.preset));
   }
   if (!state_.shift[i]) {
     fail(place, fmt::format("cycle 7 may be active in {} from the program before: reset it first",

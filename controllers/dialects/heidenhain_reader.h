@@ -13,6 +13,7 @@
 /// [155] TNC 155: p. 15 functions at the start and at the end of a block (V)
 /// [306] TNC 306 technical manual: p. 4-99 MP7440, halt at M6 (V)
 /// [640] TNC 640 ISO (34059x-05): p. 170 tool 0, p. 631 formats (V)
+/// [620] TNC 620 cycle programming (340 56x-02): p. 256 end of cycle 26 (V)
 /// Everything else is M: cycles 7 to 11, 19, 32 and 247, PLANE RESET STAY, TRANS DATUM, M140, FT,
 /// FU, F of inch programs in 0.1 inch/min.
 ///

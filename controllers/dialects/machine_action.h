@@ -64,8 +64,10 @@ struct MachineAction {
 
 /// Entries of the operator in the control, and the position at the start as far as it is known.
 struct ControlSetup {
-  /// G54 ... G59.3 (Heidenhain: preset numbers 1 ... 9) in machine coordinates; nullopt: unknown.
+  /// G54 ... G59.3 (Heidenhain: presets from `first_preset` on) in machine coordinates; nullopt:
+  /// unknown.
   std::array<std::optional<AxisWords>, 9> work_offset;
+  int first_preset = 1;                   // Heidenhain: it is active at the start
   std::array<double, 9> work_rotation{};  // about Z; rad
   std::map<int, double> tool_length;      // by number of tool or offset; m. Absent: unknown
   KnownPosition start;                    // machine coordinates; m, rad

@@ -251,9 +251,6 @@ class Reader {
   void forget_after_change() {
     if (!context_.settings.M6_is_macro || !context_.rules.macro_forgets_state) return;
     SiemensState now;
-    now.is_frame_clear = state_.is_frame_clear;
-    now.is_transformation_off = state_.is_transformation_off;
-    now.units = state_.units;
     now.tool = state_.tool;
     now.selected = state_.selected;
     state_ = now;

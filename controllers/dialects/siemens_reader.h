@@ -12,9 +12,9 @@
 ///
 /// A mode that the program has not set is unknown, and so is every position; a block whose meaning
 /// depends on one is refused. After a tool change by a macro (see SiemensSettings) all positions,
-/// the plane, G90, the kind of feed, the work offset, the path mode, D, S and the spindle are
-/// unknown again; units, the programmable frame and the transformation are not: the safe frame of
-/// a program does not restate them. After M0 and M1 the positions are unknown.
+/// the plane, G90, units, the kind of feed, the work offset, the programmable frame, the
+/// transformation, the path mode, D, S and the spindle are unknown again. After M0 and M1 the
+/// positions are unknown. Work offsets include the basic frame, which acts with each of them.
 ///
 /// Assumptions about the machine: a milling machine without a diameter axis (DIAMON is refused),
 /// no transformation unless rotary axes are programmed, geometry axes as the path axes of F

@@ -73,7 +73,7 @@ class Printer {
       line(remark(header.substr(0, end)));
       header.remove_prefix(std::min(end + 1, header.size()));
     }
-    line("G21 G90 G91.1 G94 G17 G40 G80");
+    line("G21 G90 G91.1 G94 G17 G40 G80 G92.1");
   }
 
   void print_move(const Move& move) {

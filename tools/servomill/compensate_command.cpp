@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -105,6 +107,27 @@ std::optional<int> preset_of(const Options& options) {
   throw InputError({"--preset " + text}, "must be a row of the preset table, 0 ... 9999");
 }
 
+// "polar,mirror"
+std::vector<std::string> absent_functions(const Options& options) {
+  std::vector<std::string> out;
+  if (!options.has("without")) return out;
+  std::vector<std::string_view> names;
+  for (const sim::FanucFunction& one : sim::kFanucFunctions) names.push_back(one.name);
+  std::string_view rest = options.get<std::string>("without");
+  while (true) {
+    const std::size_t end = std::min(rest.find(','), rest.size());
+    const std::string_view name = rest.substr(0, end);
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      throw InputError({"--without"},
+                       fmt::format("'{}' is not one of {}{}", name, fmt::join(names, ", "),
+                                   did_you_mean(name, names)));
+    }
+    out.emplace_back(name);
+    if (end == rest.size()) return out;
+    rest.remove_prefix(end + 1);
+  }
+}
+
 std::string text_of(const Options& options, const std::string& name) {
   return options.has(name) ? options.get<std::string>(name) : std::string();
 }
@@ -141,6 +164,7 @@ sim::CompensateRequest request_of(const Options& options) {
   request.retract_Z = retract_option(options);
   request.smoothing = positive_option(options, "smoothing", sim::kLength, "um").value_or(0.0);
   request.preset = preset_of(options);
+  request.without = absent_functions(options);
   request.records = options.has("record");
   return request;
 }
@@ -213,6 +237,12 @@ int compensate_command(const Arguments& arguments) {
   options.add()("preset", text()->value_name("N"),
                 "heidenhain: activates this row of the preset table (cycle 247) as G54; default: "
                 "the active preset is G54");
+  options.add()("without", text()->value_name("polar,mirror"),
+                "fanuc: what the control does not have, so that the code that would end it is left "
+                "out (it is an alarm there): polar (G15), scaling (G50), mirror (G50.1), "
+                "surface-speed (G97), preset (G92.1); and settings that it does not have: rollover "
+                "of rotary axes (No. 1008#0), length-b (No. 5001#1: without it arcs in G18 and G19 "
+                "stay arcs). Default: it may have each");
   add_program_options(options);
   options.add()("work-offset", texts()->value_name("X=10,Y=-5"),
                 "where G54 lies in the machine, mm and deg; G55:X=10,R=30 for another one and with "

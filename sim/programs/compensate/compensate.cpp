@@ -185,6 +185,10 @@ DialectSettings dialect_settings(const CompensateRequest& request,
   settings.program_number = request.program_number;
   settings.resolution = resolution_of(request);
   settings.preset = request.preset;
+  settings.without = request.without;
+  if (!request.without.empty() && request.dialect != Dialect::fanuc) {
+    throw InputError({"--without"}, "names functions of Fanuc controls; it is for --dialect fanuc");
+  }
   for (int system = 1; system <= controllers::kWorkSystems; ++system) {
     settings.work_offset[static_cast<std::size_t>(system - 1)] = place_of(setup, system).offset;
   }
@@ -291,11 +295,12 @@ VerificationReport verify(const CompensateRequest& request, Preparation& prepare
   is_known.fill(!known.depends_on_place);
   for (const int system : known.work_systems) is_known[static_cast<std::size_t>(system - 1)] = true;
   out.control = control_setup(known.setup, is_known, options.is_start_known);
-  if (request.dialect == Dialect::heidenhain && request.preset && *request.preset >= 1 &&
-      *request.preset <= controllers::kWorkSystems) {
+  out.without = request.without;
+  if (request.dialect == Dialect::heidenhain && request.preset) {
     const auto G54 = out.control.work_offset.front();
     out.control.work_offset.fill(std::nullopt);
-    out.control.work_offset[static_cast<std::size_t>(*request.preset - 1)] = G54;
+    out.control.work_offset[1] = G54;  // the first is active at the start
+    out.control.first_preset = *request.preset - 1;
   }
   ComparisonLimits& limits = out.limits;
   limits.tolerance = options.fit.tolerance;

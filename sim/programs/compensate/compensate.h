@@ -30,7 +30,8 @@ struct CompensateRequest {
   double smoothing = 0.0;           // m, tolerance of the control's smoothing; 0: as the control is
   std::optional<double> retract_Z;  // m, machine coordinate; absent: that of the machine's file
   std::optional<int> preset;        // Heidenhain: number of the preset
-  ProgramInputs inputs;             // of the program; `machine` is the one above
+  std::vector<std::string> without;  // Fanuc: names of kFanucFunctions that the control has not
+  ProgramInputs inputs;              // of the program; `machine` is the one above
   std::vector<std::string> work_offsets;  // "X=10,Y=-5" (G54) or "G55:X=10,R=30"; mm, deg
   std::vector<std::string> tool_lengths;  // "1=50": tool 1 is 50 mm long
   std::string start;                      // "X=0,Y=0": machine coordinates; or empty

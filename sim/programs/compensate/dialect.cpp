@@ -28,6 +28,10 @@ std::string plain(std::string_view text, bool is_upper) {
   return out;
 }
 
+bool DialectSettings::lacks(std::string_view function) const {
+  return std::find(without.begin(), without.end(), function) != without.end();
+}
+
 bool DialectMotion::names(Axis axis) const {
   return std::any_of(words.begin(), words.end(),
                      [&](const auto& word) { return word.first == axis; });

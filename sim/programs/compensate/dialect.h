@@ -28,6 +28,22 @@ enum class Dialect : std::uint8_t { linuxcnc, heidenhain, fanuc, siemens };
 inline constexpr std::array<std::string_view, 4> kDialects = {"linuxcnc", "heidenhain", "fanuc",
                                                               "siemens"};
 
+/// Functions and settings that Fanuc controls may have and a control, on the user's word, has not.
+/// By default every mode is ended that may be in force: where its function is missing, the code is
+/// an alarm before anything moves.
+struct FanucFunction {
+  std::string_view name, absent;  // the latter as a clause
+};
+inline constexpr std::array<FanucFunction, 7> kFanucFunctions = {{
+    {"polar", "the control has no polar coordinate command (G16), so that G15 is left out"},
+    {"scaling", "the control has no scaling (G51), so that G50 is left out"},
+    {"mirror", "the control has no mirror image by G51.1, so that G50.1 is left out"},
+    {"surface-speed", "the control has no constant surface speed (G96), so that G97 is left out"},
+    {"preset", "no G92 has shifted the work systems, so that G92.1 is left out"},
+    {"rollover", "rotary axes count beyond 360 deg (No. 1008#0, ROA, is 0)"},
+    {"length-b", "the tool length acts along Z in every plane (No. 5001#1, TLB, is 0)"},
+}};
+
 /// Everything but the moves that a program for another control needs.
 struct DialectSettings {
   Dialect dialect = Dialect::fanuc;
@@ -40,8 +56,11 @@ struct DialectSettings {
   std::array<bool, 3> is_endless{};      // A, B, C: without ends of travel
   std::array<std::optional<double>, 3> rotary_start{};   // A, B, C: rad, machine, where known
   std::vector<Axis> axes = {Axis::X, Axis::Y, Axis::Z};  // of the machine
-  std::optional<int> preset;  // Heidenhain: number in the preset table that is activated
-  double smoothing = 0.0;     // m, tolerance of the control's smoothing; 0: not set
+  std::optional<int> preset;         // Heidenhain: number in the preset table that is activated
+  double smoothing = 0.0;            // m, tolerance of the control's smoothing; 0: not set
+  std::vector<std::string> without;  // names of kFanucFunctions
+
+  bool lacks(std::string_view function) const;
 };
 
 /// An arc in the plane of two linear axes, or a helix. In the units of positions.

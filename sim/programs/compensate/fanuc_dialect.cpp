@@ -1,6 +1,7 @@
 // Fanuc, Series 0i-MB and 30i: Operator's Manuals B-63844EN/02 and B-63944EN.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "controllers/gcode/number_text.h"
@@ -17,7 +18,12 @@ constexpr double kLongestDwell = 99999.999;  // s, B-63844EN/02, dwell
 
 class Fanuc final : public IsoDialect {
  public:
-  using IsoDialect::IsoDialect;
+  Fanuc(const DialectSettings& settings, std::vector<std::string>& lines)
+      : IsoDialect(settings, lines) {
+    for (const FanucFunction& one : kFanucFunctions) {
+      if (settings.lacks(one.name)) assume(std::string(one.absent));
+    }
+  }
 
   // G20 and G21 change origin offsets and compensation: the unit of the program stays (B-63944EN
   // p. 192).
@@ -30,11 +36,17 @@ class Fanuc final : public IsoDialect {
     put(fmt::format("O{:04} ({})", settings_.program_number, plain(settings_.name, true)));
     for (const std::string& line : header) comment(line);
     put(is_inch_ ? "G20" : "G21");  // in a block of its own: B-63944EN p. 192
-    put("G17 G40 G80 G90 G94");
+    const auto put_unless = [&](std::string_view function, std::string line) {
+      if (!settings_.lacks(function)) put(std::move(line));
+    };
+    put("G17 G40 G64 G80 G90 G94");
+    put_unless("surface-speed", "G97");
     put("G69");
-    put("G15");
-    put("G50");
-    put("G50.1 X0. Y0. Z0.");
+    put_unless("polar", "G15");
+    put_unless("scaling", "G50");
+    put_unless("mirror", "G50.1" + zeros());
+    put("G52" + zeros());
+    put_unless("preset", "G92.1" + zeros());
     put(retract_text());
   }
   void put_comment(std::string_view text) override { put(fmt::format("({})", plain(text, true))); }
@@ -47,28 +59,31 @@ class Fanuc final : public IsoDialect {
   }
 
   bool takes_arc(const DialectMotion& motion) const override {
-    if (!motion.arc->is_in_XY()) return false;
-    return !motion.names(Axis::Z) || modes_.length == motion.length;
+    const bool is_in_XY = motion.arc->is_in_XY();
+    if (!is_in_XY && !settings_.lacks("length-b")) return false;
+    return (is_in_XY && !motion.names(Axis::Z)) || modes_.length == motion.length;
   }
   // B-63943EN-1/02 p. 1654: type A acts along Z, type B along one of X, Y and Z. That the length
   // stays on Z when the plane changes after its G43 was found for a control like it only
   // (Milltronics, system information, p. 253).
   std::string_view why_lines() const override {
-    return "the tool length may follow a change of the plane (No. 5001#1, TLB, may be 1)";
+    return "the tool length may follow a change of the plane (No. 5001#1, TLB, may be 1; --without "
+           "length-b)";
   }
 
   void motion(const DialectMotion& motion) override {
     check_positions(motion, kMostPosition);
     assume_ways(motion);
+    check_rotation(motion);
     if (motion.is_place) return place(motion);
     if (modes_.work_system != motion.work_system) work_system(motion.work_system);
-    std::string prefix;
+    std::string prefix = plane_text(motion);
     if (motion.names(Axis::Z)) {
       if (motion.length == 0 && modes_.length != 0) cancel_length(motion);
       // G53, G28 and G30 cancel the length while G43 stays displayed (B-63844EN/02 p. 204); with
       // EVO, No. 5001#6, = 0 only a new G43 H restores it (M)
       if (modes_.length != motion.length) {
-        prefix = fmt::format("G43 H{}", motion.length);
+        add_word(prefix, fmt::format("G43 H{}", motion.length));
         assume(fmt::format("H{} holds the length of tool {}", motion.length, motion.tool));
       }
       modes_.length = motion.length;
@@ -105,7 +120,13 @@ class Fanuc final : public IsoDialect {
     forget_modes();
     modes_.feed_mode = FeedMode::units_per_minute;
     modes_.work_system = system;
-    put(fmt::format("G90 {} G17 G94 G40 G80", system_code(system)));
+    normal_axis_ = 2;
+    rotary_ = {};
+    put(fmt::format("G90 {} G17 G94 G40 G80 G64", system_code(system)));
+  }
+  void stop(int code) override {
+    IsoDialect::stop(code);
+    rotary_ = {};
   }
   // X of G4 counts revolutions under G95 where DWL, No. 3405#1, is 1 (M)
   void dwell(double seconds) override {
@@ -140,13 +161,50 @@ class Fanuc final : public IsoDialect {
     if (motion.is_rapid && motion.names(Axis::X) && motion.names(Axis::Y)) {
       assume("rapids in X and Y meet nothing, also off their line (No. 1401#1, LRP, may be 0)");
     }
-    for (const Axis axis : {Axis::A, Axis::B, Axis::C}) {
-      const auto i = static_cast<std::size_t>(index_of(axis) - kLinearJoints);
-      if (!motion.names(axis) || !settings_.is_endless[i]) continue;
+  }
+
+  // An axis that rolls over goes the shorter way to the same angle (No. 1008#0, ROA, 1 and #1, RAB,
+  // 0: B-63534EN/02 p. 531), one that does not the way of its count: below half a turn that is the
+  // same.
+  void check_rotation(const DialectMotion& motion) {
+    constexpr double kHalfTurn = 180.0;
+    if (settings_.lacks("rollover")) return;
+    for (const auto& [axis, value] : motion.words) {
+      const int i = index_of(axis) - kLinearJoints;
+      if (i < 0 || !settings_.is_endless[static_cast<std::size_t>(i)]) continue;
+      const auto system = static_cast<std::size_t>(std::max(motion.work_system, 1) - 1);
+      const double origin =
+          motion.is_place ? 0.0 : settings_.work_offset[system][index_of(axis)] / deg;
+      std::optional<double>& before = rotary_[static_cast<std::size_t>(i)];
+      const double way = before ? std::abs(origin + value - *before) : 0.0;
+      if (way >= kHalfTurn) {
+        throw Unsayable{fmt::format(
+            "rotates {} by {:g} deg in one block, for which a control whose axes roll over (No. "
+            "1008#0, ROA, is 1) takes the shorter way; divide it, or give --without rollover if "
+            "ROA is 0",
+            letter(axis), way)};
+      }
+      before = origin + value;
       assume(
-          fmt::format("{} counts beyond 360 deg and does not roll over (No. 1008#0, ROA, is 0; M)",
+          fmt::format("{}, if it rolls over (No. 1008#0, ROA), goes the shorter way (#1, RAB, "
+                      "and #3, RAA, are 0)",
                       letter(axis)));
     }
+  }
+
+  // X0. Y0. Z0., and so on for every axis.
+  std::string zeros() const {
+    std::string out;
+    for (const Axis axis : settings_.axes) out += fmt::format(" {}0.", letter(axis));
+    return out;
+  }
+
+  // G17 comes back with the next block that is no arc in another plane.
+  std::string plane_text(const DialectMotion& motion) {
+    const int normal = motion.arc ? motion.arc->path.c : 2;
+    if (normal_axis_ == normal) return {};
+    normal_axis_ = normal;
+    return fmt::format("G{}", 19 - normal);
   }
 
   static bool is_numbered(const std::string& line) {
@@ -195,6 +253,9 @@ class Fanuc final : public IsoDialect {
     return text.find('.') == std::string::npos ? text + "." : text;
   }
   std::string speed(double rpm) const override { return fmt::format("{:.0f}", std::round(rpm)); }
+
+  int normal_axis_ = 2;                          // of the plane in force
+  std::array<std::optional<double>, 3> rotary_;  // deg of the machine, as written last
 };
 
 }  // namespace

@@ -33,9 +33,12 @@ class Heidenhain final : public DialectPrinter {
     }
     for (const char* line :
          {"CYCL DEF 8.0 MIRROR IMAGE", "CYCL DEF 8.1", "CYCL DEF 10.0 ROTATION",
-          "CYCL DEF 10.1 ROT+0", "CYCL DEF 11.0 SCALING", "CYCL DEF 11.1 SCL 1"}) {
+          "CYCL DEF 10.1 ROT+0", "CYCL DEF 11.0 SCALING", "CYCL DEF 11.1 SCL 1",
+          // TNC 620 cycle programming (340 56x-02) p. 256: a factor of 1 for the same axis
+          "CYCL DEF 26.0 AXIS-SPECIFIC SCALING", "CYCL DEF 26.1 X 1 Y 1 Z 1"}) {
       put(line);
     }
+    path_mode(PathMode::continuous, 0.0);
     if (settings_.has_rotary_axes) {
       put("PLANE RESET STAY");
       put("M129");

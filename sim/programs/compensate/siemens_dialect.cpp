@@ -28,9 +28,8 @@ class Siemens final : public IsoDialect {
   void begin(const std::vector<std::string>& header) override {
     comment(settings_.name);
     for (const std::string& line : header) comment(line);
-    put("G17 G40 G90 G94 G710");
-    put("TRANS");  // without words: no programmable frame, whatever ROT, SCALE or MIRROR left
-    if (settings_.has_rotary_axes) put("TRAFOOF");
+    put("G17 G40 G64 G90 G94 G710 COMPOF");
+    put_frames_off();
     put(retract_text());
   }
   void put_comment(std::string_view text) override { put("; " + plain(text, false)); }
@@ -59,6 +58,8 @@ class Siemens final : public IsoDialect {
     check_positions(motion, kMostPosition);
     if (motion.is_place) return place(motion);
     if (modes_.work_system != motion.work_system) work_system(motion.work_system);
+    // Basic frames act with every settable one (6FC5397-0BP10-0BA0, K2)
+    assume("work offsets of the control are given with its basic frame");
     std::string prefix;
     if (motion.names(Axis::Z)) {
       const int wanted = edge(motion);
@@ -92,7 +93,8 @@ class Siemens final : public IsoDialect {
     counts_.fill({});
     modes_.feed_mode = FeedMode::units_per_minute;
     modes_.work_system = system;
-    put(fmt::format("G17 G40 G90 G94 {}", system_code(system)));
+    put(fmt::format("G17 G40 G64 G90 G94 G710 {}", system_code(system)));
+    put_frames_off();
   }
   void stop(int code) override {
     IsoDialect::stop(code);
@@ -115,6 +117,12 @@ class Siemens final : public IsoDialect {
   }
 
  private:
+  // TRANS without words: no programmable frame, whatever ROT, SCALE or MIRROR left
+  void put_frames_off() {
+    put("TRANS");
+    if (settings_.has_rotary_axes) put("TRAFOOF");
+  }
+
   // MD10760 decides if G53 and SUPA drop the length: D0 drops it (W1; ISO Dialects p.
   // 3-42).
   std::string retract_text() const {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "controllers/dialects/fanuc_reader.h"
 #include "controllers/dialects/heidenhain_reader.h"
 #include "controllers/dialects/siemens_reader.h"
@@ -13,11 +15,24 @@ namespace {
 const std::string kFile = "written";
 
 std::vector<Reading> fanuc_readings(const std::string& text, const controllers::ControlSetup& setup,
-                                    double resolution) {
+                                    const ReadingOptions& options) {
+  const auto has = [&](std::string_view function) {
+    return std::find(options.without.begin(), options.without.end(), function) ==
+           options.without.end();
+  };
+  const std::array<bool, 3> no_axis{};
   std::vector<Reading> out;
-  const bool needs_IS_C = resolution < 0.99 * um;
-  for (const controllers::FanucSettings& one : controllers::all_fanuc_settings()) {
-    if (needs_IS_C && !one.is_IS_C) continue;
+  const bool needs_IS_C = options.resolution < 0.99 * um;
+  for (controllers::FanucSettings one :
+       controllers::all_fanuc_settings(has("rollover") ? options.is_endless : no_axis)) {
+    const bool is_of_its_own = one.TLB || one.rolls_over != no_axis;
+    if (needs_IS_C && is_of_its_own) one.is_IS_C = true;
+    if ((needs_IS_C && !one.is_IS_C) || (one.TLB && !has("length-b"))) continue;
+    one.has_polar = has("polar");
+    one.has_scaling = has("scaling");
+    one.has_mirror = has("mirror");
+    one.has_surface_speed = has("surface-speed");
+    one.has_preset = has("preset");
     out.push_back({controllers::to_string(one),
                    [&text, &setup, one] { return read_fanuc(text, kFile, setup, one); }});
   }
@@ -65,11 +80,11 @@ double written_grid(const std::string& text, Dialect dialect, double resolution)
 }
 
 std::vector<Reading> readings_of(const std::string& text, Dialect dialect,
-                                 const controllers::ControlSetup& setup, double resolution,
-                                 bool has_rotary_axes, std::array<bool, 3> is_endless) {
-  if (dialect == Dialect::fanuc) return fanuc_readings(text, setup, resolution);
-  if (dialect == Dialect::siemens) return siemens_readings(text, setup, is_endless);
-  return heidenhain_readings(text, setup, has_rotary_axes);
+                                 const controllers::ControlSetup& setup,
+                                 const ReadingOptions& options) {
+  if (dialect == Dialect::fanuc) return fanuc_readings(text, setup, options);
+  if (dialect == Dialect::siemens) return siemens_readings(text, setup, options.is_endless);
+  return heidenhain_readings(text, setup, options.has_rotary_axes);
 }
 
 }  // namespace servomill::sim

@@ -20,12 +20,17 @@ struct Reading {
 /// resolves 0.001 mm.
 double written_grid(const std::string& text, Dialect dialect, double resolution);
 
+struct ReadingOptions {
+  double resolution = 1e-6;  // m; Fanuc: below 1 um only controls with IS-C come into question
+  bool has_rotary_axes = false;
+  std::array<bool, 3> is_endless{};  // A, B, C: axes that may be modulo axes
+  std::vector<std::string> without;  // names of kFanucFunctions
+};
+
 /// @param text, setup  must outlive the readings
-/// @param resolution   m; Fanuc: below 1 um only controls with IS-C come into question
-/// @param is_endless   A, B, C: axes that may be modulo axes
 /// @pre dialect is not linuxcnc
 std::vector<Reading> readings_of(const std::string& text, Dialect dialect,
-                                 const controllers::ControlSetup& setup, double resolution,
-                                 bool has_rotary_axes, std::array<bool, 3> is_endless);
+                                 const controllers::ControlSetup& setup,
+                                 const ReadingOptions& options);
 
 }  // namespace servomill::sim

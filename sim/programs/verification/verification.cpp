@@ -75,9 +75,12 @@ class Verifier {
     if (request_.dialect == Dialect::linuxcnc) return run_linuxcnc(setup);
     controllers::ControlSetup control = request_.control;
     control.skips_blocks = skips_blocks;
-    const auto readings =
-        readings_of(written_, request_.dialect, control, request_.limits.grid,
-                    request_.layout.has(3) || request_.layout.has(4), request_.is_endless);
+    ReadingOptions options;
+    options.resolution = request_.limits.grid;
+    options.has_rotary_axes = request_.layout.has(3) || request_.layout.has(4);
+    options.is_endless = request_.is_endless;
+    options.without = request_.without;
+    const auto readings = readings_of(written_, request_.dialect, control, options);
     std::vector<std::vector<MachineAction>> done;
     for (const Reading& reading : readings) {
       settings_ = reading.settings;

@@ -24,6 +24,7 @@ struct VerificationRequest {
   Dialect dialect = Dialect::linuxcnc;
   JointLayout layout;
   std::array<bool, 3> is_endless{};  // A, B, C: without ends of travel
+  std::vector<std::string> without;  // names of kFanucFunctions
   AxisFlags6 is_start_known{};
   ComparisonLimits limits;
 };

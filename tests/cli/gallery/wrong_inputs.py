@@ -57,6 +57,7 @@ COMPENSATE = [
     compensated("options of other dialects that are missing or cannot be", CUT, AT_ZERO + " --dialect fanuc",
                 AT_ZERO + " --dialect fanuc --retract Z=0", FOR_FANUC + "345", FOR_FANUC + " --resolution '3 um'",
                 FOR_FANUC + " --split-rapids", AT_ZERO + " --retract 5", AT_ZERO + " --preset -1",
+                FOR_FANUC + " --without mirorr", AT_ZERO + " --dialect siemens --retract Z=0 --without mirror",
                 AT_ZERO + " --tool-length 50", COMPENSATE_IT.replace("out.ngc", "my-part.h") + " --dialect heidenhain"),
     compensated("unknown positions for another control", "G21 G90\nG91 G0 Z5\nM2\n", FOR_FANUC),
     compensated("a feed behind a stop", CUT.replace("G1", "M0\nG1"), FOR_FANUC),

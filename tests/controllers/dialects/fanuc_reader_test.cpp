@@ -23,6 +23,8 @@ ControlSetup setup_of_examples() {
   return setup;
 }
 
+std::vector<FanucSettings> example_settings() { return all_fanuc_settings({true, true, true}); }
+
 bool holds(std::string_view conditions, const FanucSettings& settings) {
   const std::string name = to_string(settings) + " ";
   for (std::size_t from = 0; from < conditions.size();) {
@@ -48,7 +50,7 @@ TEST(FanucReader, ExamplesWorkedOutByHand) {
   int read_examples = 0;
   for (const FanucExample& example : fanuc_examples()) {
     int count = 0;
-    for (const FanucSettings& settings : all_fanuc_settings()) {
+    for (const FanucSettings& settings : example_settings()) {
       if (!holds(example.settings, settings)) continue;
       ++count;
       EXPECT_EQ(read(example, settings), example.actions)
@@ -78,6 +80,7 @@ TEST(FanucReader, EveryWrongRuleFailsAnExample) {
       {"G53 in work coordinates", [](FanucRules& r) { r.G53_ignores_work_offset = false; }},
       {"G53 is modal", [](FanucRules& r) { r.G53_is_for_one_block = false; }},
       {"G28 goes straight home", [](FanucRules& r) { r.G28_goes_through_a_point = false; }},
+      {"always around", [](FanucRules& r) { r.rolls_over_by_shorter_way = false; }},
       {"M6 stays in place", [](FanucRules& r) { r.tool_change_forgets_positions = false; }},
       {"M0 stays in place", [](FanucRules& r) { r.stop_forgets_positions = false; }},
       {"modes at the start", [](FanucRules& r) { r.modes_are_unknown_at_start = false; }},
@@ -98,7 +101,7 @@ TEST(FanucReader, EveryWrongRuleFailsAnExample) {
     change(rules);
     int failing = 0;
     for (const FanucExample& example : fanuc_examples()) {
-      for (const FanucSettings& settings : all_fanuc_settings()) {
+      for (const FanucSettings& settings : example_settings()) {
         if (holds(example.settings, settings)) {
           failing += read(example, settings, rules) != example.actions ? 1 : 0;
         }
@@ -114,15 +117,34 @@ TEST(FanucReader, BlocksBehindASlash) {
   FanucSettings settings;
   settings.LRP = true;
   EXPECT_EQ(text_of(read_fanuc(example.program, "", setup, settings)),
-            "4 rapid X200\n5 rapid X201\n6 rapid X202\n");
+            "6 rapid X200\n7 rapid X201\n8 rapid X202\n");
   setup.skips_blocks = true;
   EXPECT_EQ(text_of(read_fanuc(example.program, "", setup, settings)),
-            "4 rapid X200\n6 rapid X202\n");
+            "6 rapid X200\n8 rapid X202\n");
 }
 
-TEST(FanucReader, SixteenControls) {
-  EXPECT_EQ(all_fanuc_settings().size(), 16U);
-  EXPECT_EQ(to_string(all_fanuc_settings().front()), "EVO=0 TOS=0 LRP=0 IS-B");
+// 16 combinations; the length along the normal of the plane; axes that roll over.
+TEST(FanucReader, SettingsOfControls) {
+  EXPECT_EQ(all_fanuc_settings().size(), 17U);
+  EXPECT_EQ(all_fanuc_settings({false, false, true}).size(), 18U);
+  EXPECT_EQ(to_string(all_fanuc_settings().front()), "EVO=0 TOS=0 LRP=0 TLB=0 IS-B");
+  EXPECT_EQ(to_string(all_fanuc_settings({false, false, true}).back()),
+            "EVO=0 TOS=0 LRP=0 TLB=0 IS-B C ROA=1");
+}
+
+// What a control does not have is not in force, and its code is an alarm.
+TEST(FanucReader, FunctionsThatTheControlDoesNotHave) {
+  FanucSettings bare;
+  bare.LRP = true;
+  bare.has_polar = bare.has_scaling = bare.has_mirror = bare.has_surface_speed = bare.has_preset =
+      false;
+  const auto actions = [&](std::string_view program) { return read({"", "", program, ""}, bare); };
+  const std::string bare_head = "G21\nG17 G40 G80 G90 G94 G69\nG52 X0.\n";
+  EXPECT_EQ(actions(bare_head + "S100 M3\nG54 G0 X0.\n"), "4 spindle +100\n5 rapid X200\n");
+  for (const std::string code : {"G15", "G50", "G50.1", "G92.1", "G97"}) {
+    EXPECT_EQ(actions(code + "\n"),
+              "error: 1:1: " + code + " is an alarm on a control without its function");
+  }
 }
 
 }  // namespace

@@ -67,30 +67,32 @@ std::vector<HeidenhainExample> heidenhain_whole_examples() {
       // Inches; F counts tenths of an inch per minute: F100 is 10 inch/min
       {"inch",
        "BEGIN PGM I INCH\r\nTRANS DATUM RESET\r\nCYCL DEF 8.0\r\nCYCL DEF 8.1\r\nCYCL DEF 10.0\r\n"
-       "CYCL DEF 10.1 ROT 0\r\nCYCL DEF 11.0\r\nCYCL DEF 11.1 SCL1\r\nTOOL CALL 1 Z S100 DL+1\r\n"
+       "CYCL DEF 10.1 ROT 0\r\nCYCL DEF 11.0\r\nCYCL DEF 11.1 SCL1\r\nCYCL DEF 26.0\r\nCYCL DEF "
+       "26.1 X1 Y1.0 Z1\r\nTOOL CALL 1 Z S100 DL+1\r\n"
        "M137\r\n\r\nL X+1 Z+0 R0 F100\r\nL X+1.00001 FU0.01\r\nL M2\r\nEND PGM I INCH\r\n",
-       "9 tool 1\n12 feed X225.4 (Y?) Z-24.6 F254\n13 feed X225.40025 (Y?) (Z-24.6) R0.254\n"
-       "14 end 2\n"},
+       "11 tool 1\n14 feed X225.4 (Y?) Z-24.6 F254\n15 feed X225.40025 (Y?) (Z-24.6) R0.254\n"
+       "16 end 2\n"},
       // The safe frame for five axes: cycles, plane and M128 off, retract, tool, approach
       {"safe frame",
        "0 BEGIN PGM FRAME MM\n1 CYCL DEF 7.0 DATUM SHIFT\n2 CYCL DEF 7.1 X+0\n3 CYCL DEF 7.2 Y+0\n"
        "4 CYCL DEF 7.3 Z+0\n5 CYCL DEF 8.0 MIRROR IMAGE\n6 CYCL DEF 8.1\n7 CYCL DEF 10.0 ROTATION\n"
        "8 CYCL DEF 10.1 ROT+0\n9 CYCL DEF 11.0 SCALING\n10 CYCL DEF 11.1 SCL 1\n"
-       "11 PLANE RESET STAY\n12 L M129\n13 L Z-1 R0 FMAX M91\n14 TOOL CALL 1 Z S1000\n"
-       "15 L X+10 Y+10 R0 FMAX M3\n16 L Z+5 FMAX M8\n17 L Z-1 F200 M137\n18 L X+50\n"
-       "19 L Z-1 R0 FMAX M91 M9\n20 L M5\n21 L M30\n22 END PGM FRAME MM\n",
-       "14 rapid M91 (X?) (Y?) Z-1\n15 tool 1\n16 spindle 1 S1000\n16 rapid X210 Y260 (Z?)\n"
-       "17 coolant 2\n17 rapid (X210) (Y260) Z-45\n18 feed (X210) (Y260) Z-51 F200\n"
-       "19 feed X250 (Y260) (Z-51) F200\n20 rapid M91 (X250) (Y260) Z-1\n20 coolant 0\n"
-       "21 spindle 0 S0\n22 end 30\n",
+       "11 CYCL DEF 26.0 AXIS-SPECIFIC SCALING\n12 CYCL DEF 26.1 X 1 Y 1 Z 1\n"
+       "13 PLANE RESET STAY\n14 L M129\n15 L Z-1 R0 FMAX M91\n16 TOOL CALL 1 Z S1000\n"
+       "17 L X+10 Y+10 R0 FMAX M3\n18 L Z+5 FMAX M8\n19 L Z-1 F200 M137\n20 L X+50\n"
+       "21 L Z-1 R0 FMAX M91 M9\n22 L M5\n23 L M30\n24 END PGM FRAME MM\n",
+       "16 rapid M91 (X?) (Y?) Z-1\n17 tool 1\n18 spindle 1 S1000\n18 rapid X210 Y260 (Z?)\n"
+       "19 coolant 2\n19 rapid (X210) (Y260) Z-45\n20 feed (X210) (Y260) Z-51 F200\n"
+       "21 feed X250 (Y260) (Z-51) F200\n22 rapid M91 (X250) (Y260) Z-1\n22 coolant 0\n"
+       "23 spindle 0 S0\n24 end 30\n",
        tilting},
       // Cycle 19 ends by angles of 0, then by no angle. M
       {"end of cycle 19",
        "BEGIN PGM P MM\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+0 B+0 C+0\nCYCL DEF 19.0\n"
        "CYCL DEF 19.1\nFUNCTION RESET TCPM\nCYCL DEF 8.0\nCYCL DEF 8.1\nCYCL DEF 10.0\n"
-       "CYCL DEF 10.1 ROT+0\nCYCL DEF 11.0\nCYCL DEF 11.1 SCL 1\nL Z+0 R0 FMAX M91\nM30\n"
-       "END PGM P MM",
-       "13 rapid M91 (X?) (Y?) Z0\n14 end 30\n", tilting},
+       "CYCL DEF 10.1 ROT+0\nCYCL DEF 11.0\nCYCL DEF 11.1 SCL 1\n"
+       "CYCL DEF 26.0\nCYCL DEF 26.1 X 1 Z 1 Y 1\nL Z+0 R0 FMAX M91\nM30\nEND PGM P MM",
+       "15 rapid M91 (X?) (Y?) Z0\n16 end 30\n", tilting},
   };
   for (auto& example : all) example.setup = heidenhain_example_setup();
   return all;

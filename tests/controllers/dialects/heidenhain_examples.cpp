@@ -104,6 +104,7 @@ std::string heidenhain_program(const std::string& lines) {
   const std::string frame =
       "BEGIN PGM T MM\nTRANS DATUM RESET\nCYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1\n"
       "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+0\nCYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 1\n"
+      "CYCL DEF 26.0 AXIS-SPECIFIC SCALING\nCYCL DEF 26.1 X 1 Y 1 Z 1\n"
       "TOOL CALL 1 Z S1000\nL M137\nL X+0 Y+0 R0 FMAX\n";
   std::istringstream text(frame + lines + "L M30\nEND PGM T MM\n");
   std::string program;

@@ -26,9 +26,9 @@ struct HeidenhainExample {
 ControlSetup heidenhain_example_setup();
 
 /// A program of these lines, numbered, with a frame that resets all cycles, calls tool 1 with S1000
-/// and goes to X+0 Y+0. The first of these lines is line 12.
+/// and goes to X+0 Y+0. The first of these lines is line 14.
 std::string heidenhain_program(const std::string& lines);
-inline constexpr int kFrameLines = 11;
+inline constexpr int kFrameLines = 13;
 
 /// The actions in the form of HeidenhainExample::actions, lines counted after `frame_lines`; the
 /// actions of the frame and M30 of `heidenhain_program` are left out.

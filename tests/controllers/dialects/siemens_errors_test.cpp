@@ -175,9 +175,10 @@ TEST(SiemensErrors, MotionsThatAreNotDetermined) {
       {
           {"G0 Z1", "3:1: error: Z needs a tool length, and D is not known here"},
           {"G0 Z1 D1", "3:1: error: D1: the tool in the spindle is not known"},
-          {"T1 M6\nG17 G40 G90 G54 G0 Z1 D2",
-           "4:1: error: D2 of tool 1: only the length of D1 is known"},
-          {"T7 M6\nG17 G40 G90 G54 G0 Z1 D1", "4:1: error: D1 of tool 7: its length is not known"},
+          {"T1 M6\nTRANS\nG710 G17 G40 G90 G54 G0 Z1 D2",
+           "5:1: error: D2 of tool 1: only the length of D1 is known"},
+          {"T7 M6\nTRANS\nG710 G17 G40 G90 G54 G0 Z1 D1",
+           "5:1: error: D1 of tool 7: its length is not known"},
           {"G1 X1", "3:1: error: no feed is programmed since G93, G94 or G95"},
           {"G0 X1 I2", "3:1: error: I, J, K, CR and TURN are for G2 and G3; G0 is in force"},
           {"G0 X=IC(1)", "3:4: error: an increment from an unknown position of X"},

@@ -28,7 +28,7 @@ bool is_modulo(const SiemensSettings& s) { return s.is_modulo[2] && !s.G90_is_sh
 bool is_shortest(const SiemensSettings& s) { return s.is_modulo[2] && s.G90_is_shortest; }
 
 // What has to be said again after a tool change.
-#define TOOL_1 "T1 M6\nG17 G40 G90 G94 G54\n"
+#define TOOL_1 "T1 M6\nG17 G40 G90 G94 G710 G54\nTRANS\n"
 
 std::vector<SiemensExample> offsets() {
   return {
@@ -98,40 +98,40 @@ std::vector<SiemensExample> rotary_axes() {
 std::vector<SiemensExample> lengths() {
   return {
       // Z = 10 + 300 + 50, whatever the builder has set.
-      {"TheToolLengthIsAdded", TOOL_1 "G0 Z10 D1", {"3 tool 1", "5 rapid Z360 H1"}},
+      {"TheToolLengthIsAdded", TOOL_1 "G0 Z10 D1", {"3 tool 1", "6 rapid Z360 H1"}},
       // [W1] p. 13: with the first motion of its axis.
       {"DMovesNothingByItself",
        TOOL_1 "G0 Z10 D0\nD1\nX5\nZ10",
-       {"3 tool 1", "5 rapid Z310", "7 rapid X105 (Z310)", "8 rapid (X105) Z360 H1"}},
+       {"3 tool 1", "6 rapid Z310", "8 rapid X105 (Z310)", "9 rapid (X105) Z360 H1"}},
       {"DInTheBlockOfTheMotionActsThere",
        TOOL_1 "G0 Z10 D1\nZ10 D0",
-       {"3 tool 1", "5 rapid Z360 H1", "6 rapid Z310"}},
+       {"3 tool 1", "6 rapid Z360 H1", "7 rapid Z310"}},
       {"AnArcDoesNotTakeANewLength",
        TOOL_1 "G0 X0 Y0 D1\nG2 X10 Y0 Z-1 I5 F60",
-       {"p.mpf:6:1: error: the tool length changes in Z: it acts with G0 or G1 only"}},
+       {"p.mpf:7:1: error: the tool length changes in Z: it acts with G0 or G1 only"}},
       {"AnIncrementAfterANewLengthDependsOnSD42442",
        TOOL_1 "G0 Z10 D0\nD1\nZ=IC(1)",
-       {"p.mpf:7:1: error: an increment of Z after a new work offset or tool length: settings "
+       {"p.mpf:8:1: error: an increment of Z after a new work offset or tool length: settings "
         "decide whether it carries that along"}},
       {"SUPAWithoutTheLength",
        TOOL_1 "G0 Z10 D1\nSUPA Z400\nZ10",
-       {"3 tool 1", "5 rapid Z360 H1", "6 rapid Z400 machine", "7 rapid Z360 H1"},
+       {"3 tool 1", "6 rapid Z360 H1", "7 rapid Z400 machine", "8 rapid Z360 H1"},
        drops_length},
       {"SUPAWithTheLength",
        TOOL_1 "G0 Z10 D1\nSUPA Z400\nZ10",
-       {"3 tool 1", "5 rapid Z360 H1", "6 rapid Z450 machine H1", "7 rapid Z360 H1"},
+       {"3 tool 1", "6 rapid Z360 H1", "7 rapid Z450 machine H1", "8 rapid Z360 H1"},
        keeps_length},
       {"SUPAWithD0MeansTheSameEverywhere",
        TOOL_1 "G0 Z10 D1\nSUPA Z400 D0\nZ10 D1",
-       {"3 tool 1", "5 rapid Z360 H1", "6 rapid Z400 machine", "7 rapid Z360 H1"}},
+       {"3 tool 1", "6 rapid Z360 H1", "7 rapid Z400 machine", "8 rapid Z360 H1"}},
       // [P] p. 750: length 1 along Y in G18, unless SD42940 keeps it in Z.
       {"TheLengthFollowsThePlane",
        TOOL_1 "G18 G0 Y10 Z10 D1",
-       {"3 tool 1", "5 rapid Y260 Z310 ~ H1"},
+       {"3 tool 1", "6 rapid Y260 Z310 ~ H1"},
        follows_plane},
       {"TheLengthStaysInZ",
        TOOL_1 "G18 G0 Y10 Z10 D1",
-       {"3 tool 1", "5 rapid Y210 Z360 ~ H1"},
+       {"3 tool 1", "6 rapid Y210 Z360 ~ H1"},
        stays_in_Z},
       // [W1] p. 13, MD20270.
       {"NoEdgeAfterM6", "T1 M6\nG0 Z10", {"3 tool 1", "4 rapid Z310"}, has_default_D<0>},
@@ -146,21 +146,34 @@ std::vector<SiemensExample> lengths() {
        has_default_D<-1>},
       {"AMacroForgetsD",
        TOOL_1 "G0 Z10",
-       {"p.mpf:5:1: error: Z needs a tool length, and D is not known here"},
+       {"p.mpf:6:1: error: Z needs a tool length, and D is not known here"},
        has_macro},
       {"AMacroForgetsPositions",
        "G0 X10 Y0\n" TOOL_1 "G0 X10",
-       {"3 rapid X110 Y200 ~", "4 tool 1", "6 rapid X110"},
+       {"3 rapid X110 Y200 ~", "4 tool 1", "7 rapid X110"},
        has_macro},
       {"WithoutAMacroPositionsStay",
        "G0 X10 Y0\nT1 M6\nX10",
        {"3 rapid X110 Y200 ~", "4 tool 1 (X110) (Y200)", "5 rapid X110 (Y200)"},
        has_no_macro},
+      {"AMacroMayLeaveAFrame",
+       "T1 M6\nG17 G40 G90 G94 G710 G54\nG0 X0",
+       {"p.mpf:5:1: error: a programmable frame may be active; TRANS in a block of its own clears "
+        "it"},
+       has_macro},
+      {"AMacroMayLeaveATransformation",
+       TOOL_1 "G0 A0",
+       {"p.mpf:6:4: error: A: a transformation may be active; TRAFOOF switches it off"},
+       has_macro},
+      {"AMacroMayLeaveInches",
+       "T1 M6\nG17 G40 G90 G94 G54\nTRANS\nG0 X0",
+       {"p.mpf:6:4: error: inch or metric is not known; G710 or G700 sets it"},
+       has_macro},
       // [W1] p. 33, MD22550.
       {"TPreparesAndM6Changes", "T1\nM8\nM6", {"4 coolant 2", "5 tool 1"}, changes_at_M6},
       {"TChangesTheTool",
-       "T1\nG17 G40 G90 G94 G54\nG0 X0\nM6",
-       {"3 tool 1", "5 rapid X100"},
+       "T1\nG17 G40 G90 G94 G710 G54\nTRANS\nG0 X0\nM6",
+       {"3 tool 1", "6 rapid X100"},
        changes_at_T},
   };
 }
@@ -233,7 +246,7 @@ std::vector<SiemensExample> arcs() {
        {"p.mpf:5:1: error: CIP in a plane that is not that of two axes is not read"}},
       {"CIPDoesNotTakeANewLength",
        TOOL_1 "G0 X0 Y0 Z0 D0\nCIP X10 I1=AC(5) J1=AC(0) K1=AC(5) D1 F60",
-       {"p.mpf:6:1: error: the tool length changes in Z: it acts with G0 or G1 only"},
+       {"p.mpf:7:1: error: the tool length changes in Z: it acts with G0 or G1 only"},
        stays_in_Z},
       {"PointsAreOfCIPOnly",
        "G0 X5 Y0\nG1 X0 I1=AC(0) F60",

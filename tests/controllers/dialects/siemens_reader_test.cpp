@@ -99,19 +99,20 @@ TEST(SiemensReader, EveryWrongRuleIsFoundByAnExample) {
 TEST(SiemensReader, TheSafeFrameMeansTheSameForAllSettings) {
   const SiemensExample frame{
       "",
-      "SUPA G0 Z=-5 D0\nT1 M6\nG17 G40 G90 G94 G54\nS1000 M3\nG0 X10 Y10\nG0 Z5 D1\nM8\n"
+      "SUPA G0 Z=-5 D0\nT1 M6\nG17 G40 G90 G94 G710 G54\nTRANS\nS1000 M3\nG0 X10 Y10\nG0 Z5 "
+      "D1\nM8\n"
       "G1 Z-1 F200\nG1 X50\nM9\nSUPA G0 Z=-5 D0\nM5",
-      {"3 rapid Z-5 machine", "4 tool 1", "6 spindle +1000", "7 rapid X110 Y210 ~",
-       "8 rapid (X110) (Y210) Z355 H1", "9 coolant 2", "10 feed (X110) (Y210) Z349 F200 H1",
-       "11 feed X150 (Y210) (Z349) F200 H1", "12 coolant 0", "13 rapid (X150) (Y210) Z-5 machine",
-       "14 spindle off 0"}};
+      {"3 rapid Z-5 machine", "4 tool 1", "7 spindle +1000", "8 rapid X110 Y210 ~",
+       "9 rapid (X110) (Y210) Z355 H1", "10 coolant 2", "11 feed (X110) (Y210) Z349 F200 H1",
+       "12 feed X150 (Y210) (Z349) F200 H1", "13 coolant 0", "14 rapid (X150) (Y210) Z-5 machine",
+       "15 spindle off 0"}};
   for (const SiemensSettings& settings : siemens_example_settings()) {
     if (!settings.M6_is_macro) continue;
     EXPECT_EQ(siemens_actions(frame, settings), frame.expected);
   }
   SiemensExample known = frame;  // without a macro Z is still known after the change
   known.expected[1] = "4 tool 1 (Z-5)";
-  known.expected[3] = "7 rapid X110 Y210 (Z-5) ~";
+  known.expected[3] = "8 rapid X110 Y210 (Z-5) ~";
   for (const SiemensSettings& settings : siemens_example_settings()) {
     if (settings.M6_is_macro) continue;
     EXPECT_EQ(siemens_actions(known, settings), known.expected);

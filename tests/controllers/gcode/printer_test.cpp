@@ -69,18 +69,19 @@ TEST(Printer, WritesWhatAPersonWouldWrite) {
           "T1 M6\nG43 H1\nS1000 M3\nG64 P0.02\nG0 X1 Y2\nG1 Z-1 F300\nX5\nG2 X7 I1\nG4 P0.5\nM2",
           "p.nc", usual_setup()),
       {.axes = "XYZ"}, "square part\nside 1");
-  EXPECT_EQ(
-      printed.text,
-      "(square part)\n(side 1)\nG21 G90 G91.1 G94 G17 G40 G80\nT1 M6\nS1000\nM3\nG54\nG43 H1\n"
-      "G64 P0.02\nG0 X1 Y2 Z-100\nG1 Z-1 F300\nG1 X5\nG2 X7 I1 J0\nG4 P0.5\nM5\nM30\n");
+  EXPECT_EQ(printed.text,
+            "(square part)\n(side 1)\nG21 G90 G91.1 G94 G17 G40 G80 G92.1\nT1 "
+            "M6\nS1000\nM3\nG54\nG43 H1\n"
+            "G64 P0.02\nG0 X1 Y2 Z-100\nG1 Z-1 F300\nG1 X5\nG2 X7 I1 J0\nG4 P0.5\nM5\nM30\n");
   EXPECT_EQ(printed.move_of_line,
             (std::vector<int>{-1, -1, -1, 0, 1, 2, 3, 3, 3, 3, 4, 5, 6, 7, 8, 9}));
 }
 
 TEST(Printer, DecimalsRoundAndUnchangedWordsAreLeftOut) {
   const auto moves = moves_of("G1 X1.23456 Y-0.00001 F60\nX1.23449");
-  EXPECT_EQ(print_program(moves, {.decimals_mm = 3, .decimals_deg = 3, .axes = "XYZ"}, "").text,
-            "G21 G90 G91.1 G94 G17 G40 G80\nG54\nG49\nG64\nG1 X1.235 Y0 Z0 F60\nG1 X1.234\nM30\n");
+  EXPECT_EQ(
+      print_program(moves, {.decimals_mm = 3, .decimals_deg = 3, .axes = "XYZ"}, "").text,
+      "G21 G90 G91.1 G94 G17 G40 G80 G92.1\nG54\nG49\nG64\nG1 X1.235 Y0 Z0 F60\nG1 X1.234\nM30\n");
 }
 
 TEST(Printer, ShortArcDoesNotBecomeAFullCircle) {

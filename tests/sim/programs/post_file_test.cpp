@@ -97,7 +97,7 @@ TEST(PostFile, HeaderSaysWhatTheNcMustKnow) {
       "(tip within 2.5 um, tool axis within 50 urad of the straight way)\n"
       "(part zero [G55]: X10 Y-20 Z30.5 in the machine, rotary axes at zero)\n"
       "(tool 1: length 110 mm)\n"
-      "G21 G90 G91.1 G94 G17 G40 G80\nT1 M6\nG55\nG43 H1\nG64 P0.00125\nG0 X"))
+      "G21 G90 G91.1 G94 G17 G40 G80 G92.1\nT1 M6\nG55\nG43 H1\nG64 P0.00125\nG0 X"))
       << program.substr(0, 400);
 }
 

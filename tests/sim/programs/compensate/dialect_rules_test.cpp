@@ -19,7 +19,7 @@ TEST(DialectRules, HeightsOfTheTipWaitForTheToolLength) {
   EXPECT_EQ(body(trial),
             "G90 G49 G53 G0 Z-5.\n"
             "T1 M6\n"
-            "G90 G54 G17 G94 G40 G80\n"
+            "G90 G54 G17 G94 G40 G80 G64\n"
             "S1000 M3\n"
             "G0 X10. Y10.\n"
             "G43 H1 Z4.962\n"
@@ -37,14 +37,15 @@ TEST(DialectRules, MovesToWhereAMachineMightBeAreWritten) {
   EXPECT_EQ(body(Dialect::fanuc, home),
             "G90 G49 G53 G0 Z0.\n"
             "T1 M6\n"
-            "G90 G54 G17 G94 G40 G80\n"
+            "G90 G54 G17 G94 G40 G80 G64\n"
             "G0 X0. Y0.\n"
             "G43 H1 Z5.\n");
   EXPECT_EQ(body(Dialect::siemens, home),
             "SUPA G0 Z0 D0\n"
             "T1\n"
             "M6\n"
-            "G17 G40 G90 G94 G54\n"
+            "G17 G40 G64 G90 G94 G710 G54\n"
+            "TRANS\n"
             "G0 X0 Y0\n"
             "D1 Z5\n");
   EXPECT_EQ(body(Dialect::heidenhain, home),
@@ -57,14 +58,14 @@ TEST(DialectRules, MovesToWhereAMachineMightBeAreWritten) {
 TEST(DialectRules, SpindlesStopBeforeTheToolChangeThatStopsThem) {
   EXPECT_EQ(body(Dialect::fanuc, kStart + "G0 X1 Y1 Z5\nG53 G0 Z0\nM5\nT2 M6\nM2\n"),
             "T1 M6\n"
-            "G90 G54 G17 G94 G40 G80\n"
+            "G90 G54 G17 G94 G40 G80 G64\n"
             "S1000 M3\n"
             "G0 X1. Y1.\n"
             "G43 H1 Z5.\n"
             "G90 G49 G53 G0 Z0.\n"
             "M5\n"
             "T2 M6\n"
-            "G90 G54 G17 G94 G40 G80\n");
+            "G90 G54 G17 G94 G40 G80 G64\n");
 }
 
 // #5161 is a place of LinuxCNC's machine: up is all that it can mean on another one.
@@ -72,7 +73,7 @@ TEST(DialectRules, ReturnsToTheReferenceBecomeTheControlsOwnOrTheRetractedHeight
   const std::string home = kStart + "G0 X1 Y1 Z5\nG28 G91 Z0\nG90 G0 X2\nZ5\nM2\n";
   EXPECT_EQ(body(Dialect::fanuc, home),
             "T1 M6\n"
-            "G90 G54 G17 G94 G40 G80\n"
+            "G90 G54 G17 G94 G40 G80 G64\n"
             "S1000 M3\n"
             "G0 X1. Y1.\n"
             "G43 H1 Z5.\n"
@@ -83,7 +84,8 @@ TEST(DialectRules, ReturnsToTheReferenceBecomeTheControlsOwnOrTheRetractedHeight
   EXPECT_EQ(body(Dialect::siemens, home),
             "T1\n"
             "M6\n"
-            "G17 G40 G90 G94 G54\n"
+            "G17 G40 G64 G90 G94 G710 G54\n"
+            "TRANS\n"
             "S1000 M3\n"
             "G0 X1 Y1\n"
             "D1 Z5\n"
@@ -109,7 +111,7 @@ TEST(DialectRules, NothingSurvivesAToolChange) {
       body(Dialect::fanuc, kStart + "G0 X10 Y20 Z5\nM8\nG1 Z-1 F100\nX20\nG0 Z50\nT2 M6\nG43 H2\n"
                                     "S1000 M3\nG0 X20 Y20 Z5\nM8\nG1 Z-1\nM30\n"),
       "T1 M6\n"
-      "G90 G54 G17 G94 G40 G80\n"
+      "G90 G54 G17 G94 G40 G80 G64\n"
       "S1000 M3\n"
       "G0 X10. Y20.\n"
       "G43 H1 Z5.\n"
@@ -119,7 +121,7 @@ TEST(DialectRules, NothingSurvivesAToolChange) {
       "G0 Z50.\n"
       "M5\n"
       "T2 M6\n"
-      "G90 G54 G17 G94 G40 G80\n"
+      "G90 G54 G17 G94 G40 G80 G64\n"
       "S1000 M3\n"
       "M8\n"
       "G0 X20. Y20.\n"
@@ -134,7 +136,8 @@ TEST(DialectRules, RapidsInZAndOtherAxesAreTwo) {
   EXPECT_EQ(body(Dialect::siemens, kStart + "G0 X1 Y1 Z5\nX20 Z10\nX30 Z2\nX40 Z2\nM2\n"),
             "T1\n"
             "M6\n"
-            "G17 G40 G90 G94 G54\n"
+            "G17 G40 G64 G90 G94 G710 G54\n"
+            "TRANS\n"
             "S1000 M3\n"
             "G0 X1 Y1\n"
             "D1 Z5\n"
@@ -152,7 +155,7 @@ TEST(DialectRules, FanucCancelsTheLengthWithG53Only) {
     if (line.find("G49") == std::string::npos) continue;
     EXPECT_NE(line.find("G90 G49 G53 G0 Z-2."), std::string::npos) << line;
   }
-  EXPECT_NE(text.find("G0 X1. Y1.\nN11 G90 G49 G53 G0 Z-2.\nN12 Z60.\n"), std::string::npos)
+  EXPECT_NE(text.find("G0 X1. Y1.\nN14 G90 G49 G53 G0 Z-2.\nN15 Z60.\n"), std::string::npos)
       << text;
   EXPECT_EQ(
       refusal(Dialect::fanuc, kStart + "G0 X1 Y1 Z5\nG1 Z-1 F100\nG49\nG1 X2 Z-2\nM2\n"),
@@ -168,7 +171,7 @@ TEST(DialectRules, FanucProgramsInInchesStayInInches) {
   EXPECT_NE(trial.run().program.find("POSITIONS ROUNDED TO 0.0001 INCH)\n"), std::string::npos);
   EXPECT_EQ(body(trial),
             "T1 M6\n"
-            "G90 G54 G17 G94 G40 G80\n"
+            "G90 G54 G17 G94 G40 G80 G64\n"
             "S1000 M3\n"
             "G0 X1. Y0.5\n"
             "G43 H1 Z0.2\n"
@@ -270,7 +273,8 @@ TEST(DialectRules, ArcsOfSiemensInOtherPlanesGoThroughAPoint) {
 TEST(DialectRules, ArcsInOtherPlanesAreLinesWhereTheLengthMayFollow) {
   EXPECT_EQ(warnings_about_arcs(dialect_trial(Dialect::fanuc, kArcsInAllPlanes)),
             std::vector<std::string>{"arcs in G18 and G19 written as lines: 4; the tool length may "
-                                     "follow a change of the plane (No. 5001#1, TLB, may be 1)"});
+                                     "follow a change of the plane (No. 5001#1, TLB, may be 1; "
+                                     "--without length-b)"});
   EXPECT_EQ(warnings_about_arcs(dialect_trial(Dialect::heidenhain, kArcsInAllPlanes)),
             std::vector<std::string>{"arcs in G18 and G19 written as lines: 4; circles lie in the "
                                      "plane that the tool axis determines (TNC 407 manual p. "
@@ -402,7 +406,9 @@ TEST(DialectRules, EndlessAxesOfSiemensSayTheirWay) {
   EXPECT_EQ(body(trial),
             "T1\n"
             "M6\n"
-            "G17 G40 G90 G94 G54\n"
+            "G17 G40 G64 G90 G94 G710 G54\n"
+            "TRANS\n"
+            "TRAFOOF\n"
             "G0 X1 Y1 B-30 C=AC(350)\n"
             "C=AC(10)\n"
             "C=IC(-50)\n"
@@ -412,6 +418,67 @@ TEST(DialectRules, EndlessAxesOfSiemensSayTheirWay) {
             "C=AC(30)\n"
             "M0\n"
             "C-10\n");
+}
+
+// Below half a turn a control whose axes roll over and one whose axes count go the same way.
+TEST(DialectRules, EndlessAxesOfFanucTurnByLessThanHalfATurn) {
+  const std::string start = "G21 G90 G17 G54\nT1 M6\nG0 X1 Y1 B0 C350\n";
+  Trial trial = dialect_trial(Dialect::fanuc, start + "C500\nM0\nC10\nM2\n");
+  trial.request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml";
+  EXPECT_NE(body(trial).find("C350.\nC500.\nM0\nC10.\n"), std::string::npos) << body(trial);
+  trial.request.program_file = written("plate.ngc", start + "C100\nM2\n");
+  EXPECT_EQ(refusal(trial),
+            "plate.ngc:4: error: rotates C by 250 deg in one block, for which a control whose axes "
+            "roll over (No. 1008#0, ROA, is 1) takes the shorter way; divide it, or give --without "
+            "rollover if ROA is 0; that cannot be expressed for fanuc");
+  trial.request.without = {"rollover"};
+  EXPECT_NE(body(trial).find("C350.\nC100.\n"), std::string::npos) << body(trial);
+}
+
+// G18 and G19 are in force for arcs only.
+TEST(DialectRules, ArcsOfFanucInOtherPlanesAreOnTheUsersWord) {
+  Trial trial = dialect_trial(Dialect::fanuc, kArcsInAllPlanes);
+  trial.request.without = {"length-b"};
+  const std::string text = body(trial);
+  EXPECT_TRUE(text.substr(std::min(text.find("G18"), text.size()))
+                  .starts_with("G18 G3 X0. Z10. I-10. K0.\n"
+                               "G19 G2 Y10. Z0. J0. K-10.\n"
+                               "Y10. Z0. J-10. K0.\n"
+                               "G18 X10. Y11. Z10. I10. K0. F99.977\n"))
+      << text;
+  EXPECT_TRUE(warnings_about_arcs(trial).empty());
+  const std::string all = trial.run().program;
+  EXPECT_NE(all.find("(ASSUMED: THE TOOL LENGTH ACTS ALONG Z IN EVERY PLANE [NO. 5001#1, TLB, IS "
+                     "0])\n"),
+            std::string::npos)
+      << all;
+  trial.request.program_file =
+      written("plate.ngc", kStart + "G0 X10 Y0 Z5\nG1 Z0 F100\nG18 G3 X0 Z10 I-10 K0\nG1 X5\nM2\n");
+  EXPECT_NE(body(trial).find("K0.\nG17 G1 X5.\n"), std::string::npos) << body(trial);
+}
+
+TEST(DialectRules, CodesThatTheControlDoesNotHaveAreLeftOut) {
+  Trial trial = dialect_trial(Dialect::fanuc, kStart + "G0 X1 Y1 Z5\nM2\n");
+  trial.request.without = {"polar", "scaling", "mirror", "surface-speed", "preset"};
+  const std::string text = said(trial);
+  EXPECT_NE(text.find("N1 G21\nN2 G17 G40 G64 G80 G90 G94\nN3 G69\nN4 G52 X0. Y0. Z0.\nN5 G90 G49 "
+                      "G53 G0 Z-2.\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(trial.run().program.find("(ASSUMED: NO G92 HAS SHIFTED THE WORK SYSTEMS, SO THAT G92.1 "
+                                     "IS LEFT OUT)\n"),
+            std::string::npos);
+  trial.request.dialect = Dialect::siemens;
+  EXPECT_THROW(trial.run(), InputError);
+}
+
+// Any row of the preset table, verified.
+TEST(DialectRules, PresetsOfAnyNumberAreVerified) {
+  for (const int preset : {0, 1, 10, 9999}) {
+    Trial trial = dialect_trial(Dialect::heidenhain, kStart + "G0 X1 Y1 Z5\nM2\n");
+    trial.request.preset = preset;
+    EXPECT_NE(said(trial).find(fmt::format("Q339=+{} ;", preset)), std::string::npos);
+  }
 }
 
 // A circle of short lines: smoothed by more it takes less time, and leaves the path by as much.
@@ -465,7 +532,7 @@ TEST(DialectRules, RetractsFromTheirOwnHeightAreWrittenAndVerified) {
 TEST(DialectRules, OffsetsThatTheProgramChangesAreInTheNumbers) {
   EXPECT_EQ(body(Dialect::fanuc, kStart + "G0 X1 Y1\nZ5\n#5221=210\nG56 X0\nG54 X2\nM2\n"),
             "T1 M6\n"
-            "G90 G54 G17 G94 G40 G80\n"
+            "G90 G54 G17 G94 G40 G80 G64\n"
             "S1000 M3\n"
             "G0 X1. Y1.\n"
             "G43 H1 Z5.\n"

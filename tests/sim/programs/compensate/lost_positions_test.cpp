@@ -52,9 +52,9 @@ TEST(LostPositions, RotaryAxesAreRestatedFirst) {
                               "G21 G90 G17 G54\nT1 M6\nG43 H1\nG0 A20 C30\nX1 Y2\nZ20\nT2 M6\n"
                               "G43 H2 G0 Z20\nA0 C0\nM2\n");
   trial.request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/generic_trunnion_ac.toml";
-  EXPECT_TRUE(
-      body(trial).ends_with("T2 M6\nG90 G54 G17 G94 G40 G80\nG0 A20. C30.\nX1. Y2.\nG43 H2 Z20.\n"
-                            "A0. C0.\n"))
+  EXPECT_TRUE(body(trial).ends_with(
+      "T2 M6\nG90 G54 G17 G94 G40 G80 G64\nG0 A20. C30.\nX1. Y2.\nG43 H2 Z20.\n"
+      "A0. C0.\n"))
       << body(trial);
 }
 

@@ -117,7 +117,7 @@ std::vector<Effect> effects_of(const std::string& text, Dialect dialect,
                                const controllers::ControlSetup& setup) {
   std::vector<Effect> out;
   try {
-    for (const Reading& reading : readings_of(text, dialect, setup, 1e-6, false, {})) {
+    for (const Reading& reading : readings_of(text, dialect, setup, {})) {
       Observer observer;
       for (const MachineAction& one : reading.read()) observer.see(one);
       out.push_back(observer.take());

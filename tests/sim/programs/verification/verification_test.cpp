@@ -57,22 +57,23 @@ TEST(Verification, TakesWhatIsWritten) {
   }
   const Compensated done = compensate(request_for(Dialect::fanuc));
   EXPECT_NE(std::find(done.report.begin(), done.report.end(),
-                      "verified: 8 blocks, largest difference 0.00 um, for 16 control settings"),
+                      "verified: 8 blocks, largest difference 0.00 um, for 17 control settings"),
             done.report.end());
 }
 
 TEST(Verification, ShowsBothLines) {
   EXPECT_EQ(refusal(Dialect::fanuc, "X50.", "X51."),
             "plate.ngc:9: error: the program written for fanuc would do something else than "
-            "\"G1 X50\": goes beyond X250 Y260 Z-51, where the original ends (its line 24, "
-            "\"N15 X51.\"; EVO=0 TOS=0 LRP=0 IS-B)");
-  EXPECT_EQ(refusal(Dialect::fanuc, "G43 H1 Z5.", "Z5."),
-            "plate.ngc: error: the program written for fanuc cannot be verified (EVO=0 TOS=0 LRP=0 "
-            "IS-B): its line 21, \"N12 Z5.\": Z while none of G43, G44 and G49 is known to be in "
-            "force");
+            "\"G1 X50\": goes beyond X250 Y260 Z-51, where the original ends (its line 27, "
+            "\"N18 X51.\"; EVO=0 TOS=0 LRP=0 TLB=0 IS-B)");
+  EXPECT_EQ(
+      refusal(Dialect::fanuc, "G43 H1 Z5.", "Z5."),
+      "plate.ngc: error: the program written for fanuc cannot be verified (EVO=0 TOS=0 LRP=0 TLB=0 "
+      "IS-B): its line 24, \"N15 Z5.\": Z while none of G43, G44 and G49 is known to be in "
+      "force");
   EXPECT_EQ(refusal(Dialect::siemens, "M8", "M9"),
             "plate.ngc:8: error: the program written for siemens would do something else than "
-            "\"G1 Z-1 F200\": coolant must be on, and is off (its line 18, \"N110 G1 Z-1 F200\"; "
+            "\"G1 Z-1 F200\": coolant must be on, and is off (its line 20, \"N120 G1 Z-1 F200\"; "
             "MD20270=1 MD10760=1 MD22550=1 SD42940=0 M6 a macro)");
 }
 
