@@ -7,27 +7,30 @@
 namespace servomill::strategies {
 namespace {
 
-constexpr std::array<ParameterSpec, 1> kSpecs = {{
-    {.name = "max_um",
-     .help = "saturation of the setpoint offset of an axis",
-     .unit = "um",
-     .default_text = "500",
-     .min = 0.0,
-     .shortcoming = Shortcoming::saturation,
-     .ideal = "1e9"},
-}};
+const std::array<ParameterSpec, 2>& specs() {
+  static const std::array<ParameterSpec, 2> kSpecs = {{
+      {.name = "max_um",
+       .help = "saturation of the setpoint offset of an axis",
+       .unit = "um",
+       .default_text = "500",
+       .min = 0.0,
+       .shortcoming = Shortcoming::saturation,
+       .ideal = "1e9"},
+      kIterationsSpec,  // shared by all strategies that evaluate errors at a displaced position
+  }};
+  return kSpecs;
+}
 
 // State of one run: none. The offset depends on the setpoint alone.
 class LimitedOffset final : public SetPointPart {
  public:
-  LimitedOffset(const Belief& identified, Sign sign, double max)
-      : identified_(identified), sign_(sign), max_(max) {}
+  LimitedOffset(const Belief& identified, Sign sign, Iterations iterations, double max)
+      : identified_(identified), sign_(sign), iterations_(iterations), max_(max) {}
 
   SetPointEntry entry() const override { return {}; }  // after the feed-forward tap, no lag
 
   Joints offset(const Joints& Q_ref) const override {
-    const Eigen::Vector3d d =
-        set_point_displacement(identified_, sign_, Iterations::converged, Q_ref);
+    const Eigen::Vector3d d = set_point_displacement(identified_, sign_, iterations_, Q_ref);
     Joints out = Joints::Zero();
     out.head<3>() = d.cwiseMax(-max_).cwiseMin(max_);
     return out;
@@ -36,34 +39,36 @@ class LimitedOffset final : public SetPointPart {
  private:
   Belief identified_;
   Sign sign_;
+  Iterations iterations_;
   double max_;  // m
 };
 
 // Constant parameters, shared by all runs of the case.
 class Setpoint final : public Strategy {
  public:
-  Setpoint(const Belief& identified, Sign sign, double max)
-      : identified_(identified), sign_(sign), max_(max) {}
+  Setpoint(const Belief& identified, Sign sign, Iterations iterations, double max)
+      : identified_(identified), sign_(sign), iterations_(iterations), max_(max) {}
 
   std::unique_ptr<SetPointPart> set_point() const override {
-    return std::make_unique<LimitedOffset>(identified_, sign_, max_);
+    return std::make_unique<LimitedOffset>(identified_, sign_, iterations_, max_);
   }
 
  private:
   Belief identified_;
   Sign sign_;
+  Iterations iterations_;
   double max_;  // m
 };
 
 // Numbers arrive in SI, checked against the table above.
 std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& identified) {
-  return std::make_unique<Setpoint>(identified, sign, p.number("max_um"));
+  return std::make_unique<Setpoint>(identified, sign, iterations_of(p), p.number("max_um"));
 }
 
 }  // namespace
 
 Entry setpoint_entry() {
-  return {"setpoint", "offsets the setpoint, without lag and within a limit", kSpecs, make};
+  return {"setpoint", "offsets the setpoint, without lag and within a limit", specs(), make};
 }
 
 }  // namespace servomill::strategies

@@ -12,6 +12,7 @@ Acting with_limit(double max, Sign sign, const Belief& identified) {
   const Entry entry = setpoint_entry();
   Parameters parameters = default_parameters(entry);
   parameters.set("max_um", max);
+  parameters.set("iterations", std::string_view("converged"));
   return make_acting(entry, parameters, sign, identified);
 }
 
