@@ -94,8 +94,8 @@ struct HeidenhainBlocks::Line {
   bool has_comment = false;
 };
 
-HeidenhainBlocks::HeidenhainBlocks(std::string_view text, std::string file)
-    : rest_(text), file_(std::move(file)) {}
+HeidenhainBlocks::HeidenhainBlocks(std::string_view text, std::string file, int first_line)
+    : rest_(text), file_(std::move(file)), line_(first_line) {}
 
 // A '~' continues a block also after a comment: the control writes names of parameters as comments.
 HeidenhainBlocks::Line HeidenhainBlocks::take_line() {

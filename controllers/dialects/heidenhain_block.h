@@ -30,13 +30,16 @@ struct HeidenhainBlock {
 /// no words.
 class HeidenhainBlocks {
  public:
-  /// @param text  must outlive this
-  HeidenhainBlocks(std::string_view text, std::string file);
+  /// @param text        must outlive this
+  /// @param first_line  number of the line before it
+  HeidenhainBlocks(std::string_view text, std::string file, int first_line = 0);
   /// The next block, nullopt at the end.
   /// @throws InputError for a control character, for a continuation without a next line
   std::optional<HeidenhainBlock> next();
   /// Line handed out last, from 1.
   int line() const { return line_; }
+  /// What has not been handed out.
+  std::string_view rest() const { return rest_; }
 
  private:
   struct Line;

@@ -3,13 +3,18 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
+#include "controllers/conversational/conversational.h"
 #include "controllers/gcode/parser.h"
 #include "plant/vocabulary/input_error.h"
 
 namespace servomill::controllers {
 
 std::set<std::string> called_subroutines(ProgramText text) {
+  if (conversational::is_conversational(text, Reader::any)) {
+    return conversational::called_programs(std::move(text));
+  }
   std::set<std::string> names;
   Parser parser;
   Block block;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "controllers/conversational/conversational.h"
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/line_reader.h"
 #include "controllers/gcode/program_text.h"
@@ -60,7 +61,8 @@ std::vector<Fault> syntax_faults(ProgramText& text, const ProgramSetup& setup) {
 
 std::vector<Fault> check_program(ProgramText text, ProgramSetup setup,
                                  std::vector<Fault>* warnings) {
-  std::vector<Fault> faults = syntax_faults(text, setup);
+  std::vector<Fault> faults;
+  if (!conversational::is_conversational(text, setup.reader)) faults = syntax_faults(text, setup);
   const std::string file = text.file();
   try {
     Interpreter interpreter(std::move(text), std::move(setup));

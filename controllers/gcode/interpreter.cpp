@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "controllers/conversational/conversational.h"
 #include "controllers/gcode/interpreter_machine.h"
 #include "controllers/gcode/message_text.h"
 #include "plant/vocabulary/arc_sweep.h"
@@ -105,7 +106,10 @@ void Interpreter::Machine::store_setup_offset(int system) {
 bool Interpreter::Machine::read_block() {
   here_ = {text_, text().mark()};
   block_.clear();
-  if (!text().next(line_)) return end_of_text(), true;
+  const bool is_there = text().next(line_);
+  for (Fault& one : text().take_warnings()) warnings_.push_back(std::move(one));
+  if (!is_there) return end_of_text(), true;
+  if (text().is_generated()) return read_generated_line(), true;
   if (is_blank(line_)) return true;
   if (flow_.jumps > 0) ++flow_.lines;
   try {
@@ -117,6 +121,20 @@ bool Interpreter::Machine::read_block() {
     throw InputError({fault});
   }
   return true;
+}
+
+// A line that another language's block became: faults are at that block, and show the line.
+void Interpreter::Machine::read_generated_line() {
+  const std::size_t before = warnings_.size();
+  try {
+    read_executed_line();
+  } catch (const InputError& error) {
+    throw InputError({file(), line(), text().column()},
+                     fmt::format("read as \"{}\": {}", line_, error.faults().front().message));
+  }
+  for (std::size_t i = before; i < warnings_.size(); ++i) {
+    warnings_[i].place.column = text().column();
+  }
 }
 
 void Interpreter::Machine::read_executed_line() {
@@ -274,8 +292,9 @@ std::optional<ExecutedBlock> Interpreter::Machine::next_block() {
   out.text = line_;
   out.moves = out_;
   out.file = &texts_[read_from].lines.file();
-  out.line = here_.mark.line + 1;
-  out.is_repeated = out.line <= texts_[read_from].last_line;
+  const bool is_generated = texts_[read_from].lines.is_generated();  // many lines of one block
+  out.line = is_generated ? texts_[read_from].lines.number() : here_.mark.line + 1;
+  out.is_repeated = out.line + (is_generated ? 1 : 0) <= texts_[read_from].last_line;
   texts_[read_from].last_line = std::max(texts_[read_from].last_line, out.line);
   out.state = &state_;
   if (block_.pieces.empty()) return out;
@@ -615,8 +634,12 @@ void Interpreter::Machine::stop() {
 
 // ------------------------------------------------------------------------------------- public API
 
-Interpreter::Interpreter(ProgramText text, ProgramSetup setup)
-    : machine_(std::make_unique<Machine>(std::move(text), std::move(setup))) {}
+Interpreter::Interpreter(ProgramText text, ProgramSetup setup) {
+  if (conversational::is_conversational(text, setup.reader)) {
+    text = conversational::as_gcode(std::move(text), setup);
+  }
+  machine_ = std::make_unique<Machine>(std::move(text), std::move(setup));
+}
 Interpreter::Interpreter(std::string text, std::string file, ProgramSetup setup)
     : Interpreter(ProgramText::of_text(std::move(text), std::move(file)), std::move(setup)) {}
 Interpreter::~Interpreter() = default;

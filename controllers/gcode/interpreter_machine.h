@@ -143,6 +143,7 @@ class Interpreter::Machine {
   // ---- reading
   bool read_block();
   void read_executed_line();
+  void read_generated_line();
   void read_skipped_line();
   bool may_end_skipping(const OWord& o) const;
   void saw_percent();

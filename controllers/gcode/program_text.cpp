@@ -51,6 +51,14 @@ ProgramText ProgramText::of_file(const std::string& path) {
   return out;
 }
 
+ProgramText ProgramText::of_source(std::unique_ptr<LineSource> source, std::string file) {
+  ProgramText out;
+  out.file_ = std::move(file);
+  out.source_ = std::move(source);
+  out.at_end_ = true;
+  return out;
+}
+
 void ProgramText::fail() const {
   throw InputError({file_, number_, 0}, fmt::format("cannot be read: {}", std::strerror(errno)));
 }
@@ -71,6 +79,15 @@ bool ProgramText::refill() {
 
 bool ProgramText::next(std::string_view& line) {
   throw_if_interrupted();
+  if (source_) {
+    Place place;
+    if (!source_->next(long_line_, place)) return false;
+    file_ = std::move(place.file);
+    number_ = place.line;
+    column_ = place.column;
+    line = long_line_;
+    return true;
+  }
   if (wanted_) seek(*std::exchange(wanted_, std::nullopt));
   const auto line_end = [&] {
     const void* found = std::memchr(buffer_.data() + at_, '\n', buffer_.size() - at_);

@@ -6,8 +6,23 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "plant/vocabulary/input_error.h"
 
 namespace servomill::controllers {
+
+/// Writes the lines of a program in another language as lines in G-code.
+class LineSource {
+ public:
+  virtual ~LineSource() = default;
+  /// @param line, place  set to the next line, and to the block that it comes from
+  /// @return false behind the end of the program
+  /// @throws InputError at a block with an error
+  virtual bool next(std::string& line, Place& place) = 0;
+  /// Warnings since the last call.
+  virtual std::vector<Fault> take_warnings() = 0;
+};
 
 inline bool is_blank(std::string_view line) {
   return line.find_first_not_of(" \t\r") == std::string_view::npos;
@@ -28,6 +43,8 @@ class ProgramText {
   static ProgramText of_text(std::string text, std::string file);
   /// @throws InputError if the file cannot be read
   static ProgramText of_file(const std::string& path);
+  /// Lines that come one by one, and do not come again: no mark leads back to them.
+  static ProgramText of_source(std::unique_ptr<LineSource> source, std::string file);
 
   ProgramText(ProgramText&&) noexcept;
   ProgramText& operator=(ProgramText&&) noexcept;
@@ -40,6 +57,13 @@ class ProgramText {
   /// Of the line handed out last, from 1.
   int number() const { return number_; }
   const std::string& file() const { return file_; }
+  /// True for lines of a `LineSource`.
+  bool is_generated() const { return source_ != nullptr; }
+  /// Column of the block that the line handed out last comes from; 0: of its own.
+  int column() const { return column_; }
+  std::vector<Fault> take_warnings() {
+    return source_ ? source_->take_warnings() : std::vector<Fault>();
+  }
 
   /// Behind the line handed out last.
   Mark mark() const { return {wanted_ ? *wanted_ : base_ + at_, number_}; }
@@ -71,6 +95,8 @@ class ProgramText {
   bool in_long_line_ = false;            // the line handed out last did not fit
   std::string long_line_;                // what is kept of a line that does not fit
   std::unique_ptr<Reader> reader_;
+  std::unique_ptr<LineSource> source_;
+  int column_ = 0;  // of the line of a source
 };
 
 /// What a '%' means where it stands.

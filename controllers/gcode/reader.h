@@ -12,9 +12,11 @@ namespace servomill::controllers {
 
 /// The control whose reading of a program counts. `linuxcnc` accepts exactly what LinuxCNC accepts;
 /// `any` accepts beyond that what a control in use accepts, if no two read it differently.
-enum class Reader : std::uint8_t { any, linuxcnc, fanuc, haas, mach, grbl };
-inline constexpr std::array<std::string_view, 6> kReaders = {"any",  "linuxcnc", "fanuc",
-                                                             "haas", "mach",     "grbl"};
+/// `heidenhain` takes a program for conversational, which `any` does where it begins with BEGIN PGM
+/// or its file is called *.h (controllers/conversational).
+enum class Reader : std::uint8_t { any, linuxcnc, fanuc, haas, mach, grbl, heidenhain };
+inline constexpr std::array<std::string_view, 7> kReaders = {
+    "any", "linuxcnc", "fanuc", "haas", "mach", "grbl", "heidenhain"};
 
 /// The reader of that name, or nullopt.
 std::optional<Reader> reader_named(std::string_view name);

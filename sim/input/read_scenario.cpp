@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <set>
 
+#include "controllers/conversational/conversational.h"
 #include "controllers/gcode/called_subroutines.h"
 #include "plant/vocabulary/units.h"
 #include "sim/config/reader.h"
@@ -165,7 +166,9 @@ class ScenarioReader {
       Reader parameters = table.table("parameters");
       for (const std::string& key : parameters.keys()) {
         program.parameters[key] = parameters.real(key, kNumber);
-        if (!is_parameter_name(key)) parameters.fault(key, "must be named #N or #<name>");
+        if (!is_parameter_name(key)) {
+          parameters.fault(key, "must be named #N or #<name>, or QN in a conversational program");
+        }
       }
     }
     const JointLayout& layout = out_.machine.chain.layout;
@@ -193,8 +196,9 @@ class ScenarioReader {
     }
   }
 
-  // "#101" or "#<name>"
+  // "#101", "#<name>" or "Q5"
   static bool is_parameter_name(std::string_view key) {
+    if (key.starts_with('Q')) return controllers::conversational::is_parameter_name(key);
     if (key.starts_with("#<")) return key.size() > 3 && key.ends_with('>');
     return key.size() > 1 && key.size() < 8 && key[0] == '#' &&
            key.find_first_not_of("0123456789", 1) == std::string_view::npos;

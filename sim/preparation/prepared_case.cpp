@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "controllers/conversational/conversational.h"
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/printer.h"
 #include "controllers/path/slowed_motion.h"
@@ -69,7 +70,9 @@ std::vector<Move> through_text(const std::vector<Move>& rewritten, const Scenari
   text = controllers::print_program(rewritten, options, header_of(scenario, spec)).text;
   std::vector<Move> read = controllers::interpret(
       text, fmt::format("{} as rewritten for case {}", scenario.program.file, spec.name),
-      setup_of(scenario, spec));
+      controllers::conversational::gcode_setup(
+          controllers::ProgramText::of_text(scenario.program.text, scenario.program.file),
+          setup_of(scenario, spec)));
   auto original = rewritten.begin();
   const auto next_motion = [&] {
     return std::find_if(original, rewritten.end(),

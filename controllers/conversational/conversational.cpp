@@ -1,0 +1,126 @@
+#include "controllers/conversational/conversational.h"
+
+#include <cmath>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "controllers/conversational/translator.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers::conversational {
+namespace {
+
+// The first line that is neither blank nor a comment.
+bool begins_program(ProgramText& text) {
+  constexpr int kMostLines = 100;
+  bool found = false;
+  int lines = 0;
+  for (std::string_view line; text.next(line) && ++lines < kMostLines;) {
+    std::size_t at = line.find_first_not_of(" \t\r0123456789");
+    if (at == std::string_view::npos || line[at] == ';' || line[at] == '*') continue;
+    found = line.substr(at).starts_with("BEGIN PGM");
+    break;
+  }
+  text.rewind();
+  return found;
+}
+
+std::string all_of(ProgramText& text) {
+  std::string all;
+  for (std::string_view line; text.next(line);) all.append(line).append("\n");
+  return all;
+}
+
+double unit_of(const HeidenhainBlock& begin) {
+  return !begin.words.empty() && begin.words.back().text == "INCH" ? inch : mm;
+}
+
+// TOOL DEF 5 L+12.5 R+5, where the table has no such tool.
+void add_tool(const HeidenhainBlock& block, double unit, ToolTable& tools) {
+  if (block.words.size() < 3) return;
+  const auto number = integer_of(block.words[2].text);
+  if (!number || *number < 1 || tools.find(static_cast<int>(*number)) != nullptr) return;
+  try {
+    Words words(std::span(block.words).subspan(3));
+    const auto L = words.take_number("L");
+    const auto R = words.take_number("R");
+    if (!L || !R || L->name || R->name) return;
+    ToolEntry tool;
+    tool.number = static_cast<int>(*number);
+    tool.offset[2] = L->number * unit;
+    tool.diameter = 2.0 * R->number * unit;
+    tools.add(tool);
+  } catch (const InputError&) {  // reported where the block runs
+  }
+}
+
+void add_tools(const std::string& text, const std::string& file, ToolTable& tools) {
+  ProgramFile program(text, file);
+  if (program.tool_definitions().empty()) return;
+  double unit = mm;
+  try {
+    if (const auto begin = program.next()) unit = unit_of(*begin);
+  } catch (const InputError&) {
+  }
+  for (const HeidenhainBlock& block : program.tool_definitions()) add_tool(block, unit, tools);
+}
+
+class Source final : public LineSource {
+ public:
+  Source(std::string text, const std::string& file, const ProgramSetup& setup)
+      : translator_(std::move(text), file, setup) {}
+
+  bool next(std::string& line, Place& place) override {
+    auto made = translator_.next();
+    if (!made) return false;
+    line = std::move(made->text);
+    place = std::move(made->place);
+    return true;
+  }
+  std::vector<Fault> take_warnings() override { return translator_.take_warnings(); }
+
+ private:
+  Translator translator_;
+};
+
+}  // namespace
+
+bool is_conversational(ProgramText& text, Reader reader) {
+  if (text.is_generated()) return false;
+  if (reader == Reader::heidenhain) return true;
+  if (reader != Reader::any) return false;
+  const std::string& file = text.file();
+  return file.ends_with(".h") || file.ends_with(".H") || begins_program(text);
+}
+
+ProgramText as_gcode(ProgramText text, ProgramSetup& setup) {
+  const std::string file = text.file();
+  std::string all = all_of(text);
+  add_tools(all, file, setup.tools);
+  auto source = std::make_unique<Source>(std::move(all), file, setup);
+  std::erase_if(setup.parameters, [](const auto& one) { return one.first.starts_with('Q'); });
+  setup.reader = Reader::any;
+  setup.block_delete = false;
+  return ProgramText::of_source(std::move(source), file);
+}
+
+ProgramSetup gcode_setup(ProgramText text, ProgramSetup setup) {
+  if (is_conversational(text, setup.reader)) as_gcode(std::move(text), setup);
+  return setup;
+}
+
+bool is_parameter_name(std::string_view name) {
+  std::size_t length = 0;
+  return q_name_at(name, length) && length == name.size();
+}
+
+std::set<std::string> called_programs(ProgramText text) {
+  const std::string file = text.file();
+  const ProgramFile program(all_of(text), file);
+  std::set<std::string> names;
+  for (const std::string& name : program.called_programs()) names.insert(program_name(name));
+  return names;
+}
+
+}  // namespace servomill::controllers::conversational

@@ -1,0 +1,199 @@
+// Labels, jumps, calls and Q parameters.
+#include <fmt/format.h>
+
+#include "controllers/conversational/formula.h"
+#include "controllers/conversational/translator.h"
+
+namespace servomill::controllers::conversational {
+namespace {
+
+constexpr std::size_t kMostCalls = 19;  // in each other: TNC 640; 8 on the iTNC 530 (M)
+
+}  // namespace
+
+void Translator::count_jump() {
+  if (++jumps_ <= setup_.most_jumps) return;
+  fail(fmt::format("{} jumps: the program seems endless; raise it with --max-jumps",
+                   setup_.most_jumps));
+}
+
+void Translator::go_to(const std::string& label) {
+  const BlockMark* mark = program().find_label(label);
+  if (mark == nullptr) fail(fmt::format("there is no LBL {} in the program", label));
+  count_jump();
+  program().go_to(*mark);
+}
+
+// LBL 0 ends a subprogram; where none was called it is passed.
+void Translator::label(const HeidenhainBlock& block) {
+  const std::span<const HeidenhainWord> all(block.words);
+  const std::string name = label_of(block.words.size() > 1 ? all.subspan(1) : all);
+  if (name != "0" || returns_.empty() || returns_.back().is_program) return;
+  file_ = returns_.back().file;
+  program().go_to(returns_.back().mark);
+  returns_.pop_back();
+}
+
+void Translator::call(const HeidenhainBlock& block) {
+  const std::span<const HeidenhainWord> words(block.words);
+  if (words.size() < 3) fail("CALL LBL or CALL PGM must name what it calls");
+  if (words[1].text == "PGM") return call_program(words.subspan(2));
+  if (words[1].text != "LBL") fail(words[1].place, "CALL LBL or CALL PGM must stand here");
+  // a name in quotation marks may hold blanks
+  std::size_t end = 3;
+  if (words[2].text.front() == '"') {
+    while (end < words.size() && words[end - 1].text.back() != '"') ++end;
+  }
+  std::string name = label_of(words.subspan(2, end - 2));
+  if (name.front() == 'Q') {
+    name = fmt::format("{:.0f}", value(operand_of(name, words[2].place)));
+  }
+  call_label(name, words.subspan(end));
+}
+
+// REP 5, REP5, REP 5/5: the rest behind the stroke is what the control has left to do.
+void Translator::call_label(const std::string& label, std::span<const HeidenhainWord> rest) {
+  if (label == "0") fail("LBL 0 cannot be called");
+  if (rest.empty()) {
+    if (returns_.size() >= kMostCalls) {
+      fail(fmt::format("more than {} calls in each other", kMostCalls));
+    }
+    const BlockMark behind = program().mark();
+    go_to(label);
+    returns_.push_back({file_, behind, false, label});
+    return;
+  }
+  std::string text;
+  for (const HeidenhainWord& word : rest) text += word.text;
+  if (!text.starts_with("REP")) fail(rest.front().place, "REP must stand here");
+  text = text.substr(3, text.find('/') - 3);
+  const double wanted = value(operand_of(text, rest.front().place));
+  const auto key = std::pair(file_, block_mark_.offset);
+  auto [found, is_new] = repeats_.try_emplace(key, std::lround(wanted));
+  if (found->second <= 0) {
+    repeats_.erase(found);
+    return;
+  }
+  --found->second;
+  go_to(label);
+}
+
+void Translator::call_program(std::span<const HeidenhainWord> words) {
+  if (words.size() > 1) fail(words[1].place, "nothing may follow the name of the program");
+  const std::string name = program_name(words.front().text);
+  if (returns_.size() >= kMostCalls)
+    fail(fmt::format("more than {} calls in each other", kMostCalls));
+  std::optional<ProgramText> text;
+  if (setup_.subroutine_file) text = setup_.subroutine_file(name);
+  if (!text) {
+    fail(words.front().place,
+         fmt::format("CALL PGM {0}: no file {0}.H next to the program or in the folders of --subs",
+                     name));
+  }
+  require_no_compensation("CALL PGM");
+  std::string all;
+  for (std::string_view line; text->next(line);) all.append(line).append("\n");
+  auto file = std::make_unique<ProgramFile>(std::move(all), text->file());
+  if (!file->faults().empty()) throw InputError(file->faults());
+  const auto begin = file->next();
+  const bool begins = begin && begin->words.size() > 2 && begin->words[0].text == "BEGIN";
+  if (!begins) fail(words.front().place, fmt::format("{} does not begin with BEGIN PGM", name));
+  if ((begin->words.back().text == "INCH") != is_inch_) {
+    fail(words.front().place, fmt::format("CALL PGM {}: it is in another unit", name));
+  }
+  count_jump();
+  returns_.push_back({file_, program().mark(), true, name});
+  files_.push_back(std::move(file));
+  file_ = files_.size() - 1;
+}
+
+void Translator::assign(const QName& name, double value) {
+  parameters_.set(name, value);
+  // CYCL DEF 247 takes effect with its parameter
+  if (name == QName{'Q', 339} && cycle_ && cycle_->number == 247) {
+    cycle_.reset();
+    set_preset(value);
+  }
+}
+
+// Q200=2 Q201=-20 behind CYCL DEF.
+void Translator::assign_words(Words& words) {
+  while (const HeidenhainWord* word = words.take_next()) {
+    const std::size_t equals = word->text.find('=');
+    std::size_t length = 0;
+    const auto name = q_name_at(word->text, length);
+    if (!name || equals != length) {
+      if (name || word->address == "Q")
+        fail(word->place, fmt::format("'{}' assigns nothing", word->text));
+      continue;  // the name of the cycle
+    }
+    std::string text = word->text.substr(equals + 1);
+    if (text.empty()) {
+      const HeidenhainWord* more = words.take_next();
+      if (more == nullptr) fail(word->place, fmt::format("'{}' without a number", word->text));
+      text = more->text;
+    }
+    if (text == "FMAX" || text == "MAX" || text == "FAUTO" || text == "AUTO") {
+      const bool is_max = text.ends_with("MAX");
+      if (!is_max && !tool_call_feed_) fail(word->place, "FAUTO: the last TOOL CALL has no F");
+      assign(*name, is_max ? 99999.999 : *tool_call_feed_ / (is_inch_ ? 2.54 : 1.0));
+      continue;
+    }
+    assign(*name, value(operand_of(text, word->place)));
+  }
+}
+
+// FN 14 ends a program with a message; FN 15, 16, 19 and 20 write and wait, without motion.
+bool Translator::run_function(const HeidenhainBlock& block) {
+  const std::span<const HeidenhainWord> words(block.words);
+  refresh_system_parameters();
+  if (words[0].address != "FN") {
+    const bool is_cycle_value = words[0].text.find('=') != std::string::npos && words.size() == 1;
+    if (is_cycle_value) {
+      Words all(words);
+      assign_words(all);
+      return true;
+    }
+    const Assignment made = evaluate_formula(words, parameters_);
+    assign(made.name, made.value);
+    return true;
+  }
+  const bool is_split = words[0].rest.empty();
+  if (is_split && words.size() < 2) return false;
+  std::string head = is_split ? words[1].text : words[0].rest;
+  if (head.ends_with(':')) head.pop_back();
+  const auto number = integer_of(head);
+  if (!number) return false;
+  const auto rest = words.subspan(is_split ? 2 : 1);
+  if (*number <= 8 || *number == 13) {
+    const Assignment made = evaluate_function(static_cast<int>(*number), rest, parameters_);
+    assign(made.name, made.value);
+    return true;
+  }
+  if (*number <= 12) {
+    const Jump jump = evaluate_jump(static_cast<int>(*number), rest, parameters_);
+    if (jump.is_taken) go_to(jump.label);
+    return true;
+  }
+  if (*number == 14) fail("FN 14: the program stops here with its error message");
+  if (*number == 15 || *number == 16 || *number == 19 || *number == 20) {
+    warn_once(fmt::format("FN {}", *number),
+              fmt::format("FN {}: read as without effect on motion", *number));
+    return true;
+  }
+  fail(
+      fmt::format("FN {}: reads or writes data of the control that are not known here; assign the "
+                  "parameter instead",
+                  *number));
+}
+
+// Tool, plane and unit: [530] preassigned Q parameters. Q120 to Q122 stay as PLANE leaves them.
+void Translator::refresh_system_parameters() {
+  parameters_.set({'Q', 109}, 2.0);
+  const ToolEntry* tool = setup_.tools.find(tool_);
+  if (!has_tool_call_ || tool == nullptr) return;
+  parameters_.set({'Q', 108}, tool->diameter / 2e-3 + delta_radius_);
+  parameters_.set({'Q', 114}, tool->offset[2] * 1e3 + delta_length_);
+}
+
+}  // namespace servomill::controllers::conversational

@@ -1,0 +1,38 @@
+/// Where the coordinates of a program lie in those of the preset: cycles 7, 8, 10 and 11. Lengths
+/// in mm, angles in degrees.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "controllers/conversational/gcode_lines.h"
+
+namespace servomill::controllers::conversational {
+
+/// work = shift + rotation * mirror * scale * program; rotary axes are shifted and mirrored only.
+struct Frame {
+  std::array<double, kAxisWords> shift{};      // cycle 7, TRANS DATUM
+  std::array<bool, kAxisWords> is_mirrored{};  // cycle 8
+  double rotation = 0.0;                       // cycle 10, about Z
+  double scale = 1.0;                          // cycle 11
+  bool operator==(const Frame&) const = default;
+
+  bool is_plain() const { return *this == Frame{}; }
+  bool is_mirrored_in_plane() const { return is_mirrored[0] != is_mirrored[1]; }
+  bool is_any_mirrored() const;
+  /// X and Y of the preset both depend on X and Y of the program.
+  bool couples_plane() const { return rotation != 0.0; }
+
+  Point to_work(const Point& program) const;
+  Point to_program(const Point& work) const;
+  /// One axis, where the plane is not coupled.
+  double to_work(std::size_t axis, double program) const;
+  double to_program(std::size_t axis, double work) const;
+  /// An increment of one axis.
+  double increment(std::size_t axis, double program) const;
+
+  /// Why the order of programming decides what the cycles make together, or empty.
+  std::string ambiguity() const;
+};
+
+}  // namespace servomill::controllers::conversational

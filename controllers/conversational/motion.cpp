@@ -1,0 +1,230 @@
+// Straight lines: L, LP, M91, M140; RND and CHF.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "controllers/conversational/translator.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers::conversational {
+namespace {
+
+constexpr double kShortest = 1e-9;  // mm; a shorter line is none
+
+bool is_rotary_only(const Positioning& p) { return !p.target[0] && !p.target[1] && !p.target[2]; }
+
+bool moves_rotary(const Positioning& p) { return p.target[3] || p.target[4] || p.target[5]; }
+
+}  // namespace
+
+void Translator::line(const HeidenhainBlock& block) {
+  const bool has_head = block.words.front().text == "L";
+  Words words(std::span(block.words).subspan(has_head ? 1 : 0));
+  const Positioning p = read_positioning(words, "L");
+  words.refuse_rest("L");
+  if (p.direction || p.polar_angle || p.polar_radius)
+    fail("L with DR, PR or PA; LP takes PR and PA");
+  begin_functions(p);
+  set_side(p);
+  move_straight(p);
+  end_functions(p);
+}
+
+void Translator::set_side(const Positioning& p) {
+  if (!p.side) return;
+  if (*p.side != 0 && is_tcp_) fail("RL and RR with M128; end it with M129");
+  side_ = *p.side;
+}
+
+void Translator::move_straight(const Positioning& p) {
+  if (p.retract) return retract(p);
+  if (!p.has_target()) {
+    if (p.has(91)) fail("M91 without a coordinate");
+    if (p.feed && p.feed->kind == Feed::Kind::per_minute) feed_ = p.feed->value;
+    return;
+  }
+  if (p.has(91)) return move_to_machine(p);
+  if (moves_rotary(p) && plane_) fail("a rotary axis in a tilted plane; PLANE RESET first");
+  const Feed feed = feed_of(p);
+  if (moves_rotary(p) && !is_rotary_only(p) && !is_tcp_ && feed.kind == Feed::Kind::per_minute) {
+    warn_once("mixed feed",
+              "F of a block with linear and rotary axes: read as the feed of the "
+              "linear axes; on some machines it is that of all axes together");
+  }
+  Motion motion = motion_of(p);
+  motion.feed = feed;
+  if (is_rotary_only(p) && is_inch_ && feed.kind == Feed::Kind::per_minute) {
+    motion.feed.value /= 2.54;  // degrees per minute
+  }
+  const auto before = program_point(2);
+  const auto begin = work_point(2);
+  const bool in_plane = motion.words[0] || motion.words[1];
+  if (in_plane && begin && !motion.is_incremental) {
+    const Point end(motion.words[0].value_or(begin->x()), motion.words[1].value_or(begin->y()));
+    if ((end - *begin).norm() > kShortest) motion.element = Element{*begin, end, false, {0, 0}, 0};
+  }
+  add(std::move(motion));
+  last_element_.reset();
+  const auto after = program_point(2);
+  if (in_plane && before && after && (*after - *before).norm() > kShortest) {
+    last_element_ = Element{*before, *after, false, {0, 0}, 0};
+    last_normal_ = 2;
+  }
+}
+
+Motion Translator::motion_of(const Positioning& p) {
+  Motion motion;
+  motion.place = place_;
+  motion.words = ends(p, motion.is_incremental);
+  return motion;
+}
+
+double Translator::tool_radius(const Place& place) const {
+  const ToolEntry* tool = setup_.tools.find(tool_);
+  if (!has_tool_call_ && tool_ == 0) fail(place, "RL and RR before any TOOL CALL");
+  if (tool == nullptr) {
+    fail(place, fmt::format("RL and RR: the radius of tool {} is unknown; pass a tool table with "
+                            "--tools",
+                            tool_));
+  }
+  return tool->diameter / 2.0 / mm + delta_radius_;
+}
+
+// Keeps the position, and hands the motion on with the side of the tool.
+void Translator::add(Motion motion) {
+  motion.side = frame_.is_mirrored_in_plane() ? -side_ : side_;
+  const auto axes = plane_axes(motion.normal);
+  const bool names_first = motion.words[axes[0]].has_value();
+  const bool names_second = motion.words[axes[1]].has_value();
+  const bool in_plane = names_first || names_second;
+  if (side_ != 0 && in_plane) {
+    if (motion.normal != 2) fail("RL and RR in a plane with Z");
+    motion.radius = tool_radius(place_);
+    if (motion.radius < 0.0) fail("RL and RR: the radius of the tool with DR is negative");
+  }
+  if (side_ == 0 && path_.is_compensating()) is_beside_ = true;
+  if (is_beside_ && side_ == 0 && in_plane) {
+    if (!names_first || !names_second) {
+      fail(
+          "the block that ends RL or RR must name both axes of the plane: where the other one goes "
+          "was not found in a manual");
+    }
+    is_beside_ = false;
+  }
+  for (std::size_t i = 0; i < motion.words.size(); ++i) {
+    if (!motion.words[i]) continue;
+    if (!motion.is_incremental) {
+      work_[i] = motion.words[i];
+    } else if (work_[i]) {
+      *work_[i] += *motion.words[i];
+    }
+  }
+  // the tip stays where it is, the other way round
+  const bool turns = motion.words[3] || motion.words[4] || motion.words[5];
+  if (turns && is_tcp_) last_element_.reset();
+  if (motion.words[2] && !motion.is_machine) {
+    *motion.words[2] += motion.is_incremental ? 0.0 : delta_length_;
+  }
+  path_.add(std::move(motion));
+}
+
+// Coordinates of M91 count from the machine datum; length of the tool, shift and mirroring do not
+// act on them.
+void Translator::move_to_machine(const Positioning& p) {
+  require_no_compensation("M91");
+  if (is_tcp_) fail("M91 with M128; end it with M129: [530] p. 290");
+  if (plane_) fail("M91 in a tilted plane; PLANE RESET first: TNC 407 manual, M91");
+  Motion motion;
+  motion.place = place_;
+  motion.is_machine = true;
+  motion.feed = feed_of(p);
+  for (std::size_t i = 0; i < motion.words.size(); ++i) {
+    if (!p.target[i]) continue;
+    const auto& target = *p.target[i];
+    if (target.is_increment) fail(target.value.place, "M91 with an incremental coordinate");
+    motion.words[i] = i < 3 ? length(target.value) : value(target.value);
+  }
+  path_.add(motion);
+  for (std::size_t i = 0; i < motion.words.size(); ++i) {
+    if (motion.words[i]) work_[i].reset();
+  }
+  last_element_.reset();
+}
+
+// M140 MB: along the tool axis.
+void Translator::retract(const Positioning& p) {
+  if (p.has_target()) fail("M140 with coordinates; write them in a block of their own");
+  if (is_tcp_) fail("M140 with M128: the direction is that of the inclined tool; write L");
+  Motion motion;
+  motion.place = place_;
+  motion.feed = p.feed ? *p.feed : Feed{};
+  motion.words[2] = *p.retract;
+  motion.is_incremental = true;
+  add(std::move(motion));
+}
+
+// --------------------------------------------------------------------------------- polar, corners
+
+// PR and PA about the pole, in program coordinates; what is left out stays. Increments count from
+// the position: [530] p. 231.
+std::optional<Point> Translator::polar_point(const Positioning& p, int normal) const {
+  if (!pole_) fail("no CC before the polar coordinates, or its frame has changed");
+  const auto now = program_point(normal);
+  const bool needs_now = !p.polar_radius || !p.polar_angle || p.polar_radius->is_increment ||
+                         p.polar_angle->is_increment;
+  if (needs_now && !now) fail("polar coordinates: the position in the plane is unknown here");
+  const Point ray = now ? Point(*now - *pole_) : Point(Point::Zero());
+  double radius = ray.norm();
+  double angle = std::atan2(ray.y(), ray.x()) / deg;
+  if (p.polar_radius) {
+    const double written = length(p.polar_radius->value);
+    radius = p.polar_radius->is_increment ? radius + written : written;
+  }
+  if (p.polar_angle) {
+    const double written = value(p.polar_angle->value);
+    angle = p.polar_angle->is_increment ? angle + written : written;
+  }
+  return *pole_ + radius * Point(std::cos(angle * deg), std::sin(angle * deg));
+}
+
+void Translator::polar_line(const HeidenhainBlock& block) {
+  Words words(std::span(block.words).subspan(1));
+  Positioning p = read_positioning(words, "LP");
+  words.refuse_rest("LP");
+  if (!p.polar_radius && !p.polar_angle) fail("LP without PR and PA");
+  if (p.has(91)) fail("LP with M91");
+  const auto axes = plane_axes(pole_normal_);
+  if (p.target[axes[0]] || p.target[axes[1]]) fail("LP with an axis of the plane of CC");
+  begin_functions(p);
+  set_side(p);
+  set_program_point(p, pole_normal_, *polar_point(p, pole_normal_));
+  move_straight(p);
+  end_functions(p);
+}
+
+void Translator::round_or_chamfer(const HeidenhainBlock& block, bool is_rounding) {
+  const std::string_view name = is_rounding ? "RND" : "CHF";
+  // "RND R5", "RND5", "CHF 12", "CHF12"
+  std::vector<HeidenhainWord> all(block.words.begin(), block.words.end());
+  if (is_rounding && all.front().rest.empty()) all.erase(all.begin());
+  Words words(all);
+  auto size = words.take_number(name);
+  if (!size && is_rounding) size = words.take_number("R");
+  if (!size && !is_rounding) size = words.take_number("L");
+  if (!size) fail(fmt::format("{} without a {}", name, is_rounding ? "radius" : "length"));
+  const Positioning p = read_positioning(words, name);
+  words.refuse_rest(name);
+  if (p.has_target()) fail(fmt::format("{} with a coordinate", name));
+  const double written = length(*size) * frame_.scale;
+  if (!(written > 0.0)) fail(fmt::format("{}: must be > 0", name));
+  std::optional<Feed> feed = p.feed;
+  if (!feed && feed_) feed = modal_feed();
+  if (feed && feed->kind != Feed::Kind::per_minute)
+    fail(fmt::format("{}: F must be in mm/min", name));
+  begin_functions(p);
+  path_.corner(is_rounding, written, feed, place_);
+  last_element_.reset();
+  end_functions(p);
+}
+
+}  // namespace servomill::controllers::conversational

@@ -1,0 +1,271 @@
+// Words of positioning blocks, and where they lead.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "controllers/conversational/translator.h"
+
+namespace servomill::controllers::conversational {
+namespace {
+
+char letter_of(std::size_t axis) { return letter(kAllAxes[axis]); }
+
+// Place of the axis of an address such as X, IX; nullopt: none.
+std::optional<std::size_t> axis_of_address(std::string_view address, bool& is_increment) {
+  is_increment = address.size() == 2 && address.front() == 'I';
+  if (is_increment) address.remove_prefix(1);
+  if (address.size() != 1) return std::nullopt;
+  const auto axis = servomill::axis_of(address.front());
+  if (!axis) return std::nullopt;
+  return static_cast<std::size_t>(index_of(*axis));
+}
+
+}  // namespace
+
+Positioning::Target Translator::target_of(const Operand& operand, bool is_increment) {
+  return {operand, is_increment};
+}
+
+Positioning Translator::read_positioning(Words& words, std::string_view block) {
+  Positioning p;
+  while (const HeidenhainWord* word = words.peek()) {
+    bool is_increment = false;
+    const auto axis = axis_of_address(word->address, is_increment);
+    const std::string text = word->text, address = word->address;
+    const Place place = word->place;
+    const bool is_function = (address == "M" && !word->rest.empty()) || text == "STOP";
+    if (axis) {
+      auto& target = p.target[*axis];
+      if (target) {
+        fail(place, fmt::format("'{}': {} is in the block already", text, letter_of(*axis)));
+      }
+      const auto operand = words.take_number(address);
+      target = target_of(*operand, is_increment);
+    } else if (text == "R0" || text == "RL" || text == "RR") {
+      if (p.side) fail(place, fmt::format("'{}': a second radius compensation", text));
+      p.side = text == "R0" ? 0 : text == "RL" ? 1 : -1;
+      words.take(text);
+    } else if (text == "DR+" || text == "DR-") {
+      p.direction = text.back() == '+' ? 1 : -1;
+      words.take(text);
+    } else if (address == "PR" || address == "IPR") {
+      p.polar_radius = target_of(*words.take_number(address), address.front() == 'I');
+    } else if (address == "PA" || address == "IPA") {
+      p.polar_angle = target_of(*words.take_number(address), address.front() == 'I');
+    } else if (is_function) {
+      read_function(words, p);
+    } else if (!address.empty() && address.front() == 'F') {
+      read_feed(words, p);
+    } else if (text == "R+" || text == "R-") {
+      fail(place, fmt::format("'{}': compensation parallel to an axis is not read; write the "
+                              "position with R0",
+                              text));
+    } else {
+      if (block == "L" && (address == "U" || address == "V" || address == "W")) {
+        fail(place, fmt::format("'{}': there are no axes U, V, W", text));
+      }
+      break;  // a word of the block that calls
+    }
+  }
+  return p;
+}
+
+bool Translator::read_function(Words& words, Positioning& p) {
+  const HeidenhainWord* word = words.take_next();
+  const Place place = word->place;
+  if (word->text == "STOP") {
+    p.functions.emplace_back(0, place);
+    return true;
+  }
+  const double number = value(operand_of(word->rest, place));
+  const int m = static_cast<int>(number);
+  if (number != m || m < 0 || m > 999)
+    fail(place, fmt::format("'{}' is no M function", word->text));
+  p.functions.emplace_back(m, place);
+  if (m == 140) {
+    if (words.take("MBMAX") != nullptr)
+      fail(place,
+           "M140 MB MAX: the limit of travel is the machine's; write MB with a number or M91");
+    if (words.take("MB") != nullptr)
+      fail(place,
+           "M140 MB MAX: the limit of travel is the machine's; write MB with a number or M91");
+    const auto retract = words.take_number("MB");
+    if (!retract) fail(place, "M140 needs MB with a number");
+    p.retract = length(*retract);
+  }
+  return true;
+}
+
+// mm/min; in programs in INCH tenths of an inch per minute (TNC 7 user's manual, Cutting data).
+double Translator::feed_per_minute(const Operand& operand) const {
+  const double F = value(operand);
+  if (!(F > 0.0)) fail(operand.place, fmt::format("F{:g}: a feed must be > 0", F));
+  return F * (is_inch_ ? 2.54 : 1.0);
+}
+
+bool Translator::read_feed(Words& words, Positioning& p) {
+  const HeidenhainWord* word = words.peek();
+  const Place place = word->place;
+  const std::string text = word->text, address = word->address;
+  if (p.feed) fail(place, fmt::format("'{}': a second feed in the block", text));
+  if (text == "FMAX") {
+    words.take_next();
+    p.feed = Feed{};
+  } else if (text == "FAUTO") {
+    words.take_next();
+    if (!tool_call_feed_) fail(place, "FAUTO: the last TOOL CALL has no F");
+    p.feed = Feed{Feed::Kind::per_minute, *tool_call_feed_};
+  } else if (address == "F") {
+    p.feed = Feed{Feed::Kind::per_minute, feed_per_minute(*words.take_number("F"))};
+  } else if (address == "FT") {
+    const double time = value(*words.take_number("FT"));
+    if (!(time > 0.0)) fail(place, fmt::format("'{}': a time must be > 0", text));
+    p.feed = Feed{Feed::Kind::time, time};
+  } else if (address == "FU") {
+    if (!speed_) fail(place, "FU: no S since the last TOOL CALL");
+    p.feed = Feed{Feed::Kind::per_minute, length(*words.take_number("FU")) * *speed_};
+  } else {
+    fail(place, fmt::format("'{}': this feed is not read; write F in mm/min", text));
+  }
+  return true;
+}
+
+Feed Translator::modal_feed() const {
+  if (!feed_) fail("no F in the block, and none is in force");
+  return {Feed::Kind::per_minute, *feed_};
+}
+
+Feed Translator::feed_of(const Positioning& p) {
+  if (p.feed && p.feed->kind == Feed::Kind::per_minute) feed_ = p.feed->value;
+  Feed feed = p.feed ? *p.feed : modal_feed();
+  was_rapid_ = feed.kind == Feed::Kind::rapid;
+  return feed;
+}
+
+// ------------------------------------------------------------------------------------- coordinates
+
+std::optional<Point> Translator::work_point(int normal) const {
+  const auto axes = plane_axes(normal);
+  if (!work_[axes[0]] || !work_[axes[1]]) return std::nullopt;
+  return Point(*work_[axes[0]], *work_[axes[1]]);
+}
+
+std::optional<Point> Translator::program_point(int normal) const {
+  const auto work = work_point(normal);
+  if (!work) return std::nullopt;
+  if (normal == 2) return frame_.to_program(*work);
+  const auto axes = plane_axes(normal);
+  if (frame_.couples_plane()) fail("a circle in a plane with Z while cycle 10 is active");
+  return Point(frame_.to_program(axes[0], work->x()), frame_.to_program(axes[1], work->y()));
+}
+
+// As if both coordinates had been written.
+void Translator::set_program_point(Positioning& p, int normal, const Point& point) const {
+  const auto axes = plane_axes(normal);
+  for (std::size_t i = 0; i < 2; ++i) {
+    Operand operand;
+    operand.number = point[static_cast<Eigen::Index>(i)] / unit();
+    operand.place = place_;
+    p.target[axes[i]] = target_of(operand, false);
+  }
+}
+
+// X and Y under a rotation.
+void Translator::ends_in_plane(const Positioning& p, Values& end, bool& is_incremental) {
+  if (!p.target[0] && !p.target[1]) return;
+  const bool is_free =
+      (!p.target[0] || p.target[0]->is_increment) && (!p.target[1] || p.target[1]->is_increment);
+  const auto now = program_point(2);
+  Point to = now.value_or(Point::Zero());
+  bool needs_now = false;
+  for (int i = 0; i < 2; ++i) {
+    const auto& target = p.target[static_cast<std::size_t>(i)];
+    needs_now = needs_now || !target || target->is_increment;
+    if (target) to[i] = (target->is_increment ? to[i] : 0.0) + length(target->value);
+  }
+  if (needs_now && !now) {
+    if (!is_free) fail("coordinates are rotated, and the position of X or Y is unknown here");
+    is_incremental = true;
+    to = frame_.to_work(to) - frame_.to_work(Point::Zero());
+  } else {
+    to = frame_.to_work(to);
+  }
+  end[0] = to.x();
+  end[1] = to.y();
+}
+
+// Ends of the axes that the block names. An increment from an unknown position stays one.
+Values Translator::ends(const Positioning& p, bool& is_incremental) {
+  Values end;
+  is_incremental = false;
+  std::size_t named = 0, free = 0;
+  for (std::size_t i = 0; i < end.size(); ++i) {
+    if (!p.target[i]) continue;
+    ++named;
+    if (p.target[i]->is_increment && !work_[i]) ++free;
+  }
+  is_incremental = free > 0;
+  if (free > 0 && free < named) {
+    for (std::size_t i = 0; i < end.size(); ++i) {
+      if (!p.target[i] || !p.target[i]->is_increment || work_[i]) continue;
+      fail(p.target[i]->value.place,
+           fmt::format("I{}: the position of {} is unknown here; write it without I", letter_of(i),
+                       letter_of(i)));
+    }
+  }
+  const bool is_coupled = frame_.couples_plane();
+  if (is_coupled) ends_in_plane(p, end, is_incremental);
+  for (std::size_t i = is_coupled ? 2 : 0; i < end.size(); ++i) {
+    if (!p.target[i]) continue;
+    const auto& target = *p.target[i];
+    const double written = i < 3 ? length(target.value) : value(target.value);
+    if (is_incremental) {
+      end[i] = frame_.increment(i, written);
+    } else if (target.is_increment) {
+      end[i] = *work_[i] + frame_.increment(i, written);
+    } else {
+      end[i] = i < 3 ? frame_.to_work(i, written) : rotary_end(i, written, target.value.place);
+    }
+  }
+  if (end[2] && frame_.scale != 1.0) {
+    fail("Z moves while cycle 11 is active: MP7410 decides if it is scaled; move Z before");
+  }
+  return end;
+}
+
+// M126 takes the shorter way of an axis without ends of travel; without M126 and M127 that is up to
+// MP7682. iTNC 530 (340 420) user's manual, M126.
+double Translator::rotary_end(std::size_t axis, double program, const Place& place) {
+  const double target = frame_.to_work(axis, program);
+  if (!work_[axis]) return target;
+  const double to = target + revolutions_[axis];
+  const double way = to - *work_[axis];
+  constexpr double kHalfTurn = 180.0, kRounding = 1e-9;
+  if (std::abs(way) < kHalfTurn - kRounding) return to;
+  if (is_shorter_path_ && !*is_shorter_path_) return to;
+  bool is_endless = true, is_known = false;
+  if (setup_.machine) {
+    if (const auto joint = setup_.machine->chain().layout.joint_of(kAllAxes[axis])) {
+      is_known = true;
+      const plant::InverseSettings& travel = setup_.machine->inverse().settings();
+      is_endless = std::isinf(travel.lower[*joint]) || std::isinf(travel.upper[*joint]);
+    }
+  }
+  if (is_known && !is_endless) return to;
+  const double shorter = std::remainder(way, 2.0 * kHalfTurn);
+  if (!is_shorter_path_ || !is_known) {
+    fail(place, fmt::format("{0} would turn by {1:g} degrees, or by {2:g} on the shorter way: {3}",
+                            letter_of(axis), way, shorter,
+                            is_shorter_path_ ? "M126 acts on axes without ends of travel only; "
+                                               "name the machine with --machine"
+                                             : "the machine decides (MP7682); write M126 or M127"));
+  }
+  if (std::abs(std::abs(shorter) - kHalfTurn) < 1e-6) {
+    fail(place,
+         fmt::format("{} would turn by 180 degrees: which way is not determined", letter_of(axis)));
+  }
+  revolutions_[axis] = *work_[axis] + shorter - target;
+  return *work_[axis] + shorter;
+}
+
+}  // namespace servomill::controllers::conversational

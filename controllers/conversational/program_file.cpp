@@ -1,0 +1,85 @@
+#include "controllers/conversational/program_file.h"
+
+#include <fmt/format.h>
+
+#include <span>
+#include <utility>
+
+#include "controllers/conversational/words.h"
+
+namespace servomill::controllers::conversational {
+
+std::string label_of(std::span<const HeidenhainWord> words) {
+  std::string text;
+  for (const HeidenhainWord& word : words) text += (text.empty() ? "" : " ") + word.text;
+  if (text.starts_with("LBL") && words.size() == 1) text.erase(0, 3);  // LBL5
+  if (const auto number = integer_of(text)) return fmt::format("{}", *number);
+  return text;
+}
+
+std::string program_name(std::string_view text) {
+  if (text.size() > 1 && text.front() == '"' && text.back() == '"') {
+    text = text.substr(1, text.size() - 2);
+  }
+  const std::size_t folder = text.find_last_of("\\/:");
+  if (folder != std::string_view::npos) text.remove_prefix(folder + 1);
+  const std::size_t dot = text.rfind('.');
+  if (dot != std::string_view::npos) text = text.substr(0, dot);
+  return std::string(text);
+}
+
+ProgramFile::ProgramFile(std::string text, std::string file)
+    : text_(std::move(text)), file_(std::move(file)) {
+  // what transfers leave behind the last line
+  while (!text_.empty() && (text_.back() == '\0' || text_.back() == '\x1a')) text_.pop_back();
+  index();
+}
+
+std::optional<HeidenhainBlock> ProgramFile::next() {
+  const std::string_view rest = std::string_view(text_).substr(at_.offset);
+  HeidenhainBlocks blocks(rest, file_, at_.line);
+  const auto advance = [&] { at_ = {text_.size() - blocks.rest().size(), blocks.line()}; };
+  try {
+    auto block = blocks.next();
+    advance();
+    return block;
+  } catch (const InputError&) {
+    advance();
+    throw;
+  }
+}
+
+const BlockMark* ProgramFile::find_label(const std::string& label) const {
+  const auto found = labels_.find(label);
+  return found == labels_.end() ? nullptr : &found->second;
+}
+
+void ProgramFile::index() {
+  constexpr std::size_t kMostFaults = 100;
+  while (at_.offset < text_.size() && faults_.size() < kMostFaults) {
+    try {
+      const auto block = next();
+      if (block && !block->words.empty()) index(*block);
+    } catch (const InputError& error) {
+      faults_.insert(faults_.end(), error.faults().begin(), error.faults().end());
+    }
+  }
+  at_ = {};
+}
+
+void ProgramFile::index(const HeidenhainBlock& block) {
+  const auto& words = block.words;
+  const std::string& first = words.front().text;
+  const std::string second = words.size() > 1 ? words[1].text : "";
+  if (first == "TOOL" && second == "DEF") tool_definitions_.push_back(block);
+  if (first == "CALL" && second == "PGM" && words.size() > 2) called_.push_back(words[2].text);
+  if (words.front().address != "LBL") return;
+  const std::span<const HeidenhainWord> all(words);
+  const std::string label = label_of(words.size() > 1 ? all.subspan(1) : all);
+  if (label == "0" || label.empty()) return;
+  if (!labels_.emplace(label, at_).second) {
+    faults_.push_back({block.place, fmt::format("LBL {} stands twice in the program", label)});
+  }
+}
+
+}  // namespace servomill::controllers::conversational

@@ -1,0 +1,51 @@
+/// Q parameters of a conversational program.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "plant/vocabulary/input_error.h"
+
+namespace servomill::controllers::conversational {
+
+/// The name of a Q parameter: Q5, QL2 (local to a program), QR7 (kept when the control is off).
+struct QName {
+  char kind = 'Q';  // 'Q', 'L', 'R'
+  int number = -1;
+  bool operator==(const QName&) const = default;
+};
+
+std::string to_string(const QName& name);
+
+/// Reads "Q5", "QL2", "QR7" at the start of a text.
+/// @param length  receives the number of characters that it takes
+std::optional<QName> q_name_at(std::string_view text, std::size_t& length);
+
+/// A number in a block: written out, or a Q parameter with a sign.
+struct Operand {
+  double number = 0.0;
+  double sign = 1.0;
+  std::optional<QName> name;
+  Place place;
+};
+
+/// Values of Q parameters. One that nothing has assigned has no value: the control keeps what the
+/// program before left there.
+class QParameters {
+ public:
+  void set(const QName& name, double value) { values_[{name.kind, name.number}] = value; }
+  /// @throws InputError for a parameter without a value
+  double get(const QName& name, const Place& place) const;
+  double value(const Operand& operand) const {
+    return operand.name ? operand.sign * get(*operand.name, operand.place) : operand.number;
+  }
+  std::optional<double> find(const QName& name) const;
+
+ private:
+  std::map<std::pair<char, int>, double> values_;
+};
+
+}  // namespace servomill::controllers::conversational

@@ -1,0 +1,116 @@
+// TOOL CALL and TOOL DEF.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "controllers/conversational/translator.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers::conversational {
+
+// TOOL CALL 5 Z S2000 F500 DL+0.1 DR-0.05, TOOL CALL S3000.
+void Translator::call_tool(const HeidenhainBlock& block) {
+  Words words(std::span(block.words).subspan(1));
+  if (words.take("CALL") == nullptr) fail("TOOL must be followed by CALL or DEF");
+  std::optional<int> number;
+  if (const HeidenhainWord* word = words.peek()) {
+    const char first = word->text.front();
+    if (first == '"') {
+      fail(word->place,
+           "a tool called by its name: the tool table of the control has the names, "
+           "the one here numbers; write the number");
+    }
+    if ((first >= '0' && first <= '9') || (first == 'Q' && word->address.front() == 'Q')) {
+      const double written = value(operand_of(word->text, word->place));
+      words.take_next();
+      number = static_cast<int>(std::lround(written));
+      if (*number != written) {
+        fail(word->place, "an indexed tool (5.1): the tool table here has whole numbers");
+      }
+    }
+  }
+  for (const char* axis : {"X", "Y", "U", "V", "W"}) {
+    if (words.take(axis) != nullptr) {
+      fail(fmt::format("tool axis {}: only Z is read", axis));
+    }
+  }
+  words.take("Z");
+  const auto S = words.take_number("S");
+  const auto F = words.take_number("F");
+  const auto DL = words.take_number("DL");
+  const auto DR2 = [&]() -> std::optional<Operand> {
+    // "DR2+0.1" begins with the letters DR
+    const HeidenhainWord* word = words.peek();
+    if (word == nullptr || word->address != "DR" || !word->rest.starts_with("2")) return {};
+    const bool has_sign = word->rest.size() > 1 &&
+                          (word->rest[1] == '+' || word->rest[1] == '-' || word->rest[1] == '=');
+    if (!has_sign) return {};
+    words.take_next();
+    return Operand{};
+  };
+  if (DR2()) warn_once("DR2", "DR2: read as without effect");
+  const auto DR = words.take_number("DR");
+  if (DR2()) warn_once("DR2", "DR2: read as without effect");
+  words.refuse_rest("TOOL CALL");
+  require_no_compensation("TOOL CALL");
+  if (number && is_tcp_) fail("TOOL CALL with M128; end it with M129: [530] p. 290");
+  if (number && plane_) fail("TOOL CALL in a tilted plane; PLANE RESET first");
+  path_.flush();
+  if (number) change_tool(*number);
+  if (S) {
+    speed_ = value(*S);
+    if (*speed_ < 0.0) fail(S->place, "S must be >= 0");
+    lines_.put(word('S', *speed_), place_);
+  }
+  if (F) feed_ = tool_call_feed_ = feed_per_minute(*F);
+  if (number || DL || DR) {
+    delta_length_ = DL ? length(*DL) : 0.0;
+    delta_radius_ = DR ? length(*DR) : 0.0;
+    work_[2].reset();
+  }
+  refresh_system_parameters();
+}
+
+// The same tool again changes S and the oversizes only.
+void Translator::change_tool(int number) {
+  const bool is_same = has_tool_call_ && number == tool_;
+  tool_ = number;
+  has_tool_call_ = true;
+  if (is_same) return;
+  speed_.reset();
+  spindle_ = 0;
+  tool_call_feed_.reset();
+  work_[2].reset();
+  lines_.put(fmt::format("T{} M6", number), place_);
+  const bool is_known = number != 0 && setup_.tools.find(number) != nullptr;
+  lines_.put(is_known ? fmt::format("G43 H{}", number) : "G49", place_);
+  if (number == 0 || is_known || !setup_.tools.empty()) return;
+  warn_once("length", fmt::format("TOOL CALL {0}: the length of tool {0} is unknown, and Z of the "
+                                  "machine then that of the tip; pass a tool table with --tools",
+                                  number));
+}
+
+// TOOL DEF 5 announces a tool; with L and R it defines one, where there is no tool table.
+void Translator::define_tool(const HeidenhainBlock& block) {
+  Words words(std::span(block.words).subspan(2));
+  const HeidenhainWord* first = words.take_next();
+  if (first == nullptr) fail("TOOL DEF without a number");
+  if (first->text.front() == '"') return;
+  const double number = value(operand_of(first->text, first->place));
+  const auto L = words.take_number("L");
+  const auto R = words.take_number("R");
+  words.refuse_rest("TOOL DEF");
+  if (!L && !R) return;
+  const ToolEntry* tool = setup_.tools.find(static_cast<int>(std::lround(number)));
+  if (tool == nullptr) fail("TOOL DEF with Q parameters; write numbers, or pass --tools");
+  constexpr double kSame = 1e-6;  // mm
+  const bool differs = (L && std::abs(length(*L) - tool->offset[2] / mm) > kSame) ||
+                       (R && std::abs(length(*R) - tool->diameter / 2.0 / mm) > kSame);
+  if (!differs) return;
+  fail(
+      fmt::format("TOOL DEF {}: the tool table has L{:g} R{:g}; a control with a tool table takes "
+                  "those, one without takes the block; leave out one of them",
+                  number, tool->offset[2] / mm, tool->diameter / 2.0 / mm));
+}
+
+}  // namespace servomill::controllers::conversational

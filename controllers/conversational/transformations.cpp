@@ -1,0 +1,311 @@
+// Where the coordinates lie: cycles 7, 8, 10, 11, 19 and 247, TRANS DATUM, PLANE, M128.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "controllers/conversational/translator.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers::conversational {
+namespace {
+
+std::optional<std::size_t> axis_of_word(const HeidenhainWord& word, bool& is_increment) {
+  std::string_view address = word.address;
+  is_increment = address.size() == 2 && address.front() == 'I';
+  if (is_increment) address.remove_prefix(1);
+  const auto axis = address.size() == 1 ? servomill::axis_of(address.front()) : std::nullopt;
+  if (!axis) return std::nullopt;
+  return static_cast<std::size_t>(index_of(*axis));
+}
+
+// First about the X axis of the machine, then about Y, then about Z: iTNC 530 (340 422) p. 460.
+Eigen::Matrix3d rotation_of(const std::array<double, 3>& angles) {
+  const auto about = [&](std::size_t i, const Eigen::Vector3d& axis) {
+    return Eigen::AngleAxisd(angles[i] * deg, axis).toRotationMatrix();
+  };
+  return about(2, Eigen::Vector3d::UnitZ()) * about(1, Eigen::Vector3d::UnitY()) *
+         about(0, Eigen::Vector3d::UnitX());
+}
+
+// Angles about Z, the new X, the new Z.
+std::array<double, 3> euler_angles(const Eigen::Matrix3d& R) {
+  const double second = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
+  constexpr double kSingular = 1e-12;
+  if (std::abs(std::sin(second)) < kSingular) {
+    const double sign = R(2, 2) > 0.0 ? 1.0 : -1.0;
+    return {sign * std::atan2(R(1, 0), R(0, 0)) / deg * (sign > 0.0 ? 1.0 : -1.0),
+            sign > 0.0 ? 0.0 : 180.0, 0.0};
+  }
+  return {std::atan2(R(0, 2), -R(1, 2)) / deg, second / deg, std::atan2(R(2, 0), R(2, 1)) / deg};
+}
+
+}  // namespace
+
+void Translator::require_no_compensation(std::string_view what) {
+  if (side_ != 0)
+    fail(fmt::format("{} with RL or RR in force; write a block with R0 before", what));
+}
+
+void Translator::set_frame(const Frame& frame) {
+  if (frame == frame_) return;
+  require_no_compensation("a change of the coordinate system");
+  const std::string why = frame.ambiguity();
+  if (!why.empty()) fail(why);
+  frame_ = frame;
+  pole_.reset();
+  last_element_.reset();
+}
+
+// Values count from the preset, with I from the datum before. [407] p. 8-33
+void Translator::datum_shift(const Cycle&, std::span<const HeidenhainWord> words) {
+  Frame frame = frame_;
+  for (const HeidenhainWord& word : words) {
+    bool is_increment = false;
+    const auto axis = axis_of_word(word, is_increment);
+    if (!axis) {
+      if (word.text.front() == '#')
+        fail(word.place, "a line of a datum table, which is not in the program");
+      fail(word.place, fmt::format("'{}': an axis with its shift must stand here", word.text));
+    }
+    const double written = value(operand_of(word.rest, word.place)) * (*axis < 3 ? unit() : 1.0);
+    frame.shift[*axis] = (is_increment ? frame.shift[*axis] : 0.0) + written;
+  }
+  const bool is_shifted =
+      frame.shift != frame_.shift &&
+      std::any_of(frame.shift.begin(), frame.shift.end(), [](double one) { return one != 0.0; });
+  if (is_shifted && (frame.rotation != 0.0 || frame.is_any_mirrored() || frame.scale != 1.0)) {
+    fail(
+        "cycle 7 while cycle 8, 10 or 11 is active: if the shift is transformed depends on the "
+        "order; reset that cycle, shift, and define it again");
+  }
+  set_frame(frame);
+}
+
+void Translator::trans_datum(Words& words) {
+  if (words.take("DATUM") == nullptr) fail("TRANS must be followed by DATUM");
+  if (words.take("RESET") != nullptr) {
+    words.refuse_rest("TRANS DATUM RESET");
+    Frame frame = frame_;
+    frame.shift.fill(0.0);
+    return set_frame(frame);
+  }
+  if (words.take("AXIS") == nullptr) fail("TRANS DATUM: only AXIS and RESET are read");
+  std::vector<HeidenhainWord> axes;
+  while (const HeidenhainWord* word = words.take_next()) axes.push_back(*word);
+  datum_shift({}, axes);
+}
+
+// CYCL DEF 8.1 X Y; without an axis it ends.
+void Translator::mirror(std::span<const HeidenhainWord> words) {
+  Frame frame = frame_;
+  frame.is_mirrored.fill(false);
+  for (const HeidenhainWord& word : words) {
+    for (const char c : word.text) {
+      const auto axis = servomill::axis_of(c);
+      if (!axis) fail(word.place, fmt::format("'{}': axes must stand here", word.text));
+      frame.is_mirrored[static_cast<std::size_t>(index_of(*axis))] = true;
+    }
+  }
+  if (frame.is_mirrored[2]) fail("cycle 8 of Z, the tool axis");
+  set_frame(frame);
+}
+
+// CYCL DEF 10.1 ROT+35; IROT counts from the angle before.
+void Translator::rotate(Words& words) {
+  Frame frame = frame_;
+  if (const auto ROT = words.take_number("ROT")) {
+    frame.rotation = value(*ROT);
+  } else if (const auto IROT = words.take_number("IROT")) {
+    frame.rotation += value(*IROT);
+  } else {
+    fail("cycle 10: ROT with an angle must stand here");
+  }
+  words.refuse_rest("cycle 10");
+  set_frame(frame);
+}
+
+void Translator::scale(Words& words) {
+  Frame frame = frame_;
+  const auto SCL = words.take_number("SCL");
+  if (!SCL) fail("cycle 11: SCL with a factor must stand here");
+  words.refuse_rest("cycle 11");
+  frame.scale = value(*SCL);
+  if (!(frame.scale > 0.0)) fail("cycle 11: the factor must be > 0");
+  set_frame(frame);
+}
+
+// Presets 1 to 9 are the work systems G54 to G59.3.
+void Translator::set_preset(double number) {
+  const int preset = static_cast<int>(number);
+  if (number != preset || preset < 0 || preset > 9) {
+    fail(fmt::format("preset {:g}: presets 1 to 9 are known here, as G54 to G59.3", number));
+  }
+  if (preset == preset_) return;
+  if (preset == 0) fail("preset 0 is the one set by hand; it is not known here");
+  require_no_compensation("cycle 247");
+  if (plane_ || is_tcp_) fail("cycle 247 with PLANE or M128 active");
+  preset_ = preset;
+  note(preset <= 6 ? fmt::format("G{}", 53 + preset) : fmt::format("G59.{}", preset - 6));
+  forget_linear_positions();
+  for (std::size_t i = 3; i < work_.size(); ++i) work_[i].reset();
+}
+
+void Translator::forget_linear_positions() {
+  for (std::size_t i = 0; i < 3; ++i) work_[i].reset();
+  pole_.reset();
+  last_element_.reset();
+}
+
+// Positions stay where nothing is turned.
+void Translator::tcp_control(bool is_on) {
+  if (is_on == is_tcp_) return;
+  require_no_compensation("M128 and M129");
+  if (is_on && plane_) fail("M128 in a tilted plane");
+  if (is_on && delta_length_ != 0.0) fail("M128 with DL in TOOL CALL; enter it in the tool table");
+  if (is_on && !has_tool_call_)
+    fail("M128 before any TOOL CALL: the length of the tool is unknown");
+  is_tcp_ = is_on;
+  path_.flush();
+  lines_.put(fmt::format("{} H{}", is_on ? "G43.4" : "G43", tool_), place_);
+  const bool is_at_zero = std::all_of(work_.begin() + 3, work_.end(), [](const auto& one) {
+    return one.has_value() && *one == 0.0;
+  });
+  if (!is_at_zero) forget_linear_positions();
+}
+
+// --------------------------------------------------------------------------------- tilted planes
+
+// PLANE SPATIAL, PLANE RESET, FUNCTION TCPM, FUNCTION RESET TCPM.
+void Translator::plane(const HeidenhainBlock& block) {
+  Words words(std::span(block.words).subspan(1));
+  if (block.words.front().text == "FUNCTION") {
+    if (words.take("RESET") != nullptr && words.take("TCPM") != nullptr) {
+      words.refuse_rest("FUNCTION RESET TCPM");
+      return tcp_control(false);
+    }
+    const bool is_tcpm = words.take("TCPM") && words.take("F") && words.take("TCP") &&
+                         words.take("AXIS") && words.take("POS") && words.take("PATHCTRL") &&
+                         words.take("AXIS");
+    if (!is_tcpm) {
+      fail(
+          "FUNCTION: only TCPM F TCP AXIS POS PATHCTRL AXIS, which is M128, and RESET TCPM are "
+          "read");
+    }
+    words.refuse_rest("FUNCTION TCPM");
+    return tcp_control(true);
+  }
+  const auto behaviour = [&]() -> std::string {
+    for (const char* name : {"STAY", "TURN", "MOVE"}) {
+      if (words.take(name) != nullptr) return name;
+    }
+    return {};
+  };
+  if (words.take("RESET") != nullptr) {
+    const std::string how = behaviour();
+    while (words.peek() != nullptr && words.peek()->address.front() == 'F') words.take_next();
+    words.refuse_rest("PLANE RESET");
+    return reset_plane(how);
+  }
+  if (words.take("SPATIAL") == nullptr) {
+    fail("PLANE: only SPATIAL and RESET are read; write the plane with spatial angles");
+  }
+  std::array<double, 3> angles{};
+  constexpr std::array<std::string_view, 3> kNames = {"SPA", "SPB", "SPC"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto angle = words.take_number(kNames[i]);
+    if (!angle) fail(fmt::format("PLANE SPATIAL without {}", kNames[i]));
+    angles[i] = value(*angle);
+  }
+  tilt(angles, behaviour(), words);
+}
+
+void Translator::tilt(const std::array<double, 3>& angles, const std::string& behaviour,
+                      Words& words) {
+  require_no_compensation("PLANE");
+  if (is_tcp_) fail("PLANE with M128; end it with M129");
+  if (behaviour.empty()) fail("PLANE SPATIAL must say STAY, TURN or MOVE");
+  if (behaviour == "MOVE") {
+    fail("PLANE ... MOVE: the compensating movement of the linear axes is not read; write TURN");
+  }
+  if (words.take("SEQ+") != nullptr || words.take("SEQ-") != nullptr ||
+      words.take("SYM+") != nullptr || words.take("SYM-") != nullptr) {
+    fail(
+        "PLANE: SEQ and SYM choose a solution by the machine's principal axis, which is not known; "
+        "leave it out, for the nearest one");
+  }
+  if (words.take("TABLE") != nullptr || words.take("COORD") != nullptr) {
+    if (words.take("ROT") == nullptr) fail("PLANE: ROT must follow TABLE and COORD");
+    warn_once("TABLE ROT",
+              "PLANE: TABLE ROT and COORD ROT read as without effect; they choose "
+              "where a table axis is free");
+  }
+  words.take_number("MB");
+  while (words.peek() != nullptr && words.peek()->address.front() == 'F') {
+    Positioning ignored;
+    read_feed(words, ignored);
+  }
+  words.refuse_rest("PLANE SPATIAL");
+  if (!frame_.is_plain() &&
+      (frame_.rotation != 0.0 || frame_.is_any_mirrored() || frame_.scale != 1.0)) {
+    fail("PLANE while cycle 8, 10 or 11 is active; define them behind it");
+  }
+  if (setup_.tools.find(tool_) == nullptr) {
+    fail(fmt::format("PLANE: the length of tool {} is unknown; pass a tool table with --tools",
+                     tool_));
+  }
+  if (plane_) reset_plane("STAY");
+  path_.flush();
+  const Eigen::Matrix3d R = rotation_of(angles);
+  const std::array<double, 3> euler = euler_angles(R);
+  std::string text = "G68.2";
+  for (std::size_t i = 0; i < 3; ++i) text += " " + word("XYZ"[i], frame_.shift[i]);
+  for (std::size_t i = 0; i < 3; ++i) text += " " + word("IJK"[i], euler[i]);
+  lines_.put(std::move(text), place_);
+  if (behaviour == "TURN") lines_.put("G53.1", place_);
+  plane_ = angles;
+  frame_before_plane_ = frame_;
+  frame_ = {};
+  forget_linear_positions();
+  for (std::size_t i = 3; i < work_.size(); ++i) {
+    if (behaviour == "TURN") work_[i].reset();
+  }
+}
+
+void Translator::reset_plane(const std::string& behaviour) {
+  require_no_compensation("PLANE RESET");
+  if (!plane_) {
+    if (behaviour == "STAY" || behaviour.empty()) return;
+    // nothing is tilted: rotary axes go to zero
+  } else {
+    if (!frame_.is_plain()) {
+      fail(
+          "PLANE RESET while a cycle 7, 8, 10 or 11 of the tilted plane is active; reset it first");
+    }
+    path_.flush();
+    lines_.put("G69", place_);
+    plane_.reset();
+    frame_ = frame_before_plane_;
+    forget_linear_positions();
+  }
+  if (behaviour == "MOVE") {
+    fail("PLANE RESET MOVE: the compensating movement of the linear axes is not read; write TURN");
+  }
+  if (behaviour != "TURN") return;
+  if (!setup_.machine) {
+    fail(
+        "PLANE RESET TURN: which rotary axes there are depends on the machine; name it with "
+        "--machine");
+  }
+  std::string text = "G0";
+  const JointLayout& layout = setup_.machine->chain().layout;
+  for (std::size_t i = 3; i < work_.size(); ++i) {
+    if (!layout.joint_of(kAllAxes[i])) continue;
+    text += " " + word(letter(kAllAxes[i]), frame_.shift[i]);
+    work_[i] = frame_.shift[i];
+  }
+  lines_.put(std::move(text), place_);
+}
+
+}  // namespace servomill::controllers::conversational

@@ -1,0 +1,254 @@
+/// A conversational program, block by block, as lines in G-code.
+///
+/// Units: what a program says is kept as it is said, in mm and degrees (a program in INCH is
+/// converted on reading). Positions are those in which the lines move: coordinates of the work
+/// system, of the tilted plane under PLANE.
+///
+/// Rules that hold throughout, with their sources ([530] is the user's manual of the iTNC 530,
+/// 60642x-04; [640] that of the TNC 640, 34059x-05; [407] TNC 407/425/426, 280 580; M from memory):
+///  (1) L, C, ... act from the position programmed last; increments count from there. [407] p. 1-13
+///  (2) FMAX acts in its block only, F until the next F or TOOL CALL with F. M
+///  (3) M3, M4, M8, M13, M14, M91, M126 ... M129, M136, M137 act at the start of a block, M0, M1,
+///  M2,
+///      M5, M6, M9, M30, M99 at its end. M
+///  (4) TOOL CALL takes the length of the tool at once: all positions are those of the tip. [407]
+///  4-13 (5) A parameter, position or mode that nobody has set is unknown, and refused where it
+///  matters.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "controllers/conversational/contour_path.h"
+#include "controllers/conversational/frame.h"
+#include "controllers/conversational/gcode_lines.h"
+#include "controllers/conversational/program_file.h"
+#include "controllers/conversational/q_parameters.h"
+#include "controllers/conversational/words.h"
+#include "controllers/gcode/program_setup.h"
+
+namespace servomill::controllers::conversational {
+
+/// Words of a positioning block.
+struct Positioning {
+  struct Target {
+    Operand value;
+    bool is_increment = false;
+  };
+  std::array<std::optional<Target>, kAxisWords> target;
+  std::optional<Target> polar_radius, polar_angle;  // PR, PA
+  std::optional<Feed> feed;                         // of this block; FMAX: rapid
+  std::optional<int> side;                          // R0, RL, RR
+  std::optional<int> direction;                     // DR+, DR-
+  std::vector<std::pair<int, Place>> functions;     // M
+  std::optional<double> retract;                    // M140 MB
+
+  bool has_target() const;
+  bool has(int function) const;
+};
+
+/// Drilling cycle in force, by number; its values are Q parameters, or those of the old form.
+struct Cycle {
+  int number = 0;
+  std::vector<double> values;  // of CYCL DEF 1.1, 1.2, ...
+  bool is_complete = true;
+  Place place;
+};
+
+class Translator {
+ public:
+  Translator(std::string text, std::string file, const ProgramSetup& setup);
+
+  /// The next line; nullopt behind the end of the program.
+  /// @throws InputError at a block with an error; the lines of the blocks before it come first
+  std::optional<GcodeLine> next();
+  /// What was read in a way that other controls might not share, since the last call.
+  std::vector<Fault> take_warnings() { return std::exchange(warnings_, {}); }
+  /// The file of the line handed out last.
+  const std::string& file() const { return current_file_; }
+
+ private:
+  // translator.cpp: blocks
+  void run_block();
+  void begin_program();
+  void end_of_file(const Place& place);
+  void execute(const HeidenhainBlock& block);
+  bool execute_other(const HeidenhainBlock& block);
+  void refuse_unknown(const HeidenhainBlock& block) const;
+  [[noreturn]] void fail(std::string message) const {
+    throw InputError(place_, std::move(message));
+  }
+  [[noreturn]] static void fail(const Place& place, std::string message) {
+    throw InputError(place, std::move(message));
+  }
+  void warn_once(const std::string& key, std::string message);
+  void note(std::string text) { path_.note(std::move(text), place_); }
+  double value(const Operand& operand) const { return parameters_.value(operand); }
+  double unit() const { return is_inch_ ? 25.4 : 1.0; }  // mm
+  double length(const Operand& operand) const { return value(operand) * unit(); }
+
+  // flow.cpp: labels, jumps, parameters
+  void call(const HeidenhainBlock& block);
+  void call_label(const std::string& label, std::span<const HeidenhainWord> rest);
+  void call_program(std::span<const HeidenhainWord> words);
+  void label(const HeidenhainBlock& block);
+  void go_to(const std::string& label);
+  void count_jump();
+  bool run_function(const HeidenhainBlock& block);
+  void assign(const QName& name, double value);
+  void assign_words(Words& words);
+  void refresh_system_parameters();
+  ProgramFile& program() { return *files_[file_]; }
+
+  // positioning.cpp: words and coordinates
+  Positioning read_positioning(Words& words, std::string_view block);
+  bool read_feed(Words& words, Positioning& p);
+  bool read_function(Words& words, Positioning& p);
+  Feed modal_feed() const;
+  Feed feed_of(const Positioning& p);
+  double feed_per_minute(const Operand& operand) const;
+  Values ends(const Positioning& p, bool& is_incremental);
+  void ends_in_plane(const Positioning& p, Values& end, bool& is_incremental);
+  double rotary_end(std::size_t axis, double program, const Place& place);
+  std::optional<Point> work_point(int normal) const;
+  std::optional<Point> program_point(int normal) const;
+  void set_program_point(Positioning& p, int normal, const Point& point) const;
+  static Positioning::Target target_of(const Operand& operand, bool is_increment);
+
+  // motion.cpp: lines
+  void line(const HeidenhainBlock& block);
+  void polar_line(const HeidenhainBlock& block);
+  void move_straight(const Positioning& p);
+  void move_to_machine(const Positioning& p);
+  void retract(const Positioning& p);
+  Motion motion_of(const Positioning& p);
+  void add(Motion motion);
+  void begin_functions(const Positioning& p);
+  void end_functions(const Positioning& p);
+  void set_side(const Positioning& p);
+  std::optional<Point> polar_point(const Positioning& p, int normal) const;
+  void round_or_chamfer(const HeidenhainBlock& block, bool is_rounding);
+  double tool_radius(const Place& place) const;
+
+  // circles.cpp
+  void pole(const HeidenhainBlock& block);
+  void circle(const HeidenhainBlock& block, bool is_polar);
+  void helix(const Positioning& p, int normal);
+  void circle_of_radius(const HeidenhainBlock& block);
+  void tangential_circle(const HeidenhainBlock& block, bool is_polar);
+  void add_arc(const Positioning& p, int normal, Element program_arc);
+  void require_arc(const Positioning& p) const;
+
+  // approach.cpp
+  void approach(const HeidenhainBlock& block);
+  void depart(const HeidenhainBlock& block);
+  Run read_run(Words& words, std::string_view name);
+
+  // functions.cpp: M
+  void start_function(int m, const Place& place);
+  void end_function(int m, const Place& place);
+  void stop(int m);
+
+  // tools.cpp
+  void call_tool(const HeidenhainBlock& block);
+  void define_tool(const HeidenhainBlock& block);
+  void change_tool(int number);
+  void take_tools_of_program();
+
+  // transformations.cpp: cycles 7, 8, 10, 11, 19, 247, PLANE, M128
+  void datum_shift(const Cycle& cycle, std::span<const HeidenhainWord> words);
+  void trans_datum(Words& words);
+  void mirror(std::span<const HeidenhainWord> words);
+  void rotate(Words& words);
+  void scale(Words& words);
+  void set_preset(double number);
+  void set_frame(const Frame& frame);
+  void plane(const HeidenhainBlock& block);
+  void tilt(const std::array<double, 3>& angles, const std::string& behaviour, Words& words);
+  void reset_plane(const std::string& behaviour);
+  void tcp_control(bool is_on);
+  void forget_linear_positions();
+  void require_no_compensation(std::string_view what);
+
+  // cycles.cpp
+  void define_cycle(const HeidenhainBlock& block);
+  void define_old_cycle(int number, int step, const HeidenhainBlock& block);
+  void call_cycle(const HeidenhainBlock& block);
+  void drill();
+  void drill_old();
+  void drill_200();
+  void ream_201();
+  void bore_202();
+  void drill_203();
+  void peck_205();
+  void tap(bool is_rigid);
+  void centre_240();
+  double q(int number) const;
+  struct Hole;
+  Hole hole() const;
+  void cycle_move(const Feed& feed, double Z);
+  void leave_hole(const Hole& hole);
+  void cycle_dwell(double seconds);
+  Feed cycle_feed(double per_minute) const;
+
+  std::vector<std::unique_ptr<ProgramFile>> files_;
+  std::size_t file_ = 0;
+  std::string current_file_;
+  struct Return {
+    std::size_t file = 0;
+    BlockMark mark;
+    bool is_program = false;
+    std::string name;
+  };
+  std::vector<Return> returns_;
+  std::map<std::pair<std::size_t, std::size_t>, long> repeats_;  // by file and place of CALL LBL
+  long jumps_ = 0;
+  BlockMark block_mark_;  // of the block that runs
+
+  ProgramSetup setup_;
+  GcodeLines lines_;
+  ContourPath path_{lines_};
+  QParameters parameters_;
+  std::vector<Fault> warnings_;
+  std::set<std::string> warned_;
+  std::optional<InputError> error_;  // waits until the lines before it are out
+  Place place_;                      // of the block
+  bool has_begun_ = false, has_ended_ = false, is_skipping_ = false;
+  bool is_inch_ = false;
+
+  Values work_;  // position programmed last
+  Frame frame_;
+  bool is_beside_ = false;     // left beside the contour by a block with R0 and without X, Y
+  std::optional<Point> pole_;  // in program coordinates
+  int pole_normal_ = 2;
+  std::optional<Element> last_element_;  // in program coordinates, for CT
+  int last_normal_ = 2;
+  std::optional<double> feed_, tool_call_feed_;  // mm/min
+  bool was_rapid_ = false;
+  int side_ = 0;
+  std::optional<bool> is_shorter_path_;  // M126, M127
+  std::array<double, kAxisWords> revolutions_{};
+
+  int tool_ = 0;
+  bool has_tool_call_ = false;
+  double delta_length_ = 0.0, delta_radius_ = 0.0;  // of TOOL CALL, mm
+  std::optional<double> speed_;                     // rpm
+  int spindle_ = 0;
+  int preset_ = 1;
+  bool is_tcp_ = false;
+  std::optional<std::array<double, 3>> plane_;  // SPA, SPB, SPC
+  Frame frame_before_plane_;
+  std::optional<Cycle> cycle_;
+  bool is_modal_call_ = false;  // M89
+  int open_cycle_ = 0;          // of the old form, until its blocks are complete
+};
+
+}  // namespace servomill::controllers::conversational

@@ -1,0 +1,113 @@
+// Conversational programs against moves worked out by hand.
+#include <gtest/gtest.h>
+
+#include "controllers/gcode/interpreter.h"
+#include "moves_text.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers::conversational {
+namespace {
+
+void expect_all(const std::vector<Example>& examples) {
+  for (const Example& example : examples) {
+    SCOPED_TRACE(example.name);
+    try {
+      EXPECT_EQ(framed_moves(example.program), example.moves);
+    } catch (const InputError& error) {
+      ADD_FAILURE() << error.what();
+    }
+  }
+}
+
+TEST(Conversational, Lines) { expect_all(line_examples()); }
+TEST(Conversational, LabelsAndParameters) { expect_all(flow_examples()); }
+TEST(Conversational, Circles) { expect_all(circle_examples()); }
+TEST(Conversational, Contours) { expect_all(contour_examples()); }
+TEST(Conversational, Cycles) { expect_all(cycle_examples()); }
+TEST(Conversational, Transformations) { expect_all(transformation_examples()); }
+
+TEST(Conversational, AtLeastSixtyProgramsAreWorkedOut) {
+  EXPECT_GE(line_examples().size() + flow_examples().size() + circle_examples().size() +
+                contour_examples().size() + cycle_examples().size() +
+                transformation_examples().size(),
+            60u);
+}
+
+// In tenths of an inch per minute; TNC 7 user's manual, Cutting data
+TEST(Conversational, InchesAndTheirFeeds) {
+  EXPECT_EQ(
+      all_moves(
+          "0 BEGIN PGM I INCH\n1 TOOL CALL 1 Z S100\n2 L X+1 Y+0 R0 F100\n3 END PGM I INCH\n"),
+      "2 tool 1\n2 spindle 0 S100\n3 feed 25.4 0 -100 F254\n4 end\n");
+}
+
+// The tip counts: machine Z is 100 mm above it
+TEST(Conversational, ToolLengthAndPreset) {
+  ProgramSetup setup = example_setup();
+  setup.work_offset[0] << 10 * mm, 20 * mm, 30 * mm, 0, 0, 0;
+  setup.work_offset[2] << 1 * mm, 2 * mm, 3 * mm, 0, 0, 0;
+  const auto moves =
+      interpret(with_frame("L Z+5 FMAX\nCYCL DEF 247 DATUM SETTING ~\nQ339=+3 ;DATUM NUMBER\n"
+                           "L X+0 Y+0 Z+5 FMAX\nL Z-7 FMAX M91\n"),
+                "t.h", setup);
+  ASSERT_EQ(moves.size(), 7u);
+  EXPECT_NEAR(moves[3].end_machine[2], 135 * mm, 1e-12);
+  EXPECT_NEAR(moves[4].end_machine[0], 1 * mm, 1e-12);
+  EXPECT_NEAR(moves[4].end_machine[2], 108 * mm, 1e-12);
+  EXPECT_EQ(moves[4].work_offset, 3);
+  EXPECT_NEAR(moves[5].end_machine[2], -7 * mm, 1e-12);
+}
+
+TEST(Conversational, ToolsDefinedInTheProgram) {
+  ProgramSetup setup;
+  setup.reader = Reader::any;
+  EXPECT_EQ(all_moves("BEGIN PGM T MM\nTOOL DEF 5 L+20 R+3\nTOOL CALL 5 Z S1\nL X-9 Y+0 Z+0 FMAX\n"
+                      "L X+0 Y+0 RL F100\nL Y+9\nL X-9 Y+9 R0 M2\nEND PGM T MM\n",
+                      setup),
+            "3 tool 5\n3 spindle 0 S1\n4 rapid -9 0 0\n5 feed -3 0 0 F100\n6 feed -3 9 0 F100\n"
+            "7 feed -9 9 0 F100\n7 end\n");
+}
+
+TEST(Conversational, RecognisedByContentExtensionAndReader) {
+  const std::string text = "0  BEGIN PGM T MM\n1 L X+1 R0 FMAX\n2 END PGM T MM\n";
+  ProgramSetup setup = example_setup();
+  EXPECT_EQ(text_of(interpret(text, "part.txt", setup)), "2 rapid 1 0 0\n3 end\n");
+  EXPECT_EQ(text_of(interpret("; remark\n" + text, "part.H", setup)), "3 rapid 1 0 0\n4 end\n");
+  setup.reader = Reader::heidenhain;
+  EXPECT_EQ(text_of(interpret("* - part\n" + text, "part", setup)), "3 rapid 1 0 0\n4 end\n");
+  setup.reader = Reader::linuxcnc;
+  EXPECT_THROW(interpret(text, "part.h", setup), InputError);
+}
+
+TEST(Conversational, CalledPrograms) {
+  ProgramSetup setup = example_setup();
+  setup.subroutine_file = [](const std::string& name) -> std::optional<ProgramText> {
+    if (name != "HOLE") return std::nullopt;
+    return ProgramText::of_text("BEGIN PGM HOLE MM\nL IZ-Q1 F100\nL IZ+Q1\nEND PGM HOLE MM\n",
+                                "HOLE.H");
+  };
+  EXPECT_EQ(framed_moves("Q1 = 3\nL X+1 FMAX\nCALL PGM TNC:\\LIB\\HOLE.H\nCALL PGM HOLE\n", setup),
+            "2 rapid 1 0 0\n");
+  const auto moves = interpret(with_frame("Q1 = 3\nCALL PGM HOLE\n"), "t.h", setup);
+  ASSERT_EQ(moves.size(), 6u);
+  EXPECT_NEAR(moves[3].end[2], -3 * mm, 1e-15);
+  EXPECT_NEAR(moves[4].end[2], 0.0, 1e-15);
+}
+
+TEST(Conversational, ParametersFromOutside) {
+  ProgramSetup setup = example_setup();
+  setup.parameters["Q7"] = 12.5;
+  EXPECT_EQ(framed_moves("L X+Q7 FMAX\n", setup), "1 rapid 12.5 0 0\n");
+}
+
+// What comes before a fault is handed out; nothing behind it.
+TEST(Conversational, MovesBeforeAFaultComeFirst) {
+  Interpreter interpreter(with_frame("L X+1 F100\nL X+2\nC X+3 Y+3\nL X+9\n"), "t.h",
+                          example_setup());
+  int moves = 0;
+  EXPECT_THROW(while (interpreter.next() != nullptr)++ moves, InputError);
+  EXPECT_EQ(moves, 5);
+}
+
+}  // namespace
+}  // namespace servomill::controllers::conversational

@@ -1,0 +1,69 @@
+// Drilling cycles. Sources as in line_examples.cpp; the sequences are those of the cycle
+// programming manual of the iTNC 530.
+#include "moves_text.h"
+
+namespace servomill::controllers::conversational {
+
+std::vector<Example> cycle_examples() {
+  return {
+      // pecks of 7, 14 and 20 mm; back to 2 mm above the depth before
+      {"cycle 200",
+       "CYCL DEF 200 DRILLING ~\n  Q200=2 ;SET-UP CLEARANCE ~\n  Q201=-20 ;DEPTH ~\n"
+       "  Q206=+250 ;FEED RATE FOR PLNGNG ~\n  Q202=7 ~\n  Q210=0 ~\n  Q203=+0 ~\n  Q204=50 ~\n"
+       "  Q211=0.5\nL Z+50 FMAX\nL X+10 Y+10 FMAX M99\n",
+       "10 rapid 0 0 50\n11 rapid 10 10 50\n11 rapid 10 10 2\n11 feed 10 10 -7 F250\n"
+       "11 rapid 10 10 2\n11 rapid 10 10 -5\n11 feed 10 10 -14 F250\n11 rapid 10 10 2\n"
+       "11 rapid 10 10 -12\n11 feed 10 10 -20 F250\n11 dwell 0.5\n11 rapid 10 10 2\n"
+       "11 rapid 10 10 50\n"},
+      // on a surface at 5, without a second clearance; CYCL CALL and M89
+      {"cycle 240 and M89",
+       "CYCL DEF 240 CENTERING Q200=2 Q343=0 Q201=-3 Q344=0 Q206=100 Q211=0 Q203=5 Q204=0\n"
+       "L X+10 FMAX\nCYCL CALL\nL X+20 FMAX M89\nL X+30 FMAX\nL X+40 FMAX M99\nL X+50 FMAX\n",
+       "2 rapid 10 0 0\n3 rapid 10 0 7\n3 feed 10 0 2 F100\n3 rapid 10 0 7\n"
+       "4 rapid 20 0 7\n4 rapid 20 0 7\n4 feed 20 0 2 F100\n4 rapid 20 0 7\n"
+       "5 rapid 30 0 7\n5 rapid 30 0 7\n5 feed 30 0 2 F100\n5 rapid 30 0 7\n"
+       "6 rapid 40 0 7\n6 rapid 40 0 7\n6 feed 40 0 2 F100\n6 rapid 40 0 7\n7 rapid 50 0 7\n"},
+      {"cycle 201",
+       "CYCL DEF 201 Q200=2 Q201=-10 Q206=100 Q211=0.25 Q208=250 Q203=0 Q204=20\nCYCL CALL\n",
+       "2 rapid 0 0 2\n2 feed 0 0 -10 F100\n2 dwell 0.25\n2 feed 0 0 2 F250\n2 rapid 0 0 20\n"},
+      {"cycle 202 without disengaging",
+       "CYCL DEF 202 Q200=2 Q201=-10 Q206=100 Q211=0 Q208=0 Q203=0 Q204=0 Q214=0\nCYCL CALL M3\n",
+       "2 spindle 1 S1000\n2 rapid 0 0 2\n2 feed 0 0 -10 F100\n2 feed 0 0 2 F100\n"},
+      // two chip breaks by 0.5, then out; pecks of 6, 5, 4, 4 (the least)
+      {"cycle 203",
+       "CYCL DEF 203 Q200=2 Q201=-19 Q206=100 Q202=6 Q210=0 Q203=0 Q204=0 Q212=1 Q213=2 Q205=4 "
+       "Q211=0 Q208=500 Q256=0.5\nCYCL CALL\n",
+       "2 rapid 0 0 2\n2 feed 0 0 -6 F100\n2 feed 0 0 -5.5 F500\n2 feed 0 0 -11 F100\n"
+       "2 feed 0 0 -10.5 F500\n2 feed 0 0 -15 F100\n2 feed 0 0 2 F500\n2 rapid 0 0 -13\n"
+       "2 feed 0 0 -19 F100\n2 feed 0 0 2 F500\n"},
+      {"cycle 205",
+       "CYCL DEF 205 Q200=2 Q201=-12 Q206=100 Q202=8 Q203=0 Q204=10 Q212=0 Q205=3 Q258=0.5 "
+       "Q259=0.5 "
+       "Q257=5 Q256=0.2 Q211=0 Q379=0 Q253=750\nCYCL CALL\n",
+       "2 rapid 0 0 2\n2 feed 0 0 -5 F100\n2 feed 0 0 -4.8 F100\n2 feed 0 0 -8 F100\n2 rapid 0 0 "
+       "2\n"
+       "2 rapid 0 0 -7.5\n2 feed 0 0 -12 F100\n2 rapid 0 0 2\n2 rapid 0 0 10\n"},
+      // S1000 and a pitch of 1.25: F1250
+      {"cycle 207",
+       "CYCL DEF 207 RIGID TAPPING Q200=2 Q201=-10 Q239=+1.25 Q203=0 Q204=0\nCYCL CALL\n",
+       "2 rapid 0 0 2\n2 spindle 1 S1000\n2 feed 0 0 -10 F1250\n2 spindle -1 S1000\n"
+       "2 feed 0 0 2 F1250\n2 spindle 0 S1000\n"},
+      {"cycle 206",
+       "CYCL DEF 206 TAPPING NEW Q200=2 Q201=-10 Q206=800 Q211=0 Q203=0 Q204=0\nL M3\nCYCL CALL\n",
+       "2 spindle 1 S1000\n3 rapid 0 0 2\n3 feed 0 0 -10 F800\n3 spindle -1 S1000\n"
+       "3 feed 0 0 2 F800\n3 spindle 1 S1000\n"},
+      // begins at Z2, 2 above the surface; back to 0.6 above the depth before
+      {"cycle 1",
+       "CYCL DEF 1.0 TIEFBOHREN\nCYCL DEF 1.1 ABST 2\nCYCL DEF 1.2 TIEFE-15\nCYCL DEF 1.3 ZUSTLG "
+       "10\n"
+       "CYCL DEF 1.4 V.ZEIT 1\nCYCL DEF 1.5 F80\nL Z+2 FMAX\nL X+5 FMAX M99\n",
+       "7 rapid 0 0 2\n8 rapid 5 0 2\n8 feed 5 0 -10 F80\n8 rapid 5 0 2\n8 rapid 5 0 -9.4\n"
+       "8 feed 5 0 -15 F80\n8 dwell 1\n8 rapid 5 0 2\n"},
+      {"CYCL CALL POS and parameters behind the definition",
+       "CYCL DEF 240 Q200=1\nQ343=0\nQ201=-2\nQ206=50\nQ211=0\nQ203=0\nQ204=0\n"
+       "CYCL CALL POS X+3 Y+4 FMAX\n",
+       "8 rapid 3 4 0\n8 rapid 3 4 1\n8 feed 3 4 -2 F50\n8 rapid 3 4 1\n"},
+  };
+}
+
+}  // namespace servomill::controllers::conversational
