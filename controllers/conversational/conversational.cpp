@@ -1,6 +1,6 @@
 #include "controllers/conversational/conversational.h"
 
-#include <cmath>
+#include <array>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -10,6 +10,25 @@
 
 namespace servomill::controllers::conversational {
 namespace {
+
+constexpr auto kReadings = std::to_array<Reading>({
+    {"F in a program in INCH", "tenths of an inch per minute", "all", "TNC 7, Cutting data"},
+    {"F of a block with linear and rotary axes", "the feed of the linear axes",
+     "some machines: of all axes together", "none found"},
+    {"M functions of the machine builder", "without effect on motion", "by machine", "from memory"},
+    {"M functions of displays, messages and filters", "without effect on motion", "all",
+     "from memory"},
+    {"FN 15, FN 16, FN 19, FN 20", "without effect on motion", "all", "from memory"},
+    {"TOOL CALL of a tool without a tool table",
+     "a tool of unknown length: Z of the machine is "
+     "that of its tip",
+     "every control has a table of its own", "none needed"},
+    {"DR2 of TOOL CALL", "without effect: radii of corners act in 3-D compensation only", "all",
+     "from memory"},
+    {"PLANE with TABLE ROT or COORD ROT", "without effect: they choose where a table axis is free",
+     "iTNC 530, TNC 640", "from memory"},
+    {"cycle 13, orientation in cycle 202", "without effect on motion", "all", "from memory"},
+});
 
 // The first line that is neither blank nor a comment.
 bool begins_program(ProgramText& text) {
@@ -40,7 +59,7 @@ double unit_of(const HeidenhainBlock& begin) {
 void add_tool(const HeidenhainBlock& block, double unit, ToolTable& tools) {
   if (block.words.size() < 3) return;
   const auto number = integer_of(block.words[2].text);
-  if (!number || *number < 1 || tools.find(static_cast<int>(*number)) != nullptr) return;
+  if (!number || *number < 1 || tools.entry_of(static_cast<int>(*number)) != nullptr) return;
   try {
     Words words(std::span(block.words).subspan(3));
     const auto L = words.take_number("L");
@@ -60,7 +79,7 @@ void add_tools(const std::string& text, const std::string& file, ToolTable& tool
   if (program.tool_definitions().empty()) return;
   double unit = mm;
   try {
-    if (const auto begin = program.next()) unit = unit_of(*begin);
+    if (const auto begin = program.begin()) unit = unit_of(*begin);
   } catch (const InputError&) {
   }
   for (const HeidenhainBlock& block : program.tool_definitions()) add_tool(block, unit, tools);
@@ -85,6 +104,8 @@ class Source final : public LineSource {
 };
 
 }  // namespace
+
+std::span<const Reading> readings() { return kReadings; }
 
 bool is_conversational(ProgramText& text, Reader reader) {
   if (text.is_generated()) return false;

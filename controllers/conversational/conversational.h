@@ -4,6 +4,7 @@
 #pragma once
 
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,15 @@
 #include "controllers/gcode/program_text.h"
 
 namespace servomill::controllers::conversational {
+
+/// A reading that is warned of where a program needs it.
+struct Reading {
+  std::string_view found;     // in the program
+  std::string_view reading;   // how it is read
+  std::string_view controls;  // and how else
+  std::string_view source;    // manual, or "from memory"
+};
+std::span<const Reading> readings();
 
 /// Returns true for a text that begins with BEGIN PGM, and for a file called *.h or *.H, if the
 /// reader takes such programs: `any` and `heidenhain`. The latter takes every text for one.

@@ -1,6 +1,9 @@
 // Labels, jumps, calls and Q parameters.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "controllers/conversational/formula.h"
 #include "controllers/conversational/translator.h"
 
@@ -10,6 +13,11 @@ namespace {
 constexpr std::size_t kMostCalls = 19;  // in each other: TNC 640; 8 on the iTNC 530 (M)
 
 }  // namespace
+
+int Translator::whole(double value, int most, const Place& place, std::string_view what) const {
+  if (value >= 0.0 && value <= most && value == std::floor(value)) return static_cast<int>(value);
+  fail(place, fmt::format("{} {:g}: must be a whole number in 0 ... {}", what, value, most));
+}
 
 void Translator::count_jump() {
   if (++jumps_ <= setup_.most_jumps) return;
@@ -67,9 +75,11 @@ void Translator::call_label(const std::string& label, std::span<const Heidenhain
   for (const HeidenhainWord& word : rest) text += word.text;
   if (!text.starts_with("REP")) fail(rest.front().place, "REP must stand here");
   text = text.substr(3, text.find('/') - 3);
-  const double wanted = value(operand_of(text, rest.front().place));
+  constexpr int kMostRepeats = 65534;  // [640] p. 631
+  const Place& at = rest.front().place;
+  const int wanted = whole(value(operand_of(text, at)), kMostRepeats, at, "REP");
   const auto key = std::pair(file_, block_mark_.offset);
-  auto [found, is_new] = repeats_.try_emplace(key, std::lround(wanted));
+  auto [found, is_new] = repeats_.try_emplace(key, wanted);
   if (found->second <= 0) {
     repeats_.erase(found);
     return;
@@ -91,20 +101,35 @@ void Translator::call_program(std::span<const HeidenhainWord> words) {
                      name));
   }
   require_no_compensation("CALL PGM");
-  std::string all;
-  for (std::string_view line; text->next(line);) all.append(line).append("\n");
-  auto file = std::make_unique<ProgramFile>(std::move(all), text->file());
-  if (!file->faults().empty()) throw InputError(file->faults());
-  const auto begin = file->next();
-  const bool begins = begin && begin->words.size() > 2 && begin->words[0].text == "BEGIN";
-  if (!begins) fail(words.front().place, fmt::format("{} does not begin with BEGIN PGM", name));
-  if ((begin->words.back().text == "INCH") != is_inch_) {
-    fail(words.front().place, fmt::format("CALL PGM {}: it is in another unit", name));
-  }
+  const std::size_t called = file_of_program(*text, name, words.front().place);
   count_jump();
   returns_.push_back({file_, program().mark(), true, name});
+  file_ = called;
+}
+
+// A program that runs at its begin: one that was called before, unless it is on the way.
+std::size_t Translator::file_of_program(ProgramText& text, const std::string& name,
+                                        const Place& place) {
+  for (std::size_t i = 1; i < files_.size(); ++i) {
+    const bool is_running =
+        i == file_ || std::any_of(returns_.begin(), returns_.end(),
+                                  [i](const Return& one) { return one.file == i; });
+    if (is_running || files_[i]->file() != text.file()) continue;
+    files_[i]->begin();
+    return i;
+  }
+  std::string all;
+  for (std::string_view line; text.next(line);) all.append(line).append("\n");
+  auto file = std::make_unique<ProgramFile>(std::move(all), text.file());
+  if (!file->faults().empty()) throw InputError(file->faults());
+  const auto begin = file->begin();
+  const bool begins = begin && begin->words.size() > 2 && begin->words[0].text == "BEGIN";
+  if (!begins) fail(place, fmt::format("{} does not begin with BEGIN PGM", name));
+  if ((begin->words.back().text == "INCH") != is_inch_) {
+    fail(place, fmt::format("CALL PGM {}: it is in another unit", name));
+  }
   files_.push_back(std::move(file));
-  file_ = files_.size() - 1;
+  return files_.size() - 1;
 }
 
 void Translator::assign(const QName& name, double value) {

@@ -77,10 +77,7 @@ bool Translator::read_function(Words& words, Positioning& p) {
     p.functions.emplace_back(0, place);
     return true;
   }
-  const double number = value(operand_of(word->rest, place));
-  const int m = static_cast<int>(number);
-  if (number != m || m < 0 || m > 999)
-    fail(place, fmt::format("'{}' is no M function", word->text));
+  const int m = whole(value(operand_of(word->rest, place)), 999, place, "M");
   p.functions.emplace_back(m, place);
   if (m == 140) {
     if (words.take("MBMAX") != nullptr)

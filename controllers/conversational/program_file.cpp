@@ -49,6 +49,13 @@ std::optional<HeidenhainBlock> ProgramFile::next() {
   }
 }
 
+std::optional<HeidenhainBlock> ProgramFile::begin() {
+  at_ = {};
+  auto block = next();
+  while (block && block->words.empty()) block = next();
+  return block;
+}
+
 const BlockMark* ProgramFile::find_label(const std::string& label) const {
   const auto found = labels_.find(label);
   return found == labels_.end() ? nullptr : &found->second;

@@ -26,6 +26,8 @@ class ProgramFile {
   /// The next block, nullopt at the end of the text.
   /// @throws InputError
   std::optional<HeidenhainBlock> next();
+  /// The first block with words, from the begin of the text.
+  std::optional<HeidenhainBlock> begin();
   BlockMark mark() const { return at_; }
   void go_to(const BlockMark& mark) { at_ = mark; }
   /// Behind the block LBL of that label; nullptr: there is none.

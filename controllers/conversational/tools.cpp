@@ -21,12 +21,13 @@ void Translator::call_tool(const HeidenhainBlock& block) {
            "the one here numbers; write the number");
     }
     if ((first >= '0' && first <= '9') || (first == 'Q' && word->address.front() == 'Q')) {
-      const double written = value(operand_of(word->text, word->place));
+      const Place at = word->place;
+      const double written = value(operand_of(word->text, at));
       words.take_next();
-      number = static_cast<int>(std::lround(written));
-      if (*number != written) {
-        fail(word->place, "an indexed tool (5.1): the tool table here has whole numbers");
+      if (written != std::floor(written)) {
+        fail(at, "an indexed tool (5.1): the tool table here has whole numbers");
       }
+      number = whole(written, 32767, at, "TOOL CALL");
     }
   }
   for (const char* axis : {"X", "Y", "U", "V", "W"}) {
@@ -96,12 +97,13 @@ void Translator::define_tool(const HeidenhainBlock& block) {
   const HeidenhainWord* first = words.take_next();
   if (first == nullptr) fail("TOOL DEF without a number");
   if (first->text.front() == '"') return;
-  const double number = value(operand_of(first->text, first->place));
+  const int number =
+      whole(value(operand_of(first->text, first->place)), 32767, first->place, "TOOL DEF");
   const auto L = words.take_number("L");
   const auto R = words.take_number("R");
   words.refuse_rest("TOOL DEF");
   if (!L && !R) return;
-  const ToolEntry* tool = setup_.tools.find(static_cast<int>(std::lround(number)));
+  const ToolEntry* tool = setup_.tools.entry_of(number);
   if (tool == nullptr) fail("TOOL DEF with Q parameters; write numbers, or pass --tools");
   constexpr double kSame = 1e-6;  // mm
   const bool differs = (L && std::abs(length(*L) - tool->offset[2] / mm) > kSame) ||

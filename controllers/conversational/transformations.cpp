@@ -34,9 +34,7 @@ std::array<double, 3> euler_angles(const Eigen::Matrix3d& R) {
   const double second = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
   constexpr double kSingular = 1e-12;
   if (std::abs(std::sin(second)) < kSingular) {
-    const double sign = R(2, 2) > 0.0 ? 1.0 : -1.0;
-    return {sign * std::atan2(R(1, 0), R(0, 0)) / deg * (sign > 0.0 ? 1.0 : -1.0),
-            sign > 0.0 ? 0.0 : 180.0, 0.0};
+    return {std::atan2(R(1, 0), R(0, 0)) / deg, R(2, 2) > 0.0 ? 0.0 : 180.0, 0.0};
   }
   return {std::atan2(R(0, 2), -R(1, 2)) / deg, second / deg, std::atan2(R(2, 0), R(2, 1)) / deg};
 }
@@ -138,10 +136,10 @@ void Translator::scale(Words& words) {
 
 // Presets 1 to 9 are the work systems G54 to G59.3.
 void Translator::set_preset(double number) {
-  const int preset = static_cast<int>(number);
-  if (number != preset || preset < 0 || preset > 9) {
+  if (!(number >= 0.0 && number <= 9.0 && number == std::floor(number))) {
     fail(fmt::format("preset {:g}: presets 1 to 9 are known here, as G54 to G59.3", number));
   }
+  const int preset = static_cast<int>(number);
   if (preset == preset_) return;
   if (preset == 0) fail("preset 0 is the one set by hand; it is not known here");
   require_no_compensation("cycle 247");
@@ -293,6 +291,7 @@ void Translator::reset_plane(const std::string& behaviour) {
     fail("PLANE RESET MOVE: the compensating movement of the linear axes is not read; write TURN");
   }
   if (behaviour != "TURN") return;
+  path_.flush();
   if (!setup_.machine) {
     fail(
         "PLANE RESET TURN: which rotary axes there are depends on the machine; name it with "

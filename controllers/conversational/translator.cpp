@@ -95,7 +95,9 @@ void Translator::run_block() {
   const auto block = program().next();
   if (!block) return end_of_file({program().file(), program().line(), 0});
   place_ = block->place;
-  if (jumps_ > 0 && ++jumps_ > 100 * setup_.most_jumps) count_jump();
+  constexpr long kMostBlocks = 10;  // behind the first jump, for each that is allowed
+  if (jumps_ > 0 && ++blocks_ / kMostBlocks > setup_.most_jumps)
+    jumps_ = setup_.most_jumps, count_jump();
   if (block->words.empty() || (block->is_optional && setup_.block_delete)) return;
   execute(*block);
 }
@@ -104,8 +106,7 @@ void Translator::begin_program() {
   has_begun_ = true;
   const std::vector<Fault>& faults = program().faults();
   if (!faults.empty()) throw InputError(faults);
-  auto block = program().next();
-  while (block && block->words.empty()) block = program().next();  // comments
+  const auto block = program().begin();
   if (!block || !is_program_word(*block, "BEGIN")) {
     fail({program().file(), block ? block->place.line : 1, 1},
          "a conversational program begins with BEGIN PGM");
@@ -118,7 +119,7 @@ void Translator::begin_program() {
   if (is_inch_) {
     warn_once("inch", "F of a program in INCH: read as tenths of an inch per minute");
   }
-  lines_.put("G17 G21 G40 G49 G69 G80 G90 G91.1 G94", place_);
+  lines_.put("G17 G21 G40 G49 G80 G90 G91.1 G94", place_);
 }
 
 void Translator::end_of_file(const Place& place) {

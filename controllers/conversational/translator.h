@@ -94,11 +94,13 @@ class Translator {
   double value(const Operand& operand) const { return parameters_.value(operand); }
   double unit() const { return is_inch_ ? 25.4 : 1.0; }  // mm
   double length(const Operand& operand) const { return value(operand) * unit(); }
+  int whole(double value, int most, const Place& place, std::string_view what) const;
 
   // flow.cpp: labels, jumps, parameters
   void call(const HeidenhainBlock& block);
   void call_label(const std::string& label, std::span<const HeidenhainWord> rest);
   void call_program(std::span<const HeidenhainWord> words);
+  std::size_t file_of_program(ProgramText& text, const std::string& name, const Place& place);
   void label(const HeidenhainBlock& block);
   void go_to(const std::string& label);
   void count_jump();
@@ -210,8 +212,8 @@ class Translator {
   };
   std::vector<Return> returns_;
   std::map<std::pair<std::size_t, std::size_t>, long> repeats_;  // by file and place of CALL LBL
-  long jumps_ = 0;
-  BlockMark block_mark_;  // of the block that runs
+  long jumps_ = 0, blocks_ = 0;                                  // blocks: since the first jump
+  BlockMark block_mark_;                                         // of the block that runs
 
   ProgramSetup setup_;
   GcodeLines lines_;

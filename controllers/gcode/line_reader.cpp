@@ -229,8 +229,7 @@ TolerantLine tolerant_line(std::string_view line, Reader reader) {
 std::string other_language(std::string_view line, int column) {
   for (const std::string_view word : {"BEGIN PGM", "TOOL CALL", "CYCL DEF", "BLK FORM"}) {
     if (contains_word(line, word)) {
-      return fmt::format("'{}' is Heidenhain conversational; programs in G-code are read here",
-                         word);
+      return fmt::format("'{}' is Heidenhain conversational; --reader heidenhain reads it", word);
     }
   }
   for (const std::string_view word : {"TRAORI", "TRAFOOF", "SUPA", "MCALL", "CYCLE", "POCKET",

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "controllers/conversational/conversational.h"
 #include "controllers/gcode/reader.h"
 #include "sim/config/document.h"
 #include "sim/evaluation/comparison.h"
@@ -45,6 +46,12 @@ std::string describe_reader_rules() {
     }
     out += fmt::format("{}: {}\n  controls: {}\n  --reader: {}\n  source: {}\n", rule.found,
                        rule.reading, rule.controls, readers, rule.source);
+  }
+  for (const auto& reading : controllers::conversational::readings()) {
+    out += fmt::format(
+        "conversational: {}: {}\n  controls: {}\n  --reader: any, heidenhain\n"
+        "  source: {}\n",
+        reading.found, reading.reading, reading.controls, reading.source);
   }
   return out;
 }

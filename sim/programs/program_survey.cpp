@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "controllers/conversational/conversational.h"
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/modal_groups.h"
 #include "controllers/gcode/request.h"
@@ -202,8 +203,12 @@ ProgramSurvey survey_program(const SurveyRequest& request) {
   ProgramSetup setup = program_setup(request.inputs, request.program_file);
   for (const std::string& text : request.tool_lengths) add_tool_length(text, setup.tools);
   if (setup.tools.empty()) setup.tools.take_any_number();
+  ProgramText text = ProgramText::of_file(out.file);
+  using controllers::Reader;
+  const bool is_conversational = controllers::conversational::is_conversational(text, Reader::any);
   for (std::size_t k = 0; k < controllers::kReaders.size(); ++k) {
-    if (static_cast<controllers::Reader>(k) == controllers::Reader::any) continue;
+    const auto reader = static_cast<Reader>(k);
+    if (reader == Reader::any || (reader == Reader::heidenhain && !is_conversational)) continue;
     out.readers.push_back(verdict(k, setup, out.file));
   }
   return out;

@@ -10,15 +10,19 @@ void add_program_options(Options& options) {
   };
   options.add()("tools", text("TABLE"), "tool table in LinuxCNC's format, mm");
   options.add()("parameter", texts("#N=NUMBER"),
-                "sets a parameter before the program runs, such as '#101=1394'");
+                "sets a parameter before the program runs, such as '#101=1394', or Q5=20 in a "
+                "conversational program");
   options.add()("parameter-file", text("FILE"),
                 "LinuxCNC's file of numbered parameters (\"var\" file), mm; it is never written");
-  options.add()("subs", texts("FOLDER"),
-                "where files of subroutines are, NAME.ngc for O<NAME> CALL; the folder of the "
-                "program comes first");
+  options.add()(
+      "subs", texts("FOLDER"),
+      "where files of subroutines are, NAME.ngc for O<NAME> CALL, NAME.H for CALL PGM; the "
+      "folder of the "
+      "program comes first");
   options.add()("reader", text("NAME"),
                 "whose rules the program follows: any (default: beyond LinuxCNC's what other "
-                "controls accept, with a warning), linuxcnc (strict), fanuc, haas, mach, grbl");
+                "controls accept, with a warning), linuxcnc (strict), fanuc, haas, mach, grbl, "
+                "heidenhain (conversational; any takes it from BEGIN PGM or a file *.h)");
   options.add()("block-delete", "leaves out the lines that start with '/'");
   options.add()("max-jumps", po::value<long>()->value_name("N"),
                 "loops turned and subroutines called before a program counts as endless "

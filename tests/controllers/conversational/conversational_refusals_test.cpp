@@ -77,8 +77,8 @@ const Refusal kRefusals[] = {
     {"L X+9 RL F1\nTOOL CALL 2 Z S1\n",
      "t.h:5:1: error: TOOL CALL with RL or RR in force; write a block with R0 before"},
     {"APPR LT X+9 Y+9 LEN5 R0 F1\n",
-     "t.h:4:1: error: APPR LT needs RL or RR: without, an iTNC 530 and a TNC 640 do different "
-     "things"},
+     "t.h:4:1: error: APPR LT with R0: an iTNC 530 and a TNC 640 do different things; write RL or "
+     "RR"},
     {"DEP LT LEN5 F1\n", "t.h:4:1: error: DEP: a contour element with RL or RR must precede it"},
     {"APPR LT X+9 Y+0 LEN5 RL F1\nL Y+9\nDEP LT LEN5 Z+3\n",
      "t.h:6:1: error: DEP LT with Z: some controls move it with the departure, some behind; write "

@@ -187,9 +187,8 @@ TEST(Reader, ATableThatLacksTheNumberShowsASlip) {
 
 TEST(Reader, OtherLanguagesAreRefusedByName) {
   EXPECT_EQ(
-      refusal("0 BEGIN PGM PART MM\n1 L X+1 R0 FMAX\n"),
-      "p.nc:1:1: error: 'BEGIN PGM' is Heidenhain conversational; programs in G-code are read "
-      "here");
+      refusal("G1 X1 F1\nTOOL CALL 1 Z S1\n"),
+      "p.nc:2:1: error: 'TOOL CALL' is Heidenhain conversational; --reader heidenhain reads it");
   EXPECT_EQ(refusal("N10 CYCLE81(5,0,2,-10)\n"),
             "p.nc:1:6: error: 'CYCLE' is a word of Siemens' language; programs in G-code are read "
             "here");
