@@ -20,6 +20,7 @@ constexpr double kFeedTol = 1e-9;       // relative
 ProgramSetup setup_of(const ControlSetup& control) {
   ProgramSetup setup;
   setup.reader = Reader::heidenhain;
+  setup.block_delete = control.skips_blocks;
   for (std::size_t i = 0; i < 9; ++i) {
     if (control.work_offset[i]) setup.work_offset[i] = *control.work_offset[i];
     setup.work_rotation[i] = control.work_rotation[i];
@@ -77,7 +78,8 @@ void expect_equal(const Move& move, const MachineAction& action) {
 
 // @return the number of motions; 0 where one of the two refuses the program
 std::size_t expect_same(const std::string& program, const ControlSetup& control,
-                        const HeidenhainSettings& settings = {}) {
+                        HeidenhainSettings settings = {}) {
+  settings.is_feed_of_all_axes = false;  // the interpreter's reading, of which it warns
   std::vector<MachineAction> actions;
   std::vector<Move> moves;
   try {
@@ -100,9 +102,6 @@ TEST(TwoReaders, AgreeOnTheExamplesOfTheVerificationReader) {
   const auto check = [&](const HeidenhainExample& example, bool has_frame) {
     SCOPED_TRACE(example.name);
     if (!example.settings.is_rapid_straight) return;
-    for (const double rotation : example.setup.work_rotation) {
-      if (rotation != 0.0) return;  // of the preset, which G-code's work systems have, too
-    }
     const std::string text = has_frame ? heidenhain_program(example.program) : example.program;
     expect_same(text, example.setup, example.settings) > 0 ? ++programs : ++refused;
   };
@@ -110,8 +109,8 @@ TEST(TwoReaders, AgreeOnTheExamplesOfTheVerificationReader) {
   for (const auto& one : heidenhain_circle_examples()) check(one, true);
   for (const auto& one : heidenhain_cycle_examples()) check(one, true);
   for (const auto& one : heidenhain_whole_examples()) check(one, false);
-  RecordProperty("programs", programs);
-  RecordProperty("refused", refused);
+  EXPECT_GE(programs, 40);
+  EXPECT_LE(refused, 40);
 }
 
 class Generator {
