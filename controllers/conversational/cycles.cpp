@@ -75,7 +75,8 @@ void Translator::define_cycle(const HeidenhainBlock& block) {
   if (*step >= 0) {
     return define_old_cycle(static_cast<int>(*number), static_cast<int>(*step), block);
   }
-  if (!is_drilling(static_cast<int>(*number)) && *number != 247 && *number != 32) {
+  const bool is_known = is_drilling(static_cast<int>(*number)) || *number == 247;
+  if (!is_known || *number == 1) {
     fail(words[2].place, fmt::format("CYCL DEF {}: this cycle is not known", *number));
   }
   cycle_ = Cycle{static_cast<int>(*number), {}, true, place_};

@@ -190,6 +190,7 @@ bool Translator::run_function(const HeidenhainBlock& block) {
   const auto number = integer_of(head);
   if (!number) return false;
   const auto rest = words.subspan(is_split ? 2 : 1);
+  if (rest.empty()) fail(fmt::format("FN {}: without what it is to do", *number));
   if (*number <= 8 || *number == 13) {
     const Assignment made = evaluate_function(static_cast<int>(*number), rest, parameters_);
     assign(made.name, made.value);

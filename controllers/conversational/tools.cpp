@@ -20,7 +20,7 @@ void Translator::call_tool(const HeidenhainBlock& block) {
            "a tool called by its name: the tool table of the control has the names, "
            "the one here numbers; write the number");
     }
-    if ((first >= '0' && first <= '9') || (first == 'Q' && word->address.front() == 'Q')) {
+    if ((first >= '0' && first <= '9') || (first == 'Q' && word->address.starts_with('Q'))) {
       const Place at = word->place;
       const double written = value(operand_of(word->text, at));
       words.take_next();

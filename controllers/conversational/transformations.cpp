@@ -202,7 +202,7 @@ void Translator::plane(const HeidenhainBlock& block) {
   };
   if (words.take("RESET") != nullptr) {
     const std::string how = behaviour();
-    while (words.peek() != nullptr && words.peek()->address.front() == 'F') words.take_next();
+    while (words.peek() != nullptr && words.peek()->address.starts_with('F')) words.take_next();
     words.refuse_rest("PLANE RESET");
     return reset_plane(how);
   }
@@ -240,7 +240,7 @@ void Translator::tilt(const std::array<double, 3>& angles, const std::string& be
               "where a table axis is free");
   }
   words.take_number("MB");
-  while (words.peek() != nullptr && words.peek()->address.front() == 'F') {
+  while (words.peek() != nullptr && words.peek()->address.starts_with('F')) {
     Positioning ignored;
     read_feed(words, ignored);
   }

@@ -48,7 +48,8 @@ void run(std::string_view text) {
       require_move(*move, lines, s);
       s = move->s_end;
     }
-    require_places(interpreter.warnings(), text, kFile);
+    const std::vector<Fault>& warnings = interpreter.warnings();
+    if (!warnings.empty()) require_places(warnings, text, kFile);
   } catch (const InputError& error) {
     require(!error.faults().empty(), "an InputError has a fault");
     require_places(error.faults(), text, kFile);
