@@ -22,7 +22,6 @@ constexpr auto kRefusals = std::to_array<Refusal>({
     {14, 16, "SL cycles are not read; let the CAM system write their moves"},
     {19, 19, "cycle 19 leaves the rotary axes to the program; write PLANE SPATIAL"},
     {20, 25, "SL cycles are not read; let the CAM system write their moves"},
-    {26, 26, "scaling by axis is not read"},
     {27, 30, "cylinder surfaces and digitized data are not read"},
     {39, 39, "cylinder surfaces are not read"},
     {204, 204, "back boring needs the eccentricity of its tool; write the moves"},
@@ -92,8 +91,8 @@ void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& b
   if (step == 0) {
     open_cycle_ = number;
     if (number == 1) cycle_ = Cycle{1, {}, false, place_}, is_modal_call_ = false;
-    if (number == 7 || number == 8 || number == 9 || number == 10 || number == 11 || number == 32 ||
-        number == 1) {
+    if (number == 7 || number == 8 || number == 9 || number == 10 || number == 11 || number == 26 ||
+        number == 32 || number == 1) {
       return;
     }
     const bool is_old = number == 2 || number == 17 || number == 18 || number == 3;
@@ -115,6 +114,8 @@ void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& b
       return rotate(words);
     case 11:
       return scale(words);
+    case 26:
+      return scale_axes(words);
     default:
       break;
   }

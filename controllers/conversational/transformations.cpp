@@ -134,6 +134,18 @@ void Translator::scale(Words& words) {
   set_frame(frame);
 }
 
+// CYCL DEF 26.1 X 1 Y 1: factors of 1 end it. TNC 620 cycle programming (340 56x-02) p. 256
+void Translator::scale_axes(Words& words) {
+  for (const std::string_view axis : {"X", "Y", "Z", "CCX", "CCY"}) {
+    const auto factor = words.take_number(axis);
+    if (!factor || axis.starts_with("CC") || value(*factor) == 1.0) continue;
+    fail(factor->place, fmt::format("cycle 26: {} scaled by {:g}; only factors of 1, which end it, "
+                                    "are read",
+                                    axis, value(*factor)));
+  }
+  words.refuse_rest("cycle 26");
+}
+
 // Presets 1 to 9 are the work systems G54 to G59.3.
 void Translator::set_preset(double number) {
   if (!(number >= 0.0 && number <= 9.0 && number == std::floor(number))) {

@@ -171,6 +171,7 @@ class Translator {
   void mirror(std::span<const HeidenhainWord> words);
   void rotate(Words& words);
   void scale(Words& words);
+  void scale_axes(Words& words);
   void set_preset(double number);
   void set_frame(const Frame& frame);
   void plane(const HeidenhainBlock& block);

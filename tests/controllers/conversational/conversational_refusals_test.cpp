@@ -119,6 +119,8 @@ const Refusal kRefusals[] = {
     {"CYCL DEF 8.0\nCYCL DEF 8.1 X\nCYCL DEF 10.0\nCYCL DEF 10.1 ROT+30\n",
      "t.h:7:1: error: cycles 8 and 10 are both active: what they make together depends on their "
      "order; reset one"},
+    {"CYCL DEF 26.0\nCYCL DEF 26.1 X 1 Y 0.5\n",
+     "t.h:5:19: error: cycle 26: Y scaled by 0.5; only factors of 1, which end it, are read"},
     {"CYCL DEF 11.0\nCYCL DEF 11.1 SCL 0.5\nL Z-5 F1\n",
      "t.h:6:1: error: Z moves while cycle 11 is active: MP7410 decides if it is scaled; move Z "
      "before"},

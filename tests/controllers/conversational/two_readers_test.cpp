@@ -123,7 +123,8 @@ class Generator {
     for (const char* line :
          {"CYCL DEF 7.0 DATUM SHIFT", "CYCL DEF 7.1 X+0", "CYCL DEF 7.2 Y+0", "CYCL DEF 7.3 Z+0",
           "CYCL DEF 8.0 MIRROR IMAGE", "CYCL DEF 8.1", "CYCL DEF 10.0 ROTATION",
-          "CYCL DEF 10.1 ROT+0", "CYCL DEF 11.0 SCALING", "CYCL DEF 11.1 SCL 1", "M137",
+          "CYCL DEF 10.1 ROT+0", "CYCL DEF 11.0 SCALING", "CYCL DEF 11.1 SCL 1", "CYCL DEF 26.0",
+          "CYCL DEF 26.1 X 1 Y 1 Z 1", "CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1", "M137",
           "L Z-5 R0 FMAX M91"}) {
       put(line);
     }
