@@ -13,8 +13,8 @@ namespace servomill::sim {
 /// NAME.ngc in the folder of a program; NAME.H for a program called *.H.
 std::string subroutine_file(const std::string& program_file, const std::string& name);
 
-/// Finds the file NAME.ngc (NAME.H) of a subroutine: beside the program, then in `folders`, in their order.
-/// As LinuxCNC, folders within these are not looked into.
+/// Finds the file NAME.ngc (NAME.H) of a subroutine: beside the program, then in `folders`, in
+/// their order. As LinuxCNC, folders within these are not looked into.
 std::function<std::optional<controllers::ProgramText>(const std::string& name)> subroutine_files(
     const std::string& program_file, const std::vector<std::string>& folders);
 
