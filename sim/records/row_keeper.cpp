@@ -7,32 +7,65 @@
 namespace servomill::sim {
 namespace {
 
-SpoolFormat format_of(const RowKeeping& keeping, std::size_t rows) {
+// Of a thinned recording it is known what it may take, not how many rows that is; whoever thins has
+// to see chunks of it in time.
+std::size_t rows_within(const ThinningLimits& limits, const Series& series) {
+  constexpr double kLeastChunks = 16.0;
+  const double rows =
+      limits.bytes / (kLeastChunks * static_cast<double>(series.width() * sizeof(double)));
+  return static_cast<std::size_t>(std::clamp(rows, 64.0, 16384.0));
+}
+
+SpoolFormat format_of(const RowKeeping& keeping, std::size_t chunk_rows) {
   const std::string& folder = keeping.folder;
   return {.folder = folder.empty() ? std::filesystem::temp_directory_path().string() : folder,
-          .chunk_rows = even_chunk_rows(rows),
+          .chunk_rows = chunk_rows,
           .compression = keeping.compression};
 }
 
 }  // namespace
 
-RowKeeper::RowKeeper(std::vector<Signal> signals, const RowKeeping& keeping, std::size_t rows)
-    : series_(std::move(signals)) {
+RowKeeper::RowKeeper(const std::vector<Signal>& signals, const RowKeeping& keeping,
+                     std::size_t rows)
+    : series_(signals) {
+  if (keeping.thinning) {
+    ThinningLimits limits = *keeping.thinning;
+    limits.rows = rows;
+    thinning_.emplace(signals, limits);
+    series_ = Series(thinning_->signals());
+    spool_ = std::make_shared<SeriesSpool>(series_.signals(),
+                                           format_of(keeping, rows_within(limits, series_)));
+    return;
+  }
   const double size = static_cast<double>(rows) * static_cast<double>(series_.width()) *
                       static_cast<double>(sizeof(double));
   if (size > keeping.most_in_memory) {
-    spool_ = std::make_shared<SeriesSpool>(series_.signals(), format_of(keeping, rows));
+    spool_ =
+        std::make_shared<SeriesSpool>(series_.signals(), format_of(keeping, even_chunk_rows(rows)));
   } else {
     series_.reserve(rows);
   }
 }
 
 void RowKeeper::add(std::span<const double> rows) {
+  if (!thinning_) return keep(rows);
+  staying_.clear();
+  thinning_->add(rows, staying_);
+  keep(staying_);
+  thinning_->account(spool_->bytes(), spool_->rows_on_disk());
+}
+
+void RowKeeper::keep(std::span<const double> rows) {
   if (spool_ != nullptr) return spool_->append(rows);
   std::copy(rows.begin(), rows.end(), series_.add_rows(rows.size() / series_.width()));
 }
 
 Series RowKeeper::take() {
+  if (thinning_) {
+    staying_.clear();
+    thinning_->finish(staying_);
+    keep(staying_);
+  }
   if (spool_ == nullptr) return std::move(series_);
   spool_->finish();
   return {series_.signals(), std::move(spool_)};

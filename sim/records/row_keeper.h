@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "sim/records/row_thinning.h"
 #include "sim/records/series.h"
 #include "sim/records/series_spool.h"
 
@@ -17,14 +19,16 @@ struct RowKeeping {
   std::string folder;            // of what memory is not to hold; empty: that of temporary files
   double most_in_memory = 64e6;  // bytes of the rows of a case; more go to the disk
   int compression = 1;           // there
+  std::optional<ThinningLimits> thinning = {};  // none: every row is kept
 };
 
 /// Rows of one case. What it holds in memory does not grow with their number, once that is large.
 class RowKeeper {
  public:
+  /// @param signals  of the rows that come; of those that are kept if they are thinned: more
   /// @param rows  that will come, about
   /// @throws SystemError, as all members
-  RowKeeper(std::vector<Signal> signals, const RowKeeping& keeping, std::size_t rows);
+  RowKeeper(const std::vector<Signal>& signals, const RowKeeping& keeping, std::size_t rows);
 
   /// Adds whole rows, one behind the other.
   void add(std::span<const double> rows);
@@ -32,6 +36,10 @@ class RowKeeper {
   Series take();
 
  private:
+  void keep(std::span<const double> rows);
+
+  std::optional<RowThinning> thinning_;
+  std::vector<double> staying_;         // of the rows that come, if they are thinned
   Series series_;                       // in memory
   std::shared_ptr<SeriesSpool> spool_;  // or there
 };

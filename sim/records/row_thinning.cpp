@@ -1,0 +1,227 @@
+#include "sim/records/row_thinning.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "plant/vocabulary/tool_axis.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr double kShare = 0.97;             // of the limit; the rest is for what the file notes
+constexpr double kUsualCompression = 4.0;   // until it is known
+constexpr double kLongest = 1e4;            // rows that one stands for in any case
+constexpr double kMostSaved = 1e4;          // events that were not needed before
+constexpr double kContourShare = 0.1;       // of the greatest contour error
+constexpr double kLeastContourError = 0.1;  // um; changes below it are nothing
+
+std::size_t column_of(const Series& series, std::string_view name) {
+  return series.column(name).value();
+}
+
+Eigen::Vector3d vector_at(std::span<const double> row, std::size_t first) {
+  return {row[first], row[first + 1], row[first + 2]};
+}
+
+double as_single(double value) { return static_cast<double>(static_cast<float>(value)); }
+
+}  // namespace
+
+RowThinning::RowThinning(const std::vector<Signal>& signals, ThinningLimits limits)
+    : limits_(std::move(limits)), signals_(signals) {
+  const Series coming(signals);
+  width_ = coming.width();
+  line_ = column_of(coming, "line");
+  section_ = column_of(coming, "section");
+  rapid_ = column_of(coming, "rapid");
+  contour_error_ = column_of(coming, "contour_error");
+  for (const Signal& signal : coming.signals()) {
+    if (!signal.name.starts_with("ref_")) continue;
+    for (std::size_t c = 0; c < signal.columns(); ++c) axes_.push_back(signal.offset + c);
+  }
+  signals_.push_back({std::string(kSamples), "1",
+                      "instants that the row stands for: itself and those left out before it", "",
+                      ""});
+  for (const Signal& signal : coming.signals()) {
+    const std::string& name = signal.name;
+    if (name == "following_error_linear" || name == "tool_deviation" || name == "contour_error") {
+      watch(signal, {.from = signal.offset, .has_mean = true});
+    } else if (name == "following_error_rotary" || name.starts_with("current_")) {
+      watch(signal, {.from = signal.offset});
+    }
+  }
+  watch_tool(coming);
+  senses_.assign(axes_.size(), 0);
+  bytes_per_row_ =
+      static_cast<double>(Series(signals_).width() * sizeof(double)) / kUsualCompression;
+  spread();
+}
+
+// Distance and angle of the tool, which no column of the rows holds.
+void RowThinning::watch_tool(const Series& coming) {
+  Signal tip = *coming.find("tool_deviation"), axis = *coming.find("tool_axis_nominal");
+  tip.name = "tool_tip_deviation";
+  tip.long_name = "distance of the true from the nominal tool centre point at equal s";
+  axis.name = "tool_axis_deviation";
+  axis.long_name = "angle between the true and the nominal tool axis at equal s";
+  axis.units = "urad";
+  tip.labels = tip.scale = axis.labels = axis.scale = "";
+  watch(tip, {.kind = Watched::Kind::length, .from = tip.offset, .has_mean = true});
+  watch(axis, {.kind = Watched::Kind::angle,
+               .from = axis.offset,
+               .other = coming.find("tool_axis_true")->offset,
+               .has_mean = true});
+}
+
+void RowThinning::watch(const Signal& signal, Watched watched) {
+  watched.columns = signal.columns();
+  watched.is_single = signal.storage == Storage::float32;
+  watched_.push_back(watched);
+  told_.resize(told_.size() + watched.columns);
+  const auto add = [&](const char* suffix, const char* what, Storage storage) {
+    Signal one = signal;
+    one.name += suffix;
+    one.long_name = std::string(what) + " of the samples: " + signal.long_name;
+    one.storage = storage;
+    signals_.push_back(std::move(one));
+  };
+  add("_least", "least", signal.storage);
+  add("_greatest", "greatest", signal.storage);
+  if (!watched.has_mean) return;
+  add("_mean", "mean", Storage::float32);
+  add("_rms", "root mean square", Storage::float32);
+}
+
+void RowThinning::add(std::span<const double> rows, std::vector<double>& out) {
+  for (; !rows.empty(); rows = rows.subspan(width_)) add_row(rows.first(width_), out);
+}
+
+void RowThinning::add_row(std::span<const double> row, std::vector<double>& out) {
+  const bool is_first = before_.empty();
+  if (!is_first) {
+    const bool event = is_event(before_, row);
+    if (samples_ > 0 && (must_stay(before_, row) || (event && takes_event()))) stay(before_, out);
+  }
+  tell_of(row);
+  ++come_;
+  events_ = std::min(kMostSaved, events_ + events_per_row_);
+  if (is_first || keeps_all(row) || static_cast<double>(samples_) >= longest_ ||
+      (contour_error_has_changed(row) && takes_event())) {
+    stay(row, out);
+  }
+  before_.assign(row.begin(), row.end());
+}
+
+void RowThinning::finish(std::vector<double>& out) {
+  if (samples_ > 0) stay(before_, out);
+}
+
+// What rows tell of others must be of one section, and of feed or rapid.
+bool RowThinning::must_stay(std::span<const double> before, std::span<const double> row) const {
+  return row[section_] != before[section_] || row[rapid_] != before[rapid_];
+}
+
+bool RowThinning::keeps_all(std::span<const double> row) const {
+  const auto section = static_cast<std::size_t>(row[section_]);
+  return section < limits_.keep_all.size() && limits_.keep_all[section];
+}
+
+// Tells if a block ended or an axis reversed at the row before.
+bool RowThinning::is_event(std::span<const double> before, std::span<const double> row) {
+  bool any = row[line_] != before[line_];
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const double step = row[axes_[i]] - before[axes_[i]];
+    if (step == 0.0) continue;
+    const int sense = step > 0.0 ? 1 : -1;
+    any |= sense == -senses_[i];
+    senses_[i] = sense;
+  }
+  return any;
+}
+
+bool RowThinning::contour_error_has_changed(std::span<const double> row) {
+  const double error = row[contour_error_];
+  greatest_contour_error_ = std::max(greatest_contour_error_, error);
+  return std::abs(error - last_contour_error_) >
+         std::max(kLeastContourError, kContourShare * greatest_contour_error_);
+}
+
+bool RowThinning::takes_event() {
+  if (longest_ <= 1.0) return true;
+  if (events_ < 1.0) return false;
+  events_ -= 1.0;
+  return true;
+}
+
+double RowThinning::value(const Watched& watched, std::size_t column, std::span<const double> row) {
+  switch (watched.kind) {
+    case Watched::Kind::column:
+      return row[watched.from + column];
+    case Watched::Kind::length:
+      return vector_at(row, watched.from).norm();
+    case Watched::Kind::angle:
+      return angle_between(vector_at(row, watched.from), vector_at(row, watched.other)) / urad;
+  }
+  return 0.0;
+}
+
+void RowThinning::tell_of(std::span<const double> row) {
+  Told* told = told_.data();
+  for (const Watched& watched : watched_) {
+    for (std::size_t c = 0; c < watched.columns; ++c, ++told) {
+      const double v = value(watched, c, row);
+      told->least = samples_ == 0 ? v : std::min(told->least, v);
+      told->greatest = samples_ == 0 ? v : std::max(told->greatest, v);
+      told->sum = samples_ == 0 ? v : told->sum + v;
+      told->squares = samples_ == 0 ? v * v : told->squares + v * v;
+    }
+  }
+  ++samples_;
+}
+
+void RowThinning::stay(std::span<const double> row, std::vector<double>& out) {
+  out.insert(out.end(), row.begin(), row.end());
+  const auto samples = static_cast<double>(samples_);
+  out.push_back(samples);
+  const Told* told = told_.data();
+  for (const Watched& watched : watched_) {
+    const auto put = [&](auto value, bool is_single) {
+      for (std::size_t c = 0; c < watched.columns; ++c) {
+        out.push_back(is_single ? as_single(value(told[c])) : value(told[c]));
+      }
+    };
+    put([](const Told& one) { return one.least; }, watched.is_single);
+    put([](const Told& one) { return one.greatest; }, watched.is_single);
+    if (watched.has_mean) {
+      put([&](const Told& one) { return one.sum / samples; }, true);
+      put([&](const Told& one) { return std::sqrt(one.squares / samples); }, true);
+    }
+    told += watched.columns;
+  }
+  last_contour_error_ = row[contour_error_];
+  samples_ = 0;
+  ++stayed_;
+}
+
+void RowThinning::account(std::uint64_t bytes, std::size_t rows) {
+  if (rows == accounted_) return;
+  accounted_ = rows;
+  bytes_ = static_cast<double>(bytes);
+  bytes_per_row_ = bytes_ / static_cast<double>(rows);
+  spread();
+}
+
+// Half of the rows that the limit leaves go to events, half to the time between them.
+void RowThinning::spread() {
+  const double in_memory = static_cast<double>(stayed_ - accounted_) * bytes_per_row_;
+  const double left = (kShare * limits_.bytes - bytes_ - in_memory) / bytes_per_row_;
+  const double coming = static_cast<double>(limits_.rows) - static_cast<double>(come_);
+  const double apart = left > 0.0 ? std::max(0.0, coming) / left : kLongest;
+  longest_ = apart <= 1.0 ? 1.0 : std::min(kLongest, 2.0 * apart);
+  events_per_row_ = 1.0 / longest_;
+}
+
+}  // namespace servomill::sim
