@@ -27,7 +27,7 @@ BallDeviation deviation_of(const std::string& quantity, const plant::MachineChai
 }  // namespace
 
 TipPath BallQuantities::path_of(const std::vector<std::string>& sections) {
-  const std::vector<std::size_t>& rows = samples_.rows(sections);
+  const RowRanges& rows = samples_.rows(sections);
   TipPath out;
   out.nominal = samples_.positions("tool_position_nominal", rows);
   out.actual = samples_.positions("tool_position_true", rows);
@@ -37,9 +37,10 @@ TipPath BallQuantities::path_of(const std::vector<std::string>& sections) {
     const bool linear = is_linear(axis.axis);
     const auto column = servo.column(linear ? "ref_linear" : "ref_rotary", letter(axis.axis));
     if (!column) return {};
-    for (std::size_t n = 0; n < rows.size(); ++n) {
-      out.Q[n][axis.joint] = servo.at(rows[n], *column) * (linear ? mm : deg);
-    }
+    auto Q = out.Q.begin();
+    rows.for_each([&](std::size_t row) {
+      (*Q++)[axis.joint] = servo.at(row, *column) * (linear ? mm : deg);
+    });
   }
   if (out.nominal.size() != rows.size() || out.actual.size() != rows.size()) return {};
   return out;

@@ -8,13 +8,13 @@
 
 namespace servomill::sim {
 
-const std::vector<std::size_t>& CaseSamples::rows(const std::vector<std::string>& sections) {
+const RowRanges& CaseSamples::rows(const std::vector<std::string>& sections) {
   const auto known = rows_.find(sections);
   return known != rows_.end() ? known->second
                               : rows_.emplace(sections, find_rows(sections)).first->second;
 }
 
-std::vector<std::size_t> CaseSamples::find_rows(const std::vector<std::string>& sections) const {
+RowRanges CaseSamples::find_rows(const std::vector<std::string>& sections) const {
   const Series& series = *data_.servo;
   const std::size_t rapid = *series.column("rapid"), section = *series.column("section");
   std::vector<bool> wanted(data_.sections.size(), sections.empty());
@@ -23,25 +23,25 @@ std::vector<std::size_t> CaseSamples::find_rows(const std::vector<std::string>& 
       wanted[i] = true;
     }
   }
-  std::vector<std::size_t> rows;
+  RowRanges rows;
   for (std::size_t row = 0; row < series.rows(); ++row) {
     const auto index = static_cast<std::size_t>(series.at(row, section));
-    if (series.at(row, rapid) == 0.0 && index < wanted.size() && wanted[index]) rows.push_back(row);
+    if (series.at(row, rapid) == 0.0 && index < wanted.size() && wanted[index]) rows.add(row);
   }
   return rows;
 }
 
 std::vector<Eigen::Vector3d> CaseSamples::positions(std::string_view name,
-                                                    const std::vector<std::size_t>& rows) const {
+                                                    const RowRanges& rows) const {
   std::array<std::optional<std::size_t>, 3> columns;
   for (std::size_t i = 0; i < 3; ++i) columns[i] = data_.servo->column(name, "XYZ"[i]);
   std::vector<Eigen::Vector3d> out;
   if (!columns[0] || !columns[1] || !columns[2]) return out;
   out.reserve(rows.size());
-  for (const std::size_t row : rows) {
+  rows.for_each([&](std::size_t row) {
     out.emplace_back(data_.servo->at(row, *columns[0]) * mm, data_.servo->at(row, *columns[1]) * mm,
                      data_.servo->at(row, *columns[2]) * mm);
-  }
+  });
   return out;
 }
 

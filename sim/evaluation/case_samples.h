@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/evaluation/comparison.h"
+#include "sim/evaluation/row_ranges.h"
 
 namespace servomill::sim {
 
@@ -21,18 +22,17 @@ class CaseSamples {
   const CaseData& data() const { return data_; }
 
   /// Rows of feed motion in these sections; none named: in all.
-  const std::vector<std::size_t>& rows(const std::vector<std::string>& sections);
+  const RowRanges& rows(const std::vector<std::string>& sections);
 
   /// A point in the workpiece at some rows, m; empty if it was not recorded.
   /// @param name  "tool_position_true" or "tool_position_nominal"
-  std::vector<Eigen::Vector3d> positions(std::string_view name,
-                                         const std::vector<std::size_t>& rows) const;
+  std::vector<Eigen::Vector3d> positions(std::string_view name, const RowRanges& rows) const;
 
  private:
-  std::vector<std::size_t> find_rows(const std::vector<std::string>& sections) const;
+  RowRanges find_rows(const std::vector<std::string>& sections) const;
 
   const CaseData& data_;
-  std::map<std::vector<std::string>, std::vector<std::size_t>> rows_;
+  std::map<std::vector<std::string>, RowRanges> rows_;
 };
 
 }  // namespace servomill::sim

@@ -27,7 +27,7 @@ double larger_at_reversal(const CircularTurn& turn, const SectionCircle& circle,
 }  // namespace
 
 std::optional<CircularQuantities::Turn> CircularQuantities::find_turn(const std::string& section) {
-  const std::vector<std::size_t>& rows = samples_.rows({section});
+  const RowRanges& rows = samples_.rows({section});
   const auto nominal = circle_of_section(samples_.positions("tool_position_nominal", rows));
   const auto* circle = std::get_if<SectionCircle>(&nominal);
   if (circle == nullptr) return std::nullopt;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -12,12 +11,13 @@
 #include <optional>
 
 #include "plant/vocabulary/interrupt.h"
-#include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/ball_quantities.h"
 #include "sim/evaluation/case_samples.h"
 #include "sim/evaluation/circular_quantities.h"
+#include "sim/evaluation/path_quantities.h"
 #include "sim/evaluation/probe_quantities.h"
+#include "sim/evaluation/statistic.h"
 #include "sim/model/scenario.h"
 #include "sim/system/text_table.h"
 
@@ -25,8 +25,6 @@ namespace servomill::sim {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kUmPerMm = 1000.0;
-constexpr double kMsPerS = 1000.0;
 
 constexpr std::array<QuantityInfo, 38> kQuantities = {{
     {"imposed_curve_residual", "um",
@@ -132,126 +130,10 @@ constexpr std::array<QuantityInfo, 38> kQuantities = {{
      false, "", true, false, false, 0, false, kEveryProbe},
 }};
 
-// Reads a column of another case at a given arc length; s is asked for in rising order.
-class AlongPath {
- public:
-  AlongPath(const Series& series, std::size_t column)
-      : series_(series), column_(column), s_(*series.column("s")) {}
-
-  double at(double s) {
-    const std::size_t rows = series_.rows();
-    while (row_ + 1 < rows && series_.at(row_ + 1, s_) <= s) ++row_;
-    if (row_ + 1 == rows) return series_.at(row_, column_);
-    const double s0 = series_.at(row_, s_), s1 = series_.at(row_ + 1, s_);
-    const double weight = std::clamp((s - s0) / (s1 - s0), 0.0, 1.0);
-    return (1.0 - weight) * series_.at(row_, column_) + weight * series_.at(row_ + 1, column_);
-  }
-
- private:
-  const Series& series_;
-  std::size_t column_, s_;
-  std::size_t row_ = 0;
-};
-
-double statistic_of(const std::string& statistic, const std::vector<double>& values) {
-  const auto is_none = [](double v) { return std::isnan(v); };
-  if (values.empty() || std::any_of(values.begin(), values.end(), is_none)) return kNone;
-  const auto n = static_cast<double>(values.size());
-  if (statistic == "mean" || statistic == "rms") {
-    double sum = 0.0;
-    for (const double v : values) sum += statistic == "mean" ? v : v * v;
-    return statistic == "mean" ? sum / n : std::sqrt(sum / n);
-  }
-  if (statistic == "range") {
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    return *high - *low;
-  }
-  double largest = 0.0;  // max: by magnitude
-  for (const double v : values) largest = std::max(largest, std::abs(v));
-  return largest;
-}
-
-// meas(case) - meas(base) at equal s, um
-std::vector<double> trajectory_difference(const CaseData& one, const CaseData& base, char axis,
-                                          const std::vector<std::size_t>& rows) {
-  const auto column = one.servo->column("meas_linear", axis);
-  const auto base_column = base.servo->column("meas_linear", axis);
-  if (!column || !base_column || base.servo->rows() == 0) return {};
-  const std::size_t s = *one.servo->column("s");
-  AlongPath nominal(*base.servo, *base_column);
-  std::vector<double> out;
-  out.reserve(rows.size());
-  for (const std::size_t row : rows) {
-    out.push_back((one.servo->at(row, *column) - nominal.at(one.servo->at(row, s))) * kUmPerMm);
-  }
-  return out;
-}
-
-// |p_WT(case) - p_WT(base)| at equal s, um
-std::vector<double> tool_difference(const CaseData& one, const CaseData& base,
-                                    const std::vector<std::size_t>& rows) {
-  if (base.servo->rows() == 0) return {};
-  const std::size_t s = *one.servo->column("s");
-  std::vector<double> out(rows.size(), 0.0);
-  for (const char axis : std::string_view("XYZ")) {
-    const std::size_t column = *one.servo->column("tool_position_true", axis);
-    AlongPath there(*base.servo, *base.servo->column("tool_position_true", axis));
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const double off = one.servo->at(rows[i], column) - there.at(one.servo->at(rows[i], s));
-      out[i] = std::hypot(out[i], off * kUmPerMm);
-    }
-  }
-  return out;
-}
-
-std::vector<double> column_of(const CaseData& one, std::string_view name, char label,
-                              const std::vector<std::size_t>& rows) {
-  const auto column = one.servo->column(name, label);
-  if (!column) return {};
-  std::vector<double> out;
-  out.reserve(rows.size());
-  for (const std::size_t row : rows) out.push_back(one.servo->at(row, *column));
-  return out;
-}
-
-Eigen::Vector3d vector_at(const CaseData& one, std::size_t row, std::size_t first) {
-  return {one.servo->at(row, first), one.servo->at(row, first + 1), one.servo->at(row, first + 2)};
-}
-
-std::vector<double> tool_tip_deviation(const CaseData& one, const std::vector<std::size_t>& rows) {
-  const std::size_t first = *one.servo->column("tool_deviation", 'X');
-  std::vector<double> out;
-  for (const std::size_t row : rows) out.push_back(vector_at(one, row, first).norm());
-  return out;
-}
-
-// urad
-std::vector<double> tool_axis_deviation(const CaseData& one, const std::vector<std::size_t>& rows) {
-  const std::size_t nominal = *one.servo->column("tool_axis_nominal", 'I');
-  const std::size_t actual = *one.servo->column("tool_axis_true", 'I');
-  std::vector<double> out;
-  for (const std::size_t row : rows) {
-    out.push_back(angle_between(vector_at(one, row, nominal), vector_at(one, row, actual)) / urad);
-  }
-  return out;
-}
-
-// tau with residual = -tau d(imposed)/dt in the least-squares sense, ms
-double response_time(const CaseData& one, char axis, const std::vector<std::size_t>& rows,
-                     const std::vector<double>& residual) {
-  const auto imposed = one.servo->column("imposed_linear", axis);
-  const std::size_t time = *one.servo->column("time");
-  if (!imposed || residual.size() != rows.size()) return kNone;
-  double re = 0.0, ee = 0.0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::size_t row = rows[i];
-    if (row == 0 || row + 1 >= one.servo->rows()) continue;
-    const double de = (one.servo->at(row + 1, *imposed) - one.servo->at(row - 1, *imposed)) /
-                      (one.servo->at(row + 1, time) - one.servo->at(row - 1, time));
-    re += residual[i] * de;
-    ee += de * de;
-  }
-  return ee > 0.0 ? -re / ee * kMsPerS : kNone;
+double statistic_of(const std::string& name, const std::vector<double>& values) {
+  Statistic statistic(name);
+  for (const double v : values) statistic.add(v);
+  return statistic.value();
 }
 
 // A case with what several quantities look at.
@@ -264,85 +146,21 @@ struct Compared {
   BallQuantities ball;
 };
 
-// The values that belong to rows of the case; none if something was not recorded.
-std::vector<double> signed_values(const QuantitySpec& spec, const CaseData& one,
-                                  const CaseData* base, const std::vector<std::size_t>& rows) {
-  if (spec.name == "following_error") {
-    return column_of(one, "following_error_linear", spec.axis, rows);
-  }
-  if (spec.name == "tool_deviation") return column_of(one, "tool_deviation", spec.axis, rows);
-  assert(base != nullptr);
-  std::vector<double> difference = trajectory_difference(one, *base, spec.axis, rows);
-  if (spec.name == "trajectory_difference") return difference;
-  assert(spec.name == "imposed_curve_residual");
-  const std::vector<double> imposed = column_of(one, "imposed_linear", spec.axis, rows);
-  if (imposed.size() != difference.size()) return {};
-  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= imposed[i];
-  return difference;
-}
-
-// Whether the tool stands from one place to another (mm): both are the same but for rounding.
-bool stands(double s, double later) { return later - s < 1e-7; }
-
-// What rotary axes have turned at each row since the tool stands there, as a share of all that they
-// turn until it moves on.
-std::vector<double> turned_while_standing(const CaseData& one, const std::vector<std::size_t>& rows,
-                                          const std::vector<double>& s) {
-  std::vector<double> out(rows.size(), 0.0);
-  for (const char axis : std::string_view("ABC")) {
-    const std::vector<double> ref = column_of(one, "ref_rotary", axis, rows);
-    for (std::size_t i = 1; i < ref.size(); ++i) out[i] += std::abs(ref[i] - ref[i - 1]);
-  }
-  for (std::size_t first = 0, end = 0; first < rows.size(); first = end) {
-    double turned = 0.0;
-    for (end = first; end < rows.size() && (end == first || stands(s[end - 1], s[end])); ++end) {
-      out[end] = end == first ? 0.0 : out[end] + out[end - 1];
-      turned = out[end];
-    }
-    for (std::size_t i = first; i < end && turned > 0.0; ++i) out[i] /= turned;
-  }
-  return out;
-}
-
-double evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* base) {
-  const CaseData& one = compared.data;
-  if (spec.name == "cycle_time") return one.duration;
-  if (spec.name == "blocks") return one.blocks;
-  if (!one.finished || (base != nullptr && !base->finished)) return kNone;
-  if (quantity_info(spec.name).circles > 0) return compared.circles.value(spec);
-  const std::vector<std::size_t>& rows = compared.samples.rows(spec.sections);
-  if (has_path_signal(spec.name)) {
-    return statistic_of(spec.statistic, signed_values(spec, one, base, rows));
-  }
-  if (spec.name == "tool_tip_deviation") {
-    return statistic_of(spec.statistic, tool_tip_deviation(one, rows));
-  }
-  if (spec.name == "tool_axis_deviation") {
-    return statistic_of(spec.statistic, tool_axis_deviation(one, rows));
-  }
-  if (spec.name == "contour_error") {
-    return statistic_of(spec.statistic, column_of(one, "contour_error", '\0', rows));
-  }
-  assert(base != nullptr);
-  if (spec.name == "tool_difference") {
-    return statistic_of(spec.statistic, tool_difference(one, *base, rows));
-  }
-  // the other two look at the imposed curve, too
-  QuantitySpec residual = spec;
-  residual.name = "imposed_curve_residual";
-  const std::vector<double> difference = signed_values(residual, one, base, rows);
-  const std::vector<double> imposed = column_of(one, "imposed_linear", spec.axis, rows);
-  if (imposed.size() != difference.size()) return kNone;
-  if (spec.name == "response_time") return response_time(one, spec.axis, rows, difference);
-  assert(spec.name == "brought_out");
-  return 100.0 * (1.0 - statistic_of("max", difference) / statistic_of("max", imposed));
-}
-
 // A value, or why there is none.
 struct Noted {
   double value = kNone;
   std::string note = {};
 };
+
+Noted evaluate(const QuantitySpec& spec, Compared& compared, const CaseData* base) {
+  const CaseData& one = compared.data;
+  if (spec.name == "cycle_time") return {one.duration};
+  if (spec.name == "blocks") return {one.blocks};
+  if (!one.finished || (base != nullptr && !base->finished)) return {};
+  if (quantity_info(spec.name).circles > 0) return {compared.circles.value(spec)};
+  PathValue found = path_value(spec, compared.samples, base);
+  return {found.value, std::move(found.note)};
+}
 
 Noted evaluate_ball(const QuantitySpec& spec, Compared& compared) {
   if (!compared.data.finished) return {};
@@ -379,7 +197,7 @@ Noted answer(const QuantitySpec& spec, Compared& one, const CaseData* base) {
   if (info.needs_base && one.data.name == spec.base) return {kNone, "is compared with itself"};
   Noted found = info.is_of_ball ? evaluate_ball(spec, one)
                 : spec.part     ? evaluate_probe(spec, one.data, base)
-                                : Noted{evaluate(spec, one, base)};
+                                : evaluate(spec, one, base);
   if (found.note.empty() && base != nullptr) found.note = unlike(one.data, *base);
   return found;
 }
@@ -417,22 +235,6 @@ const QuantityInfo& quantity_info(std::string_view name) {
                                   [&](const QuantityInfo& info) { return info.name == name; });
   assert(found != kQuantities.end());
   return *found;
-}
-
-bool has_path_signal(std::string_view quantity) {
-  return quantity == "imposed_curve_residual" || quantity == "trajectory_difference" ||
-         quantity == "tool_deviation" || quantity == "following_error";
-}
-
-PathSignal path_signal(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
-  assert(has_path_signal(spec.name));
-  CaseSamples samples(one);
-  const std::vector<std::size_t>& rows = samples.rows(spec.sections);
-  PathSignal out;
-  out.s = column_of(one, "s", '\0', rows);
-  out.turned = turned_while_standing(one, rows, out.s);
-  out.value = signed_values(spec, one, base, rows);
-  return out;
 }
 
 std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,

@@ -63,22 +63,6 @@ struct ComparisonRow {
 std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
                                    std::span<const CaseData> cases);
 
-/// A signed quantity at each sample of feed motion.
-struct PathSignal {
-  std::vector<double> s;       // mm, arc length of the original path, not falling
-  std::vector<double> turned;  // 0 to 1, of what rotary axes turn while s stands; 0 where it moves
-  std::vector<double> value;   // of the same length, in the unit of the quantity; or none
-};
-
-/// Whether path_signal knows this quantity: imposed_curve_residual, trajectory_difference,
-/// tool_deviation, following_error.
-bool has_path_signal(std::string_view quantity);
-
-/// What the statistic of a quantity is taken over.
-/// @param base  the case it is compared with; nullptr if it needs none
-/// @pre has_path_signal(spec.name), and both cases have finished
-PathSignal path_signal(const QuantitySpec& spec, const CaseData& one, const CaseData* base);
-
 /// The table as text, aligned.
 std::string format_table(std::span<const ComparisonRow> rows);
 

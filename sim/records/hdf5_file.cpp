@@ -674,15 +674,26 @@ std::vector<double> InputFile::values(const std::string& dataset) const {
 
 std::vector<double> InputFile::values(const std::string& dataset, std::size_t first,
                                       std::size_t count) const {
+  if (shape(dataset).size() != 1) {
+    fail(fmt::format("'{}' has not the length it should have", dataset));
+  }
+  return column(dataset, 0, first, count);
+}
+
+std::vector<double> InputFile::column(const std::string& dataset, std::size_t column,
+                                      std::size_t first, std::size_t count) const {
   const Library library;
   const auto size = shape(dataset);
-  if (size.size() != 1 || first + count > size[0]) {
+  const bool has_columns = size.size() == 2;
+  if ((size.size() != 1 && !has_columns) || first + count > size[0] ||
+      (has_columns && column >= size[1])) {
     fail(fmt::format("'{}' has not the length it should have", dataset));
   }
   const Hdf5Handle id = open(dataset);
-  const hsize_t begin = first, length = count;
+  const std::array<hsize_t, 2> begin = {first, column}, block = {count, 1};
+  const hsize_t length = count;
   const Hdf5Handle in_file(H5Dget_space(id.get()));
-  H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, &begin, nullptr, &length, nullptr);
+  H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, begin.data(), nullptr, block.data(), nullptr);
   const Hdf5Handle in_memory = handle(H5Screate_simple(1, &length, nullptr));
   std::vector<double> out(count);
   if (H5Dread(id.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(), H5P_DEFAULT,

@@ -209,6 +209,9 @@ class InputFile {
   /// The same of some rows of a list.
   std::vector<double> values(const std::string& dataset, std::size_t first,
                              std::size_t count) const;
+  /// Some rows of one column of a table, or of a list (column 0).
+  std::vector<double> column(const std::string& dataset, std::size_t column, std::size_t first,
+                             std::size_t count) const;
   /// Some rows of a list of texts.
   std::vector<std::string> texts(const std::string& dataset, std::size_t first,
                                  std::size_t count) const;

@@ -15,6 +15,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/config/quantity.h"
+#include "sim/evaluation/path_quantities.h"
 #include "sim/preparation/preparation_cache.h"
 
 namespace servomill::sim {

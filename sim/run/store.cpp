@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "plant/vocabulary/simd.h"
+#include "sim/records/row_keeper.h"
 #include "sim/records/series_spool.h"
 #include "sim/records/series_writer.h"
 #include "sim/run/build_identity.h"
@@ -55,11 +56,45 @@ void write_row(Hdf5Group& group, const ComparisonRow& row) {
   if (!row.note.empty()) group.attribute("note", row.note);
 }
 
-// Columns of one group read back in the order in which they were written.
-std::unique_ptr<Series> read_series(const InputFile& file, const std::string& group) {
+// Recorded signals in a file, read when they are asked for.
+class StoredPages final : public ColumnPages {
+ public:
+  StoredPages(std::shared_ptr<const InputFile> file, const std::string& group,
+              const std::vector<Signal>& signals, std::size_t rows)
+      : file_(std::move(file)), rows_(rows) {
+    for (const Signal& signal : signals) {
+      for (std::size_t c = 0; c < signal.columns(); ++c) {
+        columns_.push_back({group + "/" + signal.name, c});
+      }
+    }
+  }
+  std::size_t rows() const override { return rows_; }
+  std::size_t page_rows() const override { return kPageRows; }
+  void read(std::size_t column, std::size_t page, std::vector<double>& values) const override {
+    const auto& [dataset, number] = columns_[column];
+    const std::size_t first = page * kPageRows;
+    values = file_->column(dataset, number, first, std::min(kPageRows, rows_ - first));
+  }
+  bool read_encoded(std::size_t, std::size_t, std::vector<std::uint8_t>&) const override {
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t kPageRows = 16384;
+  std::shared_ptr<const InputFile> file_;
+  std::size_t rows_;
+  std::vector<std::pair<std::string, std::size_t>> columns_;
+};
+
+struct StoredSignals {
   std::vector<Signal> signals;
-  std::vector<std::vector<double>> columns;
   std::size_t rows = 0;
+};
+
+// What the signals of one group are, in the order in which they were written.
+StoredSignals signals_of(const InputFile& file, const std::string& group) {
+  StoredSignals out;
+  auto& [signals, rows] = out;
   for (const std::string& name : file.datasets(group)) {
     const std::string path = group + "/" + name;
     if (name.starts_with("axis") || name == "xyz" || name == "ijk") continue;  // labels
@@ -72,9 +107,22 @@ std::unique_ptr<Series> read_series(const InputFile& file, const std::string& gr
     if (shape.size() == 2) labels = file.text(path, "columns");
     rows = shape.at(0);
     signals.push_back({name, file.text(path, "units"), file.text(path, "long_name"), labels, ""});
-    columns.push_back(file.values(path));
   }
-  auto series = std::make_unique<Series>(std::move(signals));
+  return out;
+}
+
+// Columns of one group read back; of long recordings when they are asked for.
+std::unique_ptr<Series> read_series(const std::shared_ptr<const InputFile>& file,
+                                    const std::string& group) {
+  auto [signals, rows] = signals_of(*file, group);
+  auto series = std::make_unique<Series>(signals);
+  const auto size = static_cast<double>(rows * series->width() * sizeof(double));
+  if (size > RowKeeping().most_in_memory) {
+    auto pages = std::make_shared<StoredPages>(file, group, series->signals(), rows);
+    return std::make_unique<Series>(std::move(signals), std::move(pages));
+  }
+  std::vector<std::vector<double>> columns;
+  for (const Signal& signal : signals) columns.push_back(file->values(group + "/" + signal.name));
   series->reserve(rows);
   for (std::size_t row = 0; row < rows; ++row) {
     double* to = series->add_row();
@@ -251,7 +299,8 @@ void RunStore::commit(const std::vector<ComparisonRow>& comparison) {
 }
 
 StoredRun read_run(const std::string& path) {
-  const InputFile file(path);
+  const auto opened = std::make_shared<const InputFile>(path);
+  const InputFile& file = *opened;
   check_schema(file, path, "run");
   StoredRun run;
   run.scenario_name = file.text("/", "scenario");
@@ -263,7 +312,7 @@ StoredRun read_run(const std::string& path) {
     const std::string group = "/cases/" + name;
     // cut off while it was written: no complete case
     if (!file.has("/comparison") && !file.has_attribute(group, "finished")) continue;
-    run.series.push_back(read_series(file, group + "/servo"));
+    run.series.push_back(read_series(opened, group + "/servo"));
     check_signals(file, group + "/servo", *run.series.back(), *run.series.front());
     run.probes.push_back(std::make_unique<std::vector<ProbedFeature>>(
         read_probed(file, group + "/probes", scenario.probes)));
