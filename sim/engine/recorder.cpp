@@ -26,7 +26,7 @@ std::string letters(const MachineSettings& machine, const std::vector<int>& join
 }
 
 std::vector<Signal> signals(const std::string& linear, const std::string& rotary, bool with_imposed,
-                            bool with_uncorrectable, bool with_cut) {
+                            bool with_uncorrectable, bool with_cut, bool with_programmed) {
   std::vector<Signal> all = {
       {"time", "s", "time since the start of the program", "", ""},
       {"s", "mm", "arc length on the path of the original program", "", ""},
@@ -82,6 +82,11 @@ std::vector<Signal> signals(const std::string& linear, const std::string& rotary
                    "by which the cut bends the structure behind the scales, part of "
                    "tool_position_true",
                    linear, kLinear});
+  }
+  if (with_programmed && !linear.empty()) {
+    all.push_back({"programmed_linear", "mm",
+                   "position of the ideal machine on the programmed path, linear axes", linear,
+                   kLinear});
   }
   return all;
 }
@@ -179,8 +184,9 @@ class Recorder::Rows {
       if (!machine.chain.layout.has(joint)) continue;
       (joint < kLinearJoints ? linear_ : rotary_).push_back(joint);
     }
-    std::vector<Signal> all = signals(letters(machine, linear_), letters(machine, rotary_),
-                                      imposed != nullptr, !correcting_.empty(), cuts_);
+    std::vector<Signal> all =
+        signals(letters(machine, linear_), letters(machine, rotary_), imposed != nullptr,
+                !correcting_.empty(), cuts_, keeping_.thinning.has_value());
     apply(format, all);
     const Series columns(std::move(all));
     signals_ = columns.signals();
@@ -335,9 +341,11 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
   row.put(actual.k_W, 1.0);
   row.put(contour_error / um);
   if (!correcting_.empty()) put_leftover(place, row);
-  if (!cuts_) return;
-  row.put(now.cutting_force, 1.0);
-  for (const int joint : linear_) row.put(now.deflection[joint] / um);
+  if (cuts_) {
+    row.put(now.cutting_force, 1.0);
+    for (const int joint : linear_) row.put(now.deflection[joint] / um);
+  }
+  if (keeping_.thinning) row.put(Q_prog_[place], linear_, mm);
 }
 
 void Recorder::Rows::put_leftover(std::size_t place, RowWriter& row) const {

@@ -307,6 +307,7 @@ class ScenarioReader {
     Reader table = root.table_or_empty("record");
     out_.record_period = ticks(table, "period_ms", 1 * ms, 1);
     RecordSpec& record = out_.record;
+    record.period_is_given = table.has("period_ms");
     record.format.storage = static_cast<Storage>(table.choice_or("storage", 0, kStorages));
     record.format.resolution = table.real_or("resolution_nm", record.format.resolution, kLength,
                                              {at_least(0.0), at_most(kCoarsestResolution)});

@@ -102,6 +102,7 @@ struct RecordSpec {
   int compression = 1;            // of the result file, kNoCompression to kMostCompression
   bool uncorrectable = false;     // what strategies cannot correct
   double max_size = 8e9;          // bytes of the signals of all cases, as estimated before a run
+  bool period_is_given = false;   // else rows of long programs are thinned
   double max_duration = 86400.0;  // s, of the motion of a case
 };
 

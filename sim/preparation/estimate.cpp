@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <vector>
 
 #include "plant/vocabulary/units.h"
@@ -22,6 +24,13 @@ double columns_of(const MachineSettings& machine) {
   return kOfRow + kOfAxis * static_cast<double>(machine.joints().size());
 }
 
+constexpr double kUsualCompression = 6.0, kLeastCompression = 4.0;
+
+bool needs_every_row(const QuantitySpec& quantity) {
+  const QuantityInfo& info = quantity_info(quantity.name);
+  return info.circles > 0 || info.is_of_ball;
+}
+
 std::string in_gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / kGigabyte); }
 
 std::string in_time(double seconds) {
@@ -29,6 +38,43 @@ std::string in_time(double seconds) {
   if (seconds < 2.0 * kMinute) return fmt::format("{:.0f} s", seconds);
   if (seconds < 2.0 * kHour) return fmt::format("{:.0f} min", seconds / kMinute);
   return fmt::format("{:.3g} h", seconds / kHour);
+}
+
+// Probes, and quantities of balls that name no section, look at the whole path.
+bool can_be_thinned(const Scenario& scenario) {
+  return !scenario.record.period_is_given && scenario.probes.empty() &&
+         std::none_of(
+             scenario.quantities.begin(), scenario.quantities.end(),
+             [](const QuantitySpec& one) { return needs_every_row(one) && one.sections.empty(); });
+}
+
+double compression_of(const Scenario& scenario) {
+  return scenario.record.compression == kNoCompression ? 1.0 : kUsualCompression;
+}
+
+// Rows of short cases are held, of long ones a chunk while they run and pages while they are
+// compared; where the way of a cutter or a ball counts, all places of it.
+double memory_of(const Scenario& scenario, std::span<const double> motions, double row,
+                 unsigned threads) {
+  constexpr double kProgram = 60e6, kCaseRuns = 25e6, kCaseIsCompared = 8e6;
+  constexpr double kPlaceOfCutter = 200.0, kPlaceOfBall = 100.0;
+  const RowKeeping keeping;
+  const double period = scenario.machine.nc.periods.seconds(scenario.record_period);
+  const bool has_ball = std::any_of(
+      scenario.quantities.begin(), scenario.quantities.end(),
+      [](const QuantitySpec& one) { return needs_every_row(one) && one.sections.empty(); });
+  double sum = kProgram;
+  double longest = 0.0;
+  for (const double motion : motions) {
+    const double rows = (motion + scenario.settle_time) / period;
+    longest = std::max(longest, rows);
+    sum += rows * row > keeping.most_in_memory ? kCaseIsCompared : rows * row;
+  }
+  const double at_once =
+      std::min<double>(thread_count(threads), static_cast<double>(motions.size()));
+  const double place =
+      (scenario.probes.empty() ? 0.0 : kPlaceOfCutter) + (has_ball ? kPlaceOfBall : 0.0);
+  return sum + at_once * (kCaseRuns + longest * place);
 }
 
 }  // namespace
@@ -44,7 +90,12 @@ RunEstimate estimate(const Scenario& scenario, std::span<const double> motions, 
     longest = std::max(longest, motion / periods.base);
   }
   out.rows = out.motion / periods.seconds(scenario.record_period);
-  out.size = out.rows * columns_of(scenario.machine) * static_cast<double>(sizeof(double));
+  const double row = columns_of(scenario.machine) * static_cast<double>(sizeof(double));
+  out.size = out.rows * row;
+  out.is_thinned = out.size > scenario.record.max_size && can_be_thinned(scenario);
+  out.file = out.is_thinned ? scenario.record.max_size / kLeastCompression
+                            : out.size / compression_of(scenario);
+  out.memory = memory_of(scenario, motions, row, threads);
   const double cores = std::min<double>(thread_count(threads), thread_count(0));
   out.computing = std::max(longest, ticks / cores) / kTicksPerSecond;
   return out;
@@ -58,9 +109,35 @@ RunEstimate estimate(const Scenario& scenario, std::span<const PreparedCase> cas
 }
 
 std::string to_string(const RunEstimate& estimate) {
-  return fmt::format("{} of motion, {:.2g} rows, {} of signals, about {} of computing",
-                     in_time(estimate.motion), estimate.rows, in_gigabytes(estimate.size),
-                     in_time(estimate.computing));
+  return fmt::format(
+      "{} of motion, {:.2g} rows, {} of signals in a file of {}{}, {} of memory, about {} of "
+      "computing",
+      in_time(estimate.motion), estimate.rows, in_gigabytes(estimate.size),
+      estimate.is_thinned ? "at most " : "", in_gigabytes(estimate.file),
+      in_gigabytes(estimate.memory), in_time(estimate.computing));
+}
+
+std::string thinning_message(const Scenario& scenario, const RunEstimate& estimate) {
+  return fmt::format(
+      "record.period_ms is not given: of {:.2g} rows so many are recorded that the file takes at "
+      "most {} (a quarter of record.max_size_GB = {:g}), most of them where blocks end, axes "
+      "reverse and the contour error changes, with least and greatest values in between; "
+      "record.period_ms = {:g} records all",
+      estimate.rows, in_gigabytes(estimate.file), scenario.record.max_size / kGigabyte,
+      scenario.machine.nc.periods.seconds(scenario.record_period) / ms);
+}
+
+std::vector<bool> sections_kept_whole(const Scenario& scenario,
+                                      const std::vector<std::string>& sections) {
+  std::vector<bool> out;
+  for (const std::string& name : sections) {
+    out.push_back(std::any_of(
+        scenario.quantities.begin(), scenario.quantities.end(), [&](const QuantitySpec& one) {
+          return needs_every_row(one) &&
+                 std::find(one.sections.begin(), one.sections.end(), name) != one.sections.end();
+        }));
+  }
+  return out;
 }
 
 bool is_worth_telling(const RunEstimate& estimate) {
@@ -69,24 +146,40 @@ bool is_worth_telling(const RunEstimate& estimate) {
 }
 
 void refuse_too_large(const Scenario& scenario, const RunEstimate& estimate) {
-  const auto refuse = [&](const std::string& limit) {
+  const auto refuse = [&](const std::string& what) {
     throw InputError(
         {scenario.program.file},
-        fmt::format("takes {} in {} cases and {} rows: {} of signals; must be <= {}, or record "
-                    "fewer rows: record.period_ms = {:g}",
-                    in_time(estimate.motion), scenario.cases.size(),
-                    fmt::format("{:.2g}", estimate.rows), in_gigabytes(estimate.size), limit,
+        fmt::format("takes {} in {} cases and {:.2g} rows: {}, or record fewer rows: "
+                    "record.period_ms = {:g}",
+                    in_time(estimate.motion), scenario.cases.size(), estimate.rows, what,
                     scenario.machine.nc.periods.seconds(scenario.record_period) / ms));
   };
-  if (estimate.size > scenario.record.max_size) {
-    refuse(
-        fmt::format("record.max_size_GB = {:g}; raise it", scenario.record.max_size / kGigabyte));
+  const double max_size = scenario.record.max_size;
+  if (!estimate.is_thinned && estimate.size > max_size) {
+    refuse(fmt::format("{} of signals; must be <= record.max_size_GB = {:g}; raise it",
+                       in_gigabytes(estimate.size), max_size / kGigabyte));
   }
   const double memory = kMemoryShare * memory_of_process();
-  if (estimate.size > memory) {
-    refuse(fmt::format("the {} of memory that there are for them; run fewer cases",
-                       in_gigabytes(memory)));
+  if (estimate.memory > memory) {
+    refuse(fmt::format("{} of memory; must be <= the {} that there are; run fewer cases",
+                       in_gigabytes(estimate.memory), in_gigabytes(memory)));
   }
+}
+
+void refuse_full_disk(const Scenario& scenario, const RunEstimate& estimate,
+                      const std::string& folder) {
+  std::error_code unknown;
+  const auto space = std::filesystem::space(folder.empty() ? "." : folder, unknown);
+  // what was recorded goes to the file when a case ends, and is there twice until all are compared
+  const double needed = 2.0 * estimate.file;
+  if (unknown || needed <= static_cast<double>(space.available)) return;
+  throw InputError(
+      {scenario.program.file},
+      fmt::format("takes {} of the disk, half of it until the cases are compared; {} has {}: "
+                  "lower record.max_size_GB = {:g} or name another file (--output)",
+                  in_gigabytes(needed), folder.empty() ? "." : folder,
+                  in_gigabytes(static_cast<double>(space.available)),
+                  scenario.record.max_size / kGigabyte));
 }
 
 }  // namespace servomill::sim

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "sim/preparation/prepared_case.h"
 
@@ -10,10 +11,13 @@ namespace servomill::sim {
 
 /// Of all cases together.
 struct RunEstimate {
-  double motion = 0.0;     // s, simulated
-  double rows = 0.0;       // recorded
-  double size = 0.0;       // bytes of the recorded signals, as they are held until the end
-  double computing = 0.0;  // s, on so many threads; by the speed of one core of a desktop computer
+  double motion = 0.0;      // s, simulated
+  double rows = 0.0;        // at the record period
+  double size = 0.0;        // bytes of their signals
+  bool is_thinned = false;  // so many are too many: rows are left out (records/row_thinning.h)
+  double file = 0.0;        // bytes of the result file: about, or at most if it is thinned
+  double memory = 0.0;      // bytes, about, beside those of the plan
+  double computing = 0.0;   // s, on so many threads; by the speed of one core of a desktop computer
 };
 
 /// @param motions  of the cases, s
@@ -22,14 +26,28 @@ RunEstimate estimate(const Scenario& scenario, std::span<const double> motions, 
 RunEstimate estimate(const Scenario& scenario, std::span<const PreparedCase> cases,
                      unsigned threads);
 
-/// "373 s of motion, 3.7e+05 rows, 0.2 GB of signals, about 4 s of computing"
+/// "373 s of motion, 3.7e+05 rows, 0.2 GB of signals in a file of 0.04 GB, 0.1 GB of memory, about
+/// 4 s of computing"
 std::string to_string(const RunEstimate& estimate);
+
+/// Says that rows are left out, what the file takes then, and how to have every row.
+std::string thinning_message(const Scenario& scenario, const RunEstimate& estimate);
+
+/// Sections of which every row is kept: those that quantities of circles and balls look at.
+/// @param sections  names of all of the program
+std::vector<bool> sections_kept_whole(const Scenario& scenario,
+                                      const std::vector<std::string>& sections);
 
 /// Whether the user should know before the work begins: above a minute or a gigabyte.
 bool is_worth_telling(const RunEstimate& estimate);
 
-/// @throws InputError if the signals are larger than the scenario allows, or than the memory of
-///     this process
+/// @throws InputError if the signals are larger than the scenario allows, or if this process may
+///     not use so much memory
 void refuse_too_large(const Scenario& scenario, const RunEstimate& estimate);
+
+/// @param folder  of the result file, and of recordings until they are compared
+/// @throws InputError if there is not so much room
+void refuse_full_disk(const Scenario& scenario, const RunEstimate& estimate,
+                      const std::string& folder);
 
 }  // namespace servomill::sim

@@ -363,6 +363,7 @@ struct PreparedCase::Parts {
   const MachineSettings& machine() const { return scenario.machine_of(spec); }
   NotedCase noted() const { return {scenario, spec, *program, *motion, cutting.get(), strategies}; }
   Joints machine_start;
+  std::optional<ThinningLimits> thinning = {};  // of its recording
 };
 
 PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, PreparationCache* cache)
@@ -409,6 +410,11 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   parts.cutting = prepare.cutting(parts.program);
 }
 
+void PreparedCase::thin(double bytes) {
+  parts_->thinning = {.bytes = bytes,
+                      .keep_all = sections_kept_whole(parts_->scenario, sections())};
+}
+
 double PreparedCase::duration() const { return parts_->motion->trajectory.duration(); }
 
 PreparedCase::~PreparedCase() = default;
@@ -431,7 +437,9 @@ CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const {
                     p.scenario.record_period,
                     p.scenario.settle_time,
                     p.scenario.record.format,
-                    {.folder = scratch_folder, .compression = p.scenario.record.compression}};
+                    {.folder = scratch_folder,
+                     .compression = p.scenario.record.compression,
+                     .thinning = p.thinning}};
   inputs.pieces = p.program->path.pieces_of(*p.motion->moves);
   if (p.cutting) {
     inputs.cutting = &p.cutting->table;
@@ -597,7 +605,11 @@ std::vector<PreparedCase> prepare_cases(const Scenario& scenario, PreparationCac
     }
   }
   faults.report(scenario.cases.size());
-  refuse_too_large(scenario, estimate(scenario, prepared, 0));
+  const RunEstimate takes = estimate(scenario, prepared, 0);
+  refuse_too_large(scenario, takes);
+  for (PreparedCase& one : prepared) {
+    if (takes.is_thinned) one.thin(takes.file / static_cast<double>(prepared.size()));
+  }
   refuse_absent_sections(scenario, prepared.front().sections());
   auto faults_of_circles = prepared.front().circular_faults(cache);
   if (!faults_of_circles.empty()) throw InputError(std::move(faults_of_circles));

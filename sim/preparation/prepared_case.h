@@ -46,6 +46,9 @@ class PreparedCase {
   PreparedCase(PreparedCase&&) noexcept;
 
   const CaseSpec& spec() const;
+  /// Lets rows of its recording be left out, so that it takes about so many bytes of the file.
+  void thin(double bytes);
+
   /// Of the planned motion, s.
   double duration() const;
 

@@ -121,6 +121,8 @@ int run_command(const Arguments& arguments) {
   };
   control.prepared = [&](const sim::RunEstimate& takes) {
     if (sim::is_worth_telling(takes)) fmt::print(stderr, "estimate: {}\n", to_string(takes));
+    if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::thinning_message(scenario, takes));
+    sim::refuse_full_disk(scenario, takes, control.scratch_folder);
     store.emplace(path, options.has("force"), scenario, control.threads);
     kept.in(store->partial_path());
   };

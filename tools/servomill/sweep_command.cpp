@@ -100,6 +100,7 @@ void tell_estimate(sim::RunEstimate takes, std::uint64_t points, unsigned thread
   takes.rows *= n;
   takes.computing *= n / std::min(n, static_cast<double>(sim::thread_count(threads)));
   takes.size *= series ? n : 0.0;
+  takes.file *= series ? n : 0.0;
   if (points == 0 || !sim::is_worth_telling(takes)) return;
   fmt::print(stderr, "estimate: {} points like the first: {}\n", points, to_string(takes));
 }
