@@ -56,14 +56,14 @@ double compression_of(const Scenario& scenario) {
 // compared; where the way of a cutter or a ball counts, all places of it.
 double memory_of(const Scenario& scenario, std::span<const double> motions, double row,
                  unsigned threads) {
-  constexpr double kProgram = 60e6, kCaseRuns = 25e6, kCaseIsCompared = 8e6;
+  constexpr double kCaseRuns = 25e6, kCaseIsCompared = 8e6;
   constexpr double kPlaceOfCutter = 200.0, kPlaceOfBall = 100.0;
   const RowKeeping keeping;
   const double period = scenario.machine.nc.periods.seconds(scenario.record_period);
   const bool has_ball = std::any_of(
       scenario.quantities.begin(), scenario.quantities.end(),
       [](const QuantitySpec& one) { return needs_every_row(one) && one.sections.empty(); });
-  double sum = kProgram;
+  double sum = resident_memory();
   double longest = 0.0;
   for (const double motion : motions) {
     const double rows = (motion + scenario.settle_time) / period;
@@ -117,14 +117,14 @@ std::string to_string(const RunEstimate& estimate) {
       in_gigabytes(estimate.memory), in_time(estimate.computing));
 }
 
-std::string thinning_message(const Scenario& scenario, const RunEstimate& estimate) {
+std::string thinning_message(const RunEstimate& estimate) {
   return fmt::format(
       "record.period_ms is not given: of {:.2g} rows so many are recorded that the file takes at "
       "most {} (a quarter of record.max_size_GB = {:g}), most of them where blocks end, axes "
       "reverse and the contour error changes, with least and greatest values in between; "
       "record.period_ms = {:g} records all",
-      estimate.rows, in_gigabytes(estimate.file), scenario.record.max_size / kGigabyte,
-      scenario.machine.nc.periods.seconds(scenario.record_period) / ms);
+      estimate.rows, in_gigabytes(estimate.file), estimate.file * kLeastCompression / kGigabyte,
+      estimate.motion / estimate.rows / ms);
 }
 
 std::vector<bool> sections_kept_whole(const Scenario& scenario,

@@ -16,7 +16,7 @@ struct RunEstimate {
   double size = 0.0;        // bytes of their signals
   bool is_thinned = false;  // so many are too many: rows are left out (records/row_thinning.h)
   double file = 0.0;        // bytes of the result file: about, or at most if it is thinned
-  double memory = 0.0;      // bytes, about, beside those of the plan
+  double memory = 0.0;      // bytes, about: what is held now, a plan included, and what comes
   double computing = 0.0;   // s, on so many threads; by the speed of one core of a desktop computer
 };
 
@@ -31,7 +31,8 @@ RunEstimate estimate(const Scenario& scenario, std::span<const PreparedCase> cas
 std::string to_string(const RunEstimate& estimate);
 
 /// Says that rows are left out, what the file takes then, and how to have every row.
-std::string thinning_message(const Scenario& scenario, const RunEstimate& estimate);
+/// @pre is_thinned
+std::string thinning_message(const RunEstimate& estimate);
 
 /// Sections of which every row is kept: those that quantities of circles and balls look at.
 /// @param sections  names of all of the program

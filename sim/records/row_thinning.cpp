@@ -11,11 +11,12 @@
 namespace servomill::sim {
 namespace {
 
-constexpr double kShare = 0.97;             // of the limit; the rest is for what the file notes
-constexpr double kUsualCompression = 4.0;   // until it is known
-constexpr double kLongest = 1e4;            // rows that one stands for in any case
-constexpr double kMostSaved = 1e4;          // events that were not needed before
-constexpr double kContourShare = 0.1;       // of the greatest contour error
+constexpr double kShare = 0.97;            // of the limit; the rest is for what the file notes
+constexpr double kUsualCompression = 4.0;  // until it is known
+constexpr double kLongest = 1e4;           // rows that one stands for in any case
+constexpr double kMostSaved = 1e4;         // events that were not needed before
+constexpr double kForBlocks = 64.0;    // events: blocks and reversals come before the contour error
+constexpr double kContourShare = 0.1;  // of the greatest contour error
 constexpr double kLeastContourError = 0.1;  // um; changes below it are nothing
 
 std::size_t column_of(const Series& series, std::string_view name) {
@@ -109,7 +110,7 @@ void RowThinning::add_row(std::span<const double> row, std::vector<double>& out)
   ++come_;
   events_ = std::min(kMostSaved, events_ + events_per_row_);
   if (is_first || keeps_all(row) || static_cast<double>(samples_) >= longest_ ||
-      (contour_error_has_changed(row) && takes_event())) {
+      (contour_error_has_changed(row) && events_ >= kForBlocks && takes_event())) {
     stay(row, out);
   }
   before_.assign(row.begin(), row.end());

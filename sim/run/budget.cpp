@@ -377,6 +377,8 @@ class Accounts {
       control.threads = control_.threads;
       control.stop = control_.stop;
       control.cache = &cache_;
+      control.scratch_folder = control_.scratch_folder;
+      if (removed.empty()) control.prepared = control_.prepared;
       control.progress = [&](double share) {
         if (control_.progress) control_.progress((runs_ + share) / kRuns);
       };

@@ -117,6 +117,9 @@ struct BudgetControl {
   unsigned threads = 0;  // 0: one a core
   const StopFlag* stop = nullptr;
   std::function<void(double)> progress;  // share done, 0 to 1
+  // what the first run, that of all causes, takes; before it begins
+  std::function<void(const RunEstimate&)> prepared;
+  std::string scratch_folder;  // as in RunControl
 };
 
 /// Budgets of quantities, in their order; runs each case with and without each cause that it has.

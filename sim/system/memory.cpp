@@ -45,6 +45,13 @@ double memory_of_groups(const std::filesystem::path& groups, const std::filesyst
   return least;
 }
 
+// The second number is that of resident pages.
+double resident_memory() {
+  double all = 0.0, resident = 0.0;
+  if (!(std::ifstream("/proc/self/statm") >> all >> resident)) return 0.0;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
 double memory_of_process() {
   double memory =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));

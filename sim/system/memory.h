@@ -9,6 +9,9 @@ namespace servomill::sim {
 /// container or a job allows less.
 double memory_of_process();
 
+/// Bytes that this process holds; 0 where the system does not tell.
+double resident_memory();
+
 /// Bytes that the control groups of a process allow, of version 1 and 2, from its own group up to
 /// the root; infinite where none sets a limit.
 /// @param groups  the file that lists them (/proc/PID/cgroup)

@@ -14,6 +14,7 @@ import pathlib
 WIDTH = 200.0            # mm, of a pass
 CHORD = 0.03             # mm
 LONGEST = 15.0           # mm, of a block
+LEAST_TIME = 0.02        # s, of a block, on the average
 PASSES_A_RETRACT = 50
 
 
@@ -180,8 +181,8 @@ def main():
     parser.add_argument("--hours", type=float, default=4.5)
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
-    if given.lines < 100 or not 1.0 < 3600.0 * given.hours / (given.lines * 0.05):
-        parser.error("needs at least 100 lines, and more than 0.05 s a line")
+    if given.lines < 100 or not LEAST_TIME < 3600.0 * given.hours / given.lines:
+        parser.error(f"needs at least 100 lines, and more than {LEAST_TIME} s a line")
     given.folder.mkdir(parents=True, exist_ok=True)
     text = "\n".join(program(given.lines, given.hours, given.seed)) + "\n"
     (given.folder / "mould.ngc").write_text(text)

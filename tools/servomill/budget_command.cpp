@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/preparation/estimate.h"
 #include "sim/run/budget.h"
 #include "sim/run/budget_store.h"
 #include "tools/servomill/command.h"
@@ -208,6 +210,13 @@ int budget_command(const Arguments& arguments) {
   control.threads = thread_count(options);
   control.stop = &stop;
   control.progress = [&](double share) { bar.show(share); };
+  control.prepared = [](const sim::RunEstimate& takes) {
+    if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::thinning_message(takes));
+  };
+  if (store) {
+    const auto path = std::filesystem::absolute(options.get<std::string>("output"));
+    control.scratch_folder = path.parent_path().string();
+  }
   const std::vector<sim::Budget> budgets = sim::find_budgets(scenario, quantities, control);
   bar.clear();
   if (budgets.empty()) {

@@ -87,7 +87,9 @@ class Kept {
 int run_command(const Arguments& arguments) {
   Options options("run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
                   "Runs every case of a scenario, prints the comparison and writes all signals to "
-                  "one HDF5 file.",
+                  "one HDF5 file. A long run says first how many rows, how large a file, how much "
+                  "memory and how much time it takes; its rows are thinned where "
+                  "record.period_ms is not given and their signals exceed record.max_size_GB.",
                   "SCENARIO.toml");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
                 "result file (default: name of the scenario with .h5, in this folder)");
@@ -121,7 +123,7 @@ int run_command(const Arguments& arguments) {
   };
   control.prepared = [&](const sim::RunEstimate& takes) {
     if (sim::is_worth_telling(takes)) fmt::print(stderr, "estimate: {}\n", to_string(takes));
-    if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::thinning_message(scenario, takes));
+    if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::thinning_message(takes));
     sim::refuse_full_disk(scenario, takes, control.scratch_folder);
     store.emplace(path, options.has("force"), scenario, control.threads);
     kept.in(store->partial_path());

@@ -96,6 +96,7 @@ std::vector<SimdLevel> levels_of(const sim::SweepTable& table, const std::string
 // long or large.
 void tell_estimate(sim::RunEstimate takes, std::uint64_t points, unsigned threads, bool series) {
   const auto n = static_cast<double>(points);
+  if (points > 0 && takes.is_thinned) fmt::print(stderr, "{}\n", thinning_message(takes));
   takes.motion *= n;
   takes.rows *= n;
   takes.computing *= n / std::min(n, static_cast<double>(sim::thread_count(threads)));

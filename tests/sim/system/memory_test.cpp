@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace servomill::sim {
 namespace {
@@ -64,6 +65,15 @@ TEST(MemoryOfProcess, IsSomethingAndNoMoreThanTheMachineHas) {
   EXPECT_GT(memory_of_process(), 1e7);
   EXPECT_LE(memory_of_process(), static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
                                      static_cast<double>(sysconf(_SC_PAGESIZE)));
+}
+
+TEST(ResidentMemory, GrowsWithWhatIsHeld) {
+  constexpr std::size_t kBytes = 64'000'000;
+  const double before = resident_memory();
+  EXPECT_GT(before, 1e6);
+  EXPECT_LT(before, memory_of_process());
+  const std::vector<char> held(kBytes, 1);
+  EXPECT_GT(resident_memory(), before + 0.9 * static_cast<double>(held.size()));
 }
 
 }  // namespace
