@@ -100,23 +100,23 @@ class Bounds(unittest.TestCase):
                          (2, "part.ngc: error: takes 108 min in 2 cases and 6.5e+06 rows: 2.9 GB of signals; must be <= "
                              "record.max_size_GB = 1; raise it, or record fewer rows: record.period_ms = 1\n"))
 
-    def first_line(self, *changes):
+    def first_lines(self, count, *changes):
         """What a run says first; it is interrupted then."""
         settings = [word for change in changes for word in ("--set", change)]
         process = subprocess.Popen([SERVOMILL, "run", "scenario.toml", "-o", "out.h5", "--force", *settings],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, cwd=self.folder,
                                    preexec_fn=limit_memory)
-        said = process.stderr.readline(), process.stderr.readline()
+        said = [process.stderr.readline() for _ in range(count)]
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=LIMIT)
         return said
 
     def test_memory_does_not_bound_the_duration(self):
-        self.assertRegex(self.first_line("program.feed_override=1e-4")[0],
+        self.assertRegex(self.first_lines(1, "program.feed_override=1e-4")[0],
                          r"^estimate: 3\.59 h of motion, 1\.3e\+07 rows, 5\.9 GB of signals in a file of 0\.98 GB, 0\.\d+ GB of memory, ")
 
     def test_rows_are_left_out_rather_than_refused(self):
-        self.assertEqual(self.first_line("program.feed_override=2e-4", "record.max_size_GB=1")[1],
+        self.assertEqual(self.first_lines(2, "program.feed_override=2e-4", "record.max_size_GB=1")[1],
                          "record.period_ms is not given: of 6.5e+06 rows so many are recorded that the file takes at most 0.25 GB (a "
                          "quarter of record.max_size_GB = 1), most of them where blocks end, axes reverse and the contour error changes, "
                          "with least and greatest values in between; record.period_ms = 1 records all\n")
@@ -130,7 +130,7 @@ class Bounds(unittest.TestCase):
         self.assertLess(time.monotonic() - begin, 5.0, "the motion has been planned")
 
     def test_what_is_long_or_large_is_told_before_it_begins(self):
-        said = self.first_line("program.feed_override=2e-4")[0]
+        said = self.first_lines(1, "program.feed_override=2e-4")[0]
         self.assertRegex(said, r"^estimate: 108 min of motion, 6\.5e\+06 rows, 2\.9 GB of signals in a file of 0\.48 GB, "
                          r"0\.\d+ GB of memory, about \d+ (s|min) of computing\n$")
 
