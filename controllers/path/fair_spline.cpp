@@ -42,7 +42,7 @@ Eigen::Matrix4d basis_at(const double* t) {
   return Q;
 }
 
-double square_ratio(const Joints& D, const PathVertex& v) {
+double square_ratio(const Joints& D, const Polyline::Traits& v) {
   const double linear = D.head<kLinearJoints>().squaredNorm();
   const double rotary = D.tail<kJoints - kLinearJoints>().squaredNorm();
   if (std::isnan(linear + rotary)) return kInfinity;  // the system had no solution
@@ -52,10 +52,9 @@ double square_ratio(const Joints& D, const PathVertex& v) {
 
 }  // namespace
 
-bool FairSpline::fit(std::span<const PathVertex> v, std::span<const double> s,
-                     std::span<const double> w, const Joints& jerk, const State& begin,
-                     const State& end) {
-  v_ = v, s_ = s, w_ = w;
+bool FairSpline::fit(const Polyline& v, std::span<const double> s, std::span<const double> w,
+                     const Joints& jerk, const State& begin, const State& end) {
+  v_ = &v, s_ = s, w_ = w;
   jerk_ = jerk;
   begin_ = begin, end_ = end;
   lay_knots();
@@ -160,7 +159,7 @@ void FairSpline::gather() {
     std::size_t n = 0;
     for (int a = 0; a < 4; ++a) {
       for (int b = a; b < 4; ++b) I.G[n++] += l * B[a] * B[b];
-      I.R.row(a) += (l * B[a]) * v_[i].u.transpose();
+      I.R.row(a) += (l * B[a]) * v_->u(i).transpose();
     }
     points_[i - from - 1].B = {B[0], B[1], B[2], B[3]};
   }
@@ -172,8 +171,8 @@ void FairSpline::gather() {
   const auto slowest = [&](std::size_t i) {
     const std::size_t a = intervals_[i > 0 ? i - 1 : 0].first;
     const std::size_t b = intervals_[std::min(i + 1, N_ - 1)].last;
-    double v = v_[std::min(b, to + 1)].speed;
-    for (std::size_t n = a; n < b; ++n) v = std::min(v, v_[n].speed);
+    double v = v_->speed(std::min(b, to + 1));
+    for (std::size_t n = a; n < b; ++n) v = std::min(v, v_->speed(n));
     return v;
   };
   for (std::size_t i = 0; i < N_; ++i) {
@@ -229,7 +228,7 @@ bool FairSpline::deviations() {
     for (std::size_t i = I.first; i < I.last; ++i) {
       const std::array<double, 4>& B = points_[i - begin_.chord - 1].B;
       const Joints q = B[0] * c_[k] + B[1] * c_[k + 1] + B[2] * c_[k + 2] + B[3] * c_[k + 3];
-      I.worst = std::max(I.worst, square_ratio(q - v_[i].u, v_[i]));
+      I.worst = std::max(I.worst, square_ratio(q - v_->u(i), v_->traits(i)));
     }
     all = all && I.worst <= 1.0;
   }
@@ -291,16 +290,17 @@ bool FairSpline::is_within_tolerance() {
     double from = p.s;
     for (std::size_t i = p.segment; from < to; ++i) {
       const double end = i < end_.chord ? std::min(s_[i + 1], to) : to;
-      const Joints d = (v_[i + 1].u - v_[i].u) / (s_[i + 1] - s_[i]);
+      const Joints d = (v_->u(i + 1) - v_->u(i)) / (s_[i + 1] - s_[i]);
       const double x = from - p.s, h = end - from;
       const Joints D0 =
-          p.c0 + x * (p.c1 + (0.5 * x) * (p.c2 + (x / 3.0) * p.c3)) - v_[i].u - (from - s_[i]) * d;
+          p.c0 + x * (p.c1 + (0.5 * x) * (p.c2 + (x / 3.0) * p.c3)) - v_->u(i) - (from - s_[i]) * d;
       const Joints D1 = p.c1 + x * (p.c2 + (0.5 * x) * p.c3) - d;
       const Joints D2 = p.c2 + x * p.c3;
       const Joints b1 = D0 + (h / 3.0) * D1, b2 = b1 + (h / 3.0) * (D1 + (0.5 * h) * D2);
       const Joints b3 = D0 + h * (D1 + (0.5 * h) * (D2 + (h / 3.0) * p.c3));
       double worst = 0.0;
-      for (const Joints& b : {D0, b1, b2, b3}) worst = std::max(worst, square_ratio(b, v_[i + 1]));
+      for (const Joints& b : {D0, b1, b2, b3})
+        worst = std::max(worst, square_ratio(b, v_->traits(i + 1)));
       intervals_[k].worst = std::max(intervals_[k].worst, worst);
       all = all && worst <= 1.0;
       from = end;

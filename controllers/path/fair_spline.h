@@ -39,7 +39,7 @@ class FairSpline {
   /// @param v, s, w  vertices of the polyline, their arc lengths and windows; of all chords
   /// @param jerk     limit of each joint, scaled like the path
   /// @return whether a spline within the tolerance of every chord was found; `pieces` then is it
-  bool fit(std::span<const PathVertex> v, std::span<const double> s, std::span<const double> w,
+  bool fit(const Polyline& v, std::span<const double> s, std::span<const double> w,
            const Joints& jerk, const State& begin, const State& end);
 
   const std::vector<CubicPiece>& pieces() const { return pieces_; }
@@ -74,7 +74,7 @@ class FairSpline {
   void write();
   bool is_within_tolerance();
 
-  std::span<const PathVertex> v_;
+  const Polyline* v_ = nullptr;
   std::span<const double> s_, w_;
   State begin_, end_;
   Joints jerk_;

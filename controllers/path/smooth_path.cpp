@@ -33,15 +33,14 @@ double rotary_norm(const Joints& u) { return u.tail<kJoints - kLinearJoints>().n
 
 class Smoother {
  public:
-  Smoother(std::vector<PathVertex> vertices, const Joints& jerk)
+  Smoother(Polyline vertices, const Joints& jerk)
       : v_(std::move(vertices)), n_(v_.size() - 1), jerk_(jerk.cwiseMax(1e-12)) {
-    for (const PathVertex& v : v_) target_.push_back(v.u);
+    for (std::size_t i = 0; v_.has_arcs() && i < v_.size(); ++i) target_.push_back(v_.u(i));
     measure();
   }
 
   SmoothPath run() {
-    const bool arcs =
-        std::any_of(v_.begin(), v_.end(), [](const PathVertex& v) { return v.arc >= 0; });
+    const bool arcs = v_.has_arcs();
     const double share = arcs ? kArcMargin : 1.0;
     choose_windows(share);
     fit_windows(share);
@@ -55,16 +54,24 @@ class Smoother {
  private:
   void measure() {
     s_.assign(n_ + 1, 0.0);
-    d_.resize(n_);
     dd_.assign(n_ + 1, Joints::Zero());
+    Joints before = Joints::Zero();
     for (std::size_t k = 0; k < n_; ++k) {
-      const Joints chord = v_[k + 1].u - v_[k].u;
+      const Joints chord = v_.u(k + 1) - v_.u(k);
       const double length = chord.norm();
       assert(length > 0.0);
       s_[k + 1] = s_[k] + length;
-      d_[k] = chord / length;
+      const Joints d = chord / length;
+      if (k > 0) dd_[k] = d - before;
+      before = d;
     }
-    for (std::size_t i = 1; i < n_; ++i) dd_[i] = d_[i] - d_[i - 1];
+  }
+
+  // Direction of a chord.
+  Joints direction(std::size_t k) const {
+    const Joints chord = v_.u(k + 1) - v_.u(k);
+    const double length = chord.norm();
+    return chord / length;
   }
 
   // Deviation at vertex i if it and its neighbours all had the window w.
@@ -87,9 +94,9 @@ class Smoother {
     double widest_before = 0.0;
     for (std::size_t i = 1; i < n_; ++i) {
       const double tol_linear =
-          share * std::min(v_[i].tolerance_linear, v_[i + 1].tolerance_linear);
+          share * std::min(v_.traits(i).tolerance_linear, v_.traits(i + 1).tolerance_linear);
       const double tol_rotary =
-          share * std::min(v_[i].tolerance_rotary, v_[i + 1].tolerance_rotary);
+          share * std::min(v_.traits(i).tolerance_rotary, v_.traits(i + 1).tolerance_rotary);
       double w = std::min(s_[i], s_[n_] - s_[i]);
       w = std::min(w, 6.0 * tol_linear / std::max(linear_norm(dd_[i]), 1e-30));
       w = std::min(w, 6.0 * tol_rotary / std::max(rotary_norm(dd_[i]), 1e-30));
@@ -236,7 +243,7 @@ class Smoother {
     const Joints b1 = D.d0 + (h / 3.0) * D.d1;
     const Joints b2 = b1 + (h / 3.0) * (D.d1 + (0.5 * h) * D.d2);
     const Joints b3 = D.d0 + h * (D.d1 + (0.5 * h) * (D.d2 + (h / 3.0) * D.d3));
-    const PathVertex& to = v_[segment + 1];
+    const Polyline::Traits& to = v_.traits(segment + 1);
     const auto largest = [&](auto&& square) {
       return std::max({square(D.d0), square(b1), square(b2), square(b3)});
     };
@@ -292,15 +299,15 @@ class Smoother {
   void pull_arcs_outward() {
     std::vector<Joints> moved(n_ + 1);
     for (std::size_t i = 0; i <= n_; ++i) {
-      moved[i] = v_[i].u;
-      if (v_[i].arc < 0 || w_[i] <= 0.0) continue;
+      moved[i] = v_.u(i);
+      if (v_.traits(i).arc < 0 || w_[i] <= 0.0) continue;
       std::size_t first = i, last = i + 1;
       while (first > 1 && s_[first - 1] + w_[first - 1] > s_[i]) --first;
       while (last < n_ && s_[last] - w_[last] < s_[i]) ++last;
-      const Joints error = v_[i].u + deviation(s_[i], s_[i], first, last).d0 - target_[i];
+      const Joints error = v_.u(i) + deviation(s_[i], s_[i], first, last).d0 - target_[i];
       moved[i] -= fade(i) * error;
     }
-    for (std::size_t i = 0; i <= n_; ++i) v_[i].u = moved[i];
+    for (std::size_t i = 0; i <= n_; ++i) v_.move_to(i, moved[i]);
     measure();
     for (std::size_t i = 1; i < n_; ++i) w_[i] = std::min({w_[i], s_[i], s_[n_] - s_[i]});
     limit_slope();
@@ -312,7 +319,7 @@ class Smoother {
     const auto look = [&](auto step) {
       for (std::size_t k = i;; k = step(k)) {
         if (std::abs(s_[k] - s_[i]) >= reach) return;
-        if (v_[k].arc == v_[i].arc) continue;
+        if (v_.traits(k).arc == v_.traits(i).arc) continue;
         if (k != 0 && k != n_) distance = std::min(distance, std::abs(s_[k] - s_[i]));
         return;  // another move, or the end of the path, where nothing has to be met
       }
@@ -329,12 +336,13 @@ class Smoother {
     while (first > 1 && s_[first - 1] + w_[first - 1] > s) --first;
     while (last < n_ && s_[last] - w_[last] < s) ++last;
     const Deviation D = deviation(s, s, first, last);
-    return {s, v_[k].u + d_[k] * (s - s_[k]) + D.d0, d_[k] + D.d1, D.d2, k};
+    const Joints d = direction(k);
+    return {s, v_.u(k) + d * (s - s_[k]) + D.d0, d + D.d1, D.d2, k};
   }
 
   // Is the window at vertex i wide enough to cover its neighbours?
   bool is_dense(std::size_t i) const {
-    if (v_[i].arc >= 0 || v_[i + 1].arc >= 0) return false;
+    if (v_.traits(i).arc >= 0 || v_.traits(i + 1).arc >= 0) return false;
     return w_[i] > kDense * std::min(s_[i] - s_[i - 1], s_[i + 1] - s_[i]);
   }
 
@@ -450,8 +458,8 @@ class Smoother {
     const auto add = [&](double from, double middle, std::size_t k, std::size_t first,
                          std::size_t last) {
       const Deviation D = deviation(from, middle, first, last);
-      path.pieces.push_back(
-          {from, v_[k].u + d_[k] * (from - s_[k]) + D.d0, d_[k] + D.d1, D.d2, D.d3, k});
+      const Joints d = direction(k);
+      path.pieces.push_back({from, v_.u(k) + d * (from - s_[k]) + D.d0, d + D.d1, D.d2, D.d3, k});
     };
     for_each_span(0.0, s_[n_], [&](const Span& span) {
       const auto [from, to, k, first, last] = span;
@@ -474,12 +482,12 @@ class Smoother {
     return path;
   }
 
-  std::vector<PathVertex> v_;
+  Polyline v_;
   std::size_t n_;  // chords
   Joints jerk_;
-  std::vector<Joints> target_;
+  std::vector<Joints> target_;  // of arcs alone
   std::vector<double> s_, w_;
-  std::vector<Joints> d_, dd_;
+  std::vector<Joints> dd_;
   FairSpline spline_;
   std::vector<CubicPiece> fair_;
   std::vector<Faired> faired_;
@@ -487,7 +495,7 @@ class Smoother {
 
 }  // namespace
 
-SmoothPath smooth(std::vector<PathVertex> vertices, const Joints& jerk) {
+SmoothPath smooth(Polyline vertices, const Joints& jerk) {
   assert(vertices.size() >= 2);
   return Smoother(std::move(vertices), jerk).run();
 }

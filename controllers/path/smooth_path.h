@@ -22,18 +22,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "controllers/path/polyline.h"
 #include "plant/vocabulary/axes.h"
 
 namespace servomill::controllers {
-
-/// One vertex. Rotary coordinates are multiplied by a radius, so that all five are metres.
-struct PathVertex {
-  Joints u = Joints::Zero();      // m
-  double tolerance_linear = 0.0;  // m, on the way to this vertex
-  double tolerance_rotary = 0.0;  // m
-  double speed = 0.0;             // m/s along the path, programmed on the way to this vertex
-  int arc = -1;  // interior point of that arc: may be moved outward so that the curve passes it
-};
 
 /// q(x) = c0 + c1 x + c2 x^2/2 + c3 x^3/6 for x = s - `s` from 0 to the next piece.
 struct CubicPiece {
@@ -58,6 +50,6 @@ struct SmoothPath {
 /// @param jerk      limit of each joint (scaled like the path; > 0 for joints that move)
 /// Law: begins and ends exactly in the first and last vertex, with zero curvature; the distance to
 /// the polyline (of arcs: to the circle) is within the tolerance of the chord.
-SmoothPath smooth(std::vector<PathVertex> vertices, const Joints& jerk);
+SmoothPath smooth(Polyline vertices, const Joints& jerk);
 
 }  // namespace servomill::controllers

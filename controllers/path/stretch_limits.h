@@ -16,6 +16,7 @@ struct FeedLimit {
   double linear = std::numeric_limits<double>::infinity();  // m/s, of X Y Z together
   double rotary = std::numeric_limits<double>::infinity();  // m/s, of the rotary joints together
   double path = std::numeric_limits<double>::infinity();    // m/s, along the path
+  bool operator==(const FeedLimit&) const = default;
 };
 
 /// Limits of speed v, acceleration a and jerk j along a piece of length h such that on each joint

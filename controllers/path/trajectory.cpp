@@ -93,12 +93,9 @@ class Planner {
     double feed = 0.0;                  // m/s along the scaled path
   };
 
-  struct LegSpan {
-    std::size_t move = 0, first = 0, last = 0;  // vertices
-    FeedLimit feed;
+  struct LegSpan : Chain::Span {
+    std::uint32_t feed = 0;  // index into feeds_
     bool rapid = false;
-    double from = 0.0, to = 1.0;  // of the move
-    double time = 0.0;            // s, least by the feed of the tip; 0: none is given
   };
 
   Joints scaled(const Joints& Q) const { return Q.cwiseProduct(scale_); }
@@ -129,21 +126,18 @@ class Planner {
     leg.tolerance = tolerance_of(move);
     leg.feed = speed_along(leg, move);
     if (last_ && must_stop(*last_, leg)) finish_chain();
-    LegSpan span;
-    span.move = index;
-    span.first = vertices_.size() - 1;
-    span.feed = feed_limit(move, leg);
-    span.rapid = leg.rapid;
+    LegSpan span = begin_span(index, leg);
+    span.feed = index_of(feed_limit(move, leg));
     if (arc) {
       const bool continues = last_ && last_arc_ && is_same_circle(*last_arc_, *arc, step);
       if (!continues) arc_index_ = static_cast<int>(index);
       // on one circle the joint of two arcs is a point like any other
-      if (continues && !skipped_) vertices_.back().arc = arc_index_;
+      if (continues && !skipped_) vertices_.set_last_arc(arc_index_);
       add_arc(*arc, move, step, arc_index_);
     } else {
       add_point(u_end, move, leg.feed, -1);
     }
-    span.last = vertices_.size() - 1;
+    span.last = last_vertex();
     if (span.last > span.first) spans_.push_back(span);
     last_move_ = index;
     u_ = u_end;
@@ -170,20 +164,19 @@ class Planner {
     double from = 0.0;
     for (const JointChord& chord : chords) {
       const bool inner = &chord != &chords.back();
-      LegSpan span;
-      span.move = index;
-      span.first = vertices_.size() - 1;
-      span.rapid = leg.rapid;
-      span.from = from;
-      span.to = chord.fraction;
-      span.time = time * (chord.fraction - from);
-      add_chord(chord, span.time, inner ? static_cast<int>(index) : -1);
+      LegSpan span = begin_span(index, leg);
+      span.feed = index_of(FeedLimit{});
+      span.share = static_cast<std::uint32_t>(shares_.size());
+      const double chord_time = time * (chord.fraction - from);
+      add_chord(chord, chord_time, inner ? static_cast<int>(index) : -1);
       if (skipped_) continue;
-      span.last = vertices_.size() - 1;
+      span.last = last_vertex();
       spans_.push_back(span);
+      shares_.push_back({from, chord.fraction});
+      times_.push_back(chord_time);
       from = chord.fraction;
     }
-    if (from > 0.0) spans_.back().to = 1.0;
+    if (from > 0.0) shares_.back().to = 1.0;
     last_move_ = index;
     Q_ = chords.back().end;
     u_ = scaled(Q_);
@@ -193,9 +186,31 @@ class Planner {
     if (leg.stop_after) finish_chain();
   }
 
+  std::uint32_t last_vertex() const { return static_cast<std::uint32_t>(vertices_.size() - 1); }
+  const Joints& last_u() const { return vertices_.u(vertices_.size() - 1); }
+
+  LegSpan begin_span(std::size_t move, const Leg& leg) const {
+    LegSpan span;
+    span.move = static_cast<std::uint32_t>(move);
+    span.first = last_vertex();
+    span.rapid = leg.rapid;
+    return span;
+  }
+
+  // The feed mostly is that of the move before.
+  std::uint32_t index_of(const FeedLimit& feed) {
+    if (feeds_.empty() || feeds_.back() != feed) feeds_.push_back(feed);
+    return static_cast<std::uint32_t>(feeds_.size() - 1);
+  }
+
+  // s, least by the feed of the tip; 0: none is given
+  double time_of(const LegSpan& span) const {
+    return span.share == Chain::kWhole ? 0.0 : times_[span.share];
+  }
+
   void add_chord(const JointChord& chord, double time, int arc) {
     const Joints u = scaled(chord.end);
-    const double length = (u - vertices_.back().u).norm();
+    const double length = (u - last_u()).norm();
     skipped_ = length < kLeastChord;
     if (skipped_) return;
     const double speed = time > 0.0 ? length / time : limits_.v.norm();
@@ -336,7 +351,7 @@ class Planner {
       vertex.tolerance_rotary *= options_.exact_tolerance / options_.tolerance;
     }
     vertex.tolerance_rotary *= options_.rotary_radius;
-    skipped_ = (u - vertices_.back().u).norm() < kLeastChord;
+    skipped_ = (u - last_u()).norm() < kLeastChord;
     if (!skipped_) vertices_.push_back(vertex);
   }
 
@@ -347,7 +362,7 @@ class Planner {
     chain.t = t_;
     chain.duration = move.value;
     chain.begin = chain.end = Q_;
-    chain.spans.push_back({0.0, 0.0, index});
+    chain.spans.push_back({static_cast<std::uint32_t>(index)});
     t_ += chain.duration;
     out_.chains_.push_back(std::move(chain));
   }
@@ -355,8 +370,12 @@ class Planner {
   void restart() {
     Q_ = out_.end_;
     u_ = scaled(Q_);
-    vertices_.assign(1, PathVertex{u_, 0.0, 0.0, 0.0, -1});
+    vertices_.clear();
+    vertices_.push_back(PathVertex{u_, 0.0, 0.0, 0.0, -1});
     spans_.clear();
+    feeds_.clear();
+    shares_.clear();
+    times_.clear();
     last_.reset();
     last_arc_.reset();
     skipped_ = false;
@@ -373,10 +392,8 @@ class Planner {
       chain.path = smooth(std::move(vertices_), limits_.j);
       plan_fastest(chain);
       chain.duration = chain.law.duration;
-      for (const LegSpan& span : spans_) {
-        chain.spans.push_back(
-            {chain.path.s[span.first], chain.path.s[span.last], span.move, span.from, span.to});
-      }
+      chain.spans.assign(spans_.begin(), spans_.end());
+      chain.shares = std::move(shares_);
       t_ += chain.duration;
       out_.chains_.push_back(std::move(chain));
     }
@@ -386,27 +403,24 @@ class Planner {
 
   // The end lies within kLeastChord of the last vertex, but not on it.
   void reach_end() {
-    if ((u_ - vertices_.back().u).norm() <= kLeastChain) return;
-    vertices_.push_back(
-        {u_, options_.tolerance, options_.rotary_tolerance, vertices_.back().speed, -1});
-    const std::size_t last = vertices_.size() - 1;
+    if ((u_ - last_u()).norm() <= kLeastChain) return;
+    const double speed = vertices_.speed(vertices_.size() - 1);
     if (spans_.empty()) {
-      LegSpan span;
-      span.move = last_move_;
-      span.rapid = last_->rapid;
+      LegSpan span = begin_span(last_move_, *last_);
+      span.first = 0;
+      span.feed = index_of(FeedLimit{});
       spans_.push_back(span);
     }
-    spans_.back().last = last;
-    spans_.back().to = 1.0;
+    vertices_.push_back({u_, options_.tolerance, options_.rotary_tolerance, speed, -1});
+    spans_.back().last = last_vertex();
+    if (spans_.back().share != Chain::kWhole) shares_.back().to = 1.0;
   }
 
   void plan_fastest(Chain& chain) const {
     for (const double share : kCurveShares) {
       if (chain.path.pieces.size() > kManyPieces && share < kCurveShares.back()) continue;
-      std::vector<StretchLimits> limits = limits_of(chain.path, share);
-      TimeLaw law = plan_speed(limits);
-      if (!chain.limits.empty() && law.duration >= chain.law.duration) continue;
-      chain.limits = std::move(limits);
+      TimeLaw law = plan_speed(limits_of(chain.path, share));
+      if (!chain.law.phases.empty() && law.duration >= chain.law.duration) continue;
       chain.law = std::move(law);
       if (chain.path.pieces.size() == 1) return;  // a straight line has no curvature
     }
@@ -425,7 +439,7 @@ class Planner {
       return 0.5 * (path.s[spans_[k].first] + path.s[spans_[k].last]);
     };
     const auto speed = [&](std::size_t k) {
-      return (path.s[spans_[k].last] - path.s[spans_[k].first]) / spans_[k].time;
+      return (path.s[spans_[k].last] - path.s[spans_[k].first]) / time_of(spans_[k]);
     };
     const auto is_same = [&](std::size_t k) {
       return k < spans_.size() && spans_[k].move == spans_[n].move;
@@ -441,18 +455,19 @@ class Planner {
   // The least feed of the moves that reach into a piece of the path; of the chords of one move
   // under tool control the mean, so that their steps do not add up to a slower feed.
   FeedLimit feed_between(double begin, double end, std::size_t k, const SmoothPath& path) const {
-    FeedLimit feed = spans_[k].feed;
+    FeedLimit feed = feeds_[spans_[k].feed];
     double way = 0.0, time = 0.0;
     for (std::size_t n = k; n < spans_.size(); ++n) {
       const LegSpan& span = spans_[n];
       const double first = path.s[span.first], last = path.s[span.last];
       if (n > k && first >= end) break;
-      feed.linear = std::min(feed.linear, span.feed.linear);
-      feed.rotary = std::min(feed.rotary, span.feed.rotary);
-      feed.path = std::min(feed.path, span.feed.path);
+      const FeedLimit& own = feeds_[span.feed];
+      feed.linear = std::min(feed.linear, own.linear);
+      feed.rotary = std::min(feed.rotary, own.rotary);
+      feed.path = std::min(feed.path, own.path);
       if (n > k && spans_[n - 1].move != span.move) way = time = 0.0;
       const double share = std::min(end, last) - std::max(begin, first);
-      if (span.time == 0.0 || share <= 0.0) continue;
+      if (time_of(span) == 0.0 || share <= 0.0) continue;
       way += share;
       time += share / speed_of(n, 0.5 * (std::max(begin, first) + std::min(end, last)), path);
       const bool is_last = n + 1 == spans_.size() || spans_[n + 1].move != span.move ||
@@ -498,8 +513,11 @@ class Planner {
   Joints Q_, u_;                      // the same, joints; scaled
   std::optional<ArcSweep> last_arc_;  // of the leg before, if it was an arc
   int arc_index_ = -1;                // of the circle that is being followed
-  std::vector<PathVertex> vertices_;
+  Polyline vertices_;
   std::vector<LegSpan> spans_;
+  std::vector<FeedLimit> feeds_;
+  std::vector<Chain::Share> shares_;  // of chords of moves under tool control,
+  std::vector<double> times_;         // and their least times by the feed of the tip, s
   std::optional<Leg> last_;
   std::size_t last_move_ = 0;
   bool skipped_ = false;  // the last point was too close to the one before
@@ -549,8 +567,8 @@ Trajectory::Sample Trajectory::at(double t, Cursor& c) const {
   const CubicPiece& q = pieces[c.piece];
   const double y = s - q.s;
   const Joints d1 = q.c1 + y * (q.c2 + q.c3 * (y / 2.0)), d2 = q.c2 + q.c3 * y;
-  while (c.span > 0 && s < chain.spans[c.span].s_begin) --c.span;
-  while (c.span + 1 < chain.spans.size() && s >= chain.spans[c.span].s_end) ++c.span;
+  while (c.span > 0 && s < chain.begin_of(chain.spans[c.span])) --c.span;
+  while (c.span + 1 < chain.spans.size() && s >= chain.end_of(chain.spans[c.span])) ++c.span;
   const Chain::Span& span = chain.spans[c.span];
   const MoveInfo& info = moves_[span.move];
 
@@ -562,8 +580,10 @@ Trajectory::Sample Trajectory::at(double t, Cursor& c) const {
   for (Joints* part : {&out.Q_ref, &out.dQ_ref, &out.ddQ_ref, &out.dddQ_ref}) {
     part->tail<kJoints - kLinearJoints>() /= rotary_radius_;
   }
-  const double x = std::clamp((s - span.s_begin) / (span.s_end - span.s_begin), 0.0, 1.0);
-  const double f = span.from + x * (span.to - span.from);
+  const double s_begin = chain.begin_of(span), s_end = chain.end_of(span);
+  const double x = std::clamp((s - s_begin) / (s_end - s_begin), 0.0, 1.0);
+  const auto [from, to] = chain.share_of(span);
+  const double f = from + x * (to - from);
   out.s = info.s_begin + f * (info.s_end - info.s_begin);
   out.line = info.line;
   out.move = span.move;

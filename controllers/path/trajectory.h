@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -40,16 +41,27 @@ class Trajectory {
   /// A part of the motion from rest to rest, or a dwell (without path).
   struct Chain {
     struct Span {  // one move on the path, or one chord of a move under tool control
-      double s_begin = 0.0, s_end = 0.0;
-      std::size_t move = 0;
-      double from = 0.0, to = 1.0;  // of the move
+      std::uint32_t move = 0;
+      std::uint32_t first = 0, last = 0;  // vertices of the path
+      std::uint32_t share = kWhole;       // of the move: index into shares
     };
+    struct Share {
+      double from = 0.0, to = 1.0;
+    };
+    static constexpr std::uint32_t kWhole = 0xffffffff;
+
     double t = 0.0, duration = 0.0;  // s
     SmoothPath path;                 // rotary joints times the rotary radius
     TimeLaw law;
-    std::vector<StretchLimits> limits;  // of stretches of the path
     std::vector<Span> spans;
+    std::vector<Share> shares;
     Joints begin, end;
+
+    double begin_of(const Span& span) const { return path.s[span.first]; }  // m
+    double end_of(const Span& span) const { return path.s[span.last]; }     // m
+    Share share_of(const Span& span) const {
+      return span.share == kWhole ? Share{} : shares[span.share];
+    }
   };
   const std::vector<Chain>& chains() const { return chains_; }
   double rotary_radius() const { return rotary_radius_; }

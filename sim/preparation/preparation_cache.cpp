@@ -7,11 +7,11 @@ namespace {
 
 std::size_t weight_of(const std::vector<Move>& moves) { return moves.size() + 1; }
 
-// An arc is one move and hundreds of phases and stretches.
+// An arc is one move and hundreds of phases and pieces.
 std::size_t weight_of(const PlannedMotion& motion) {
   std::size_t weight = weight_of(*motion.moves);
   for (const auto& chain : motion.trajectory.chains()) {
-    weight += chain.law.phases.size() + chain.limits.size();
+    weight += chain.law.phases.size() + chain.path.pieces.size();
   }
   return weight;
 }

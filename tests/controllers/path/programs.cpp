@@ -195,7 +195,7 @@ std::vector<Station> stations(const Trajectory::Chain& chain, const std::vector<
     const CubicPiece& q = chain.path.pieces[i];
     const double h = chain.path.end_of(i) - q.s;
     const int n = 1 + static_cast<int>(h / step);
-    while (span + 1 < chain.spans.size() && q.s + h / 2 > chain.spans[span].s_end) ++span;
+    while (span + 1 < chain.spans.size() && q.s + h / 2 > chain.end_of(chain.spans[span])) ++span;
     const Move& move = moves[chain.spans[span].move];
     for (int k = 0; k < n; ++k) {
       const double x = h * (k + 0.5) / n;
