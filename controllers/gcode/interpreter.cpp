@@ -649,6 +649,11 @@ Interpreter& Interpreter::operator=(Interpreter&&) noexcept = default;
 const Move* Interpreter::next() { return machine_->next(); }
 std::optional<ExecutedBlock> Interpreter::next_block() { return machine_->next_block(); }
 std::vector<Move> Interpreter::rest() { return machine_->rest(); }
+MoveList Interpreter::rest_held() {
+  MoveList out;
+  while (const Move* move = machine_->next()) out.push_back(*move);
+  return out;
+}
 const std::vector<Fault>& Interpreter::warnings() const { return machine_->warnings(); }
 
 std::vector<Move> interpret(std::string text, std::string file, ProgramSetup setup) {

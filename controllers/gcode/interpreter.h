@@ -54,7 +54,7 @@
 #include "controllers/gcode/program_setup.h"
 #include "controllers/gcode/program_text.h"
 #include "plant/vocabulary/input_error.h"
-#include "plant/vocabulary/move.h"
+#include "plant/vocabulary/move_list.h"
 
 namespace servomill::controllers {
 
@@ -101,6 +101,8 @@ class Interpreter {
   /// All moves that are left.
   /// @throws InputError at a block with an error; the moves before it are lost
   std::vector<Move> rest();
+  /// The same, held compactly.
+  MoveList rest_held();
 
   /// What was put right, or is odd, in the blocks so far: tool axes that were not of unit length,
   /// tools that cut in a tilted plane without standing along its Z.

@@ -23,7 +23,7 @@ double time_of(const Move& move, const AxisWords& from, const PathOptions& optio
 
 double SlowedMotion::share() const { return std::pow(allowed / needed, 1.0 / order); }
 
-double least_time(std::span<const Move> moves, const AxisWords& start, const PathOptions& options) {
+double least_time(const MoveRange& moves, const AxisWords& start, const PathOptions& options) {
   double sum = 0.0;
   AxisWords before = start;
   for (const Move& move : moves) {
@@ -36,9 +36,8 @@ double least_time(std::span<const Move> moves, const AxisWords& start, const Pat
   return sum;
 }
 
-std::optional<SlowedMotion> slowed_inverse_time(std::span<const Move> moves,
-                                                const JointLayout& layout, const Joints& start,
-                                                const JointLimits& limits,
+std::optional<SlowedMotion> slowed_inverse_time(const MoveRange& moves, const JointLayout& layout,
+                                                const Joints& start, const JointLimits& limits,
                                                 const PathOptions& options) {
   constexpr double kRounding = 1e-6;  // of F, as programs print it
   std::optional<SlowedMotion> worst;

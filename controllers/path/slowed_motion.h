@@ -8,7 +8,7 @@
 #include <string>
 
 #include "controllers/path/path_limits.h"
-#include "plant/vocabulary/move.h"
+#include "plant/vocabulary/move_list.h"
 
 namespace servomill::controllers {
 
@@ -38,16 +38,15 @@ std::string to_string(const SlowedMotion& slowed, const JointLayout& layout);
 /// Way over feed of all blocks with a feed, s: no plan is faster. Blocks under tool control, whose
 /// ways are not those of the axes, are not counted.
 /// @param start  words of the axes before the first move (m, rad)
-double least_time(std::span<const Move> moves, const AxisWords& start, const PathOptions& options);
+double least_time(const MoveRange& moves, const AxisWords& start, const PathOptions& options);
 
 /// The block in inverse time (G93), without tool control, that asks most of a joint beyond its
 /// speed, and how many others do; of arcs only their mean speeds are seen. Feeds in units per
 /// minute are what an NC may fall short of without a word.
 /// @param moves  of a program
 /// @param start  joints before the first move (5; m, rad)
-std::optional<SlowedMotion> slowed_inverse_time(std::span<const Move> moves,
-                                                const JointLayout& layout, const Joints& start,
-                                                const JointLimits& limits,
+std::optional<SlowedMotion> slowed_inverse_time(const MoveRange& moves, const JointLayout& layout,
+                                                const Joints& start, const JointLimits& limits,
                                                 const PathOptions& options);
 
 }  // namespace servomill::controllers

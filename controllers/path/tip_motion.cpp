@@ -265,21 +265,23 @@ const TipMotion* TipMotions::of(std::size_t move) const {
   return found != motions.end() && found->move == move ? &*found : nullptr;
 }
 
-TipMotions tip_motions(std::span<const Move> moves, const ToolCentrePoint& machine,
+TipMotions tip_motions(const MoveRange& moves, const ToolCentrePoint& machine,
                        const std::map<int, Vector3d>& tips, const Joints& start,
                        const JointLimits& limits, const PathOptions& options,
                        const std::string& file) {
   Tracer tracer(machine, tips, start, limits, options);
   std::vector<Fault> faults;
-  for (std::size_t i = 0; i < moves.size(); ++i) {
+  std::size_t next = 0;
+  for (const Move& move : moves) {
     throw_if_interrupted();
-    if (!is_motion(moves[i].kind)) continue;
-    if (moves[i].tool_control == ToolControl::none) {
-      tracer.follow(moves[i]);
+    const std::size_t i = next++;
+    if (!is_motion(move.kind)) continue;
+    if (move.tool_control == ToolControl::none) {
+      tracer.follow(move);
       continue;
     }
-    const std::string why = tracer.trace(moves[i], i);
-    if (!why.empty()) faults.push_back({{file, moves[i].line, 0}, why});
+    const std::string why = tracer.trace(move, i);
+    if (!why.empty()) faults.push_back({{file, move.line, 0}, why});
   }
   if (!faults.empty()) throw InputError(std::move(faults));
   return tracer.take();

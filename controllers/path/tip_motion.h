@@ -26,7 +26,7 @@
 #include "controllers/path/slowed_motion.h"
 #include "controllers/path/tool_centre_point.h"
 #include "plant/vocabulary/input_error.h"
-#include "plant/vocabulary/move.h"
+#include "plant/vocabulary/move_list.h"
 
 namespace servomill::controllers {
 
@@ -64,7 +64,7 @@ struct TipMotions {
 /// @param limits  of which `slowed` tells
 /// @param file    of the program, for faults
 /// @throws InputError with every move that the machine cannot do
-TipMotions tip_motions(std::span<const Move> moves, const ToolCentrePoint& machine,
+TipMotions tip_motions(const MoveRange& moves, const ToolCentrePoint& machine,
                        const std::map<int, Eigen::Vector3d>& tips, const Joints& start,
                        const JointLimits& limits, const PathOptions& options,
                        const std::string& file);

@@ -46,11 +46,12 @@ class Planner {
     restart();
   }
 
-  Trajectory run(std::span<const Move> moves) {
+  Trajectory run(const MoveRange& moves) {
     out_.moves_.reserve(moves.size());
-    for (std::size_t i = 0; i < moves.size(); ++i) {
+    std::size_t next = 0;
+    for (const Move& move : moves) {
       throw_if_interrupted();
-      const Move& move = moves[i];
+      const std::size_t i = next++;
       out_.moves_.push_back({move.s_begin, move.s_end, move.line, move.kind == MoveKind::rapid});
       switch (move.kind) {
         case MoveKind::rapid:
@@ -390,6 +391,7 @@ class Planner {
       chain.begin = out_.end_;
       chain.end = Q_;
       chain.path = smooth(std::move(vertices_), limits_.j);
+      chain.path.pieces.shrink_to_fit();
       plan_fastest(chain);
       chain.duration = chain.law.duration;
       chain.spans.assign(spans_.begin(), spans_.end());
@@ -523,7 +525,7 @@ class Planner {
   bool skipped_ = false;  // the last point was too close to the one before
 };
 
-Trajectory plan(std::span<const Move> moves, const JointLayout& layout, const Joints& start,
+Trajectory plan(const MoveRange& moves, const JointLayout& layout, const Joints& start,
                 const JointLimits& limits, const PathOptions& options, const TipMotions& tip) {
   return Planner(layout, limits, options, start, tip).run(moves);
 }

@@ -10,7 +10,7 @@
 #include "controllers/path/smooth_path.h"
 #include "controllers/path/time_law.h"
 #include "controllers/path/tip_motion.h"
-#include "plant/vocabulary/move.h"
+#include "plant/vocabulary/move_list.h"
 
 namespace servomill::controllers {
 
@@ -100,7 +100,7 @@ class Trajectory {
 /// @param start   joints before the first move (5; m, rad)
 /// @param tip     of the same moves and start
 /// @pre limits > 0 for the joints of the layout; tolerances and overrides > 0
-Trajectory plan(std::span<const Move> moves, const JointLayout& layout, const Joints& start,
+Trajectory plan(const MoveRange& moves, const JointLayout& layout, const Joints& start,
                 const JointLimits& limits, const PathOptions& options = {},
                 const TipMotions& tip = {});
 

@@ -52,13 +52,14 @@ std::string message(char name, bool rotary, double value, double limit, bool abo
 
 }  // namespace
 
-std::vector<Fault> travel_faults(std::span<const Move> moves, const JointLayout& layout,
+std::vector<Fault> travel_faults(const MoveRange& moves, const JointLayout& layout,
                                  const Joints& start, const Joints& lower, const Joints& upper,
                                  const std::string& file, const TipMotions& tip) {
   std::vector<Fault> faults;
   Joints at = start;
-  for (std::size_t i = 0; i < moves.size(); ++i) {
-    const Move& move = moves[i];
+  std::size_t next = 0;
+  for (const Move& move : moves) {
+    const std::size_t i = next++;
     if (!is_motion(move.kind)) continue;
     Range<Joints> range{at, at};
     if (move.tool_control == ToolControl::none) {

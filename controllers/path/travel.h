@@ -7,7 +7,7 @@
 
 #include "controllers/path/tip_motion.h"
 #include "plant/vocabulary/input_error.h"
-#include "plant/vocabulary/move.h"
+#include "plant/vocabulary/move_list.h"
 
 namespace servomill::controllers {
 
@@ -16,7 +16,7 @@ namespace servomill::controllers {
 /// @param lower, upper  (5; m, rad), infinite for an endless axis; the bounds belong to the travel
 /// @param file          of the program, for the place of the faults
 /// @param tip           of the same moves
-std::vector<Fault> travel_faults(std::span<const Move> moves, const JointLayout& layout,
+std::vector<Fault> travel_faults(const MoveRange& moves, const JointLayout& layout,
                                  const Joints& start, const Joints& lower, const Joints& upper,
                                  const std::string& file, const TipMotions& tip = {});
 

@@ -25,6 +25,9 @@ MoveCurve::MoveCurve(const AxisWords& from, const Move& move) : from_(from), to_
   length_ = arc_ ? arc_->length() : (to_ - from_).head<3>().norm();
 }
 
+MoveCurve::MoveCurve(const AxisWords& from, const AxisWords& to)
+    : from_(from), to_(to), length_((to_ - from_).head<3>().norm()) {}
+
 AxisWords MoveCurve::at(double t) const {
   if (t >= 1.0) return to_;
   AxisWords p = from_ + t * (to_ - from_);

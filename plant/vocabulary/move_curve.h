@@ -20,6 +20,8 @@ class MoveCurve {
   /// @param from  machine coordinates where the move begins (6; m, rad)
   /// @pre is_motion(move.kind)
   MoveCurve(const AxisWords& from, const Move& move);
+  /// A straight one.
+  MoveCurve(const AxisWords& from, const AxisWords& to);
 
   AxisWords at(double t) const;
 

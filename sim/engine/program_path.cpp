@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -17,6 +18,14 @@ namespace {
 // How far along the path the closest point is looked for, beyond the distance of the point itself.
 constexpr double kSearchMargin = 0.1e-3;  // m
 
+// Signs of zero included.
+bool has_same_bits(const AxisWords& a, const AxisWords& b) {
+  for (int i = 0; i < kAxisWords; ++i) {
+    if (std::bit_cast<std::uint64_t>(a[i]) != std::bit_cast<std::uint64_t>(b[i])) return false;
+  }
+  return true;
+}
+
 int index_of_section(std::vector<std::string>& sections, const std::string& name) {
   const auto known = std::find(sections.begin(), sections.end(), name);
   if (known != sections.end()) return static_cast<int>(known - sections.begin());
@@ -26,12 +35,12 @@ int index_of_section(std::vector<std::string>& sections, const std::string& name
 
 }  // namespace
 
-ProgramPath::ProgramPath(std::span<const Move> moves, const AxisWords& start,
+ProgramPath::ProgramPath(const MoveRange& moves, const AxisWords& start,
                          std::shared_ptr<const controllers::ToolCentrePoint> machine,
                          const std::map<int, Eigen::Vector3d>& tips)
     : machine_(std::move(machine)) {
   AxisWords at = start;  // machine coordinates; behind a tip piece tip words with its p_ST
-  const Piece* before = nullptr;
+  std::optional<Piece> before;
   int section = 0;
   std::optional<int> tool;
   for (const Move& move : moves) {
@@ -49,13 +58,57 @@ ProgramPath::ProgramPath(std::span<const Move> moves, const AxisWords& start,
                 section};
     piece.is_tip = move.tool_control != ToolControl::none;
     if (piece.is_tip) piece.p_ST = tips.at(move.tool_offset);
-    piece.begin = begin_of(piece, before, at);
-    piece.curve = MoveCurve(piece.begin, move);
+    piece.begin = begin_of(piece, before ? &*before : nullptr, at);
     set_tool_axes(piece, move);
-    pieces_.push_back(piece);
-    before = &pieces_.back();
+    const bool is_straight = move.kind != MoveKind::arc && !piece.is_great_circle && before &&
+                             has_same_bits(piece.begin, before->end);
+    hold(piece, is_straight ? nullptr : &move);
+    before = piece;
     at = move.end_machine;
   }
+  pieces_.shrink_to_fit();
+}
+
+// @param move  of which the curve is; nullptr: straight from the end of the piece before
+void ProgramPath::hold(const Piece& piece, const Move* move) {
+  Held held{piece.end, piece.s_begin, piece.s_end, piece.line};
+  held.setting = index_of(
+      {piece.tool_offset, piece.tool, piece.rapid, piece.is_tip, piece.section, piece.p_ST});
+  if (move != nullptr) {
+    held.curved = static_cast<std::uint32_t>(curved_.size());
+    curved_.push_back({MoveCurve(piece.begin, *move), piece.begin, piece.is_great_circle,
+                       piece.k_begin, piece.k_end});
+  }
+  pieces_.push_back(held);
+}
+
+std::uint32_t ProgramPath::index_of(const Setting& setting) {
+  if (settings_.empty() || settings_.back() != setting) settings_.push_back(setting);
+  return static_cast<std::uint32_t>(settings_.size() - 1);
+}
+
+MoveCurve ProgramPath::curve_of(std::size_t index) const {
+  const Held& held = pieces_[index];
+  if (held.curved != kStraight) return curved_[held.curved].curve;
+  return {pieces_[index - 1].end, held.end};
+}
+
+ProgramPath::Piece ProgramPath::piece(std::size_t index) const {
+  const Held& held = pieces_[index];
+  const Setting& setting = setting_of(held);
+  Piece out{curve_of(index),     held.end,     held.s_begin,  held.s_end,      held.line,
+            setting.tool_offset, setting.tool, setting.rapid, setting.section, setting.is_tip,
+            setting.p_ST};
+  if (held.curved == kStraight) {
+    out.begin = pieces_[index - 1].end;
+    return out;
+  }
+  const Curved& curved = curved_[held.curved];
+  out.begin = curved.begin;
+  out.is_great_circle = curved.is_great_circle;
+  out.k_begin = curved.k_begin;
+  out.k_end = curved.k_end;
+  return out;
 }
 
 // Where a piece begins, in its own coordinates; `at` is in those of the piece before.
@@ -75,8 +128,8 @@ void ProgramPath::set_tool_axes(Piece& piece, const Move& move) const {
   piece.k_end = move.tool_axis;
 }
 
-std::vector<std::size_t> ProgramPath::pieces_of(std::span<const Move> moves) const {
-  const auto holds = [](const Piece& p, const Move& move) {
+std::vector<std::size_t> ProgramPath::pieces_of(const MoveRange& moves) const {
+  const auto holds = [](const Held& p, const Move& move) {
     return p.line == move.line && p.s_begin <= move.s_begin && move.s_end <= p.s_end;
   };
   std::vector<std::size_t> out;
@@ -92,9 +145,10 @@ std::vector<std::size_t> ProgramPath::pieces_of(std::span<const Move> moves) con
 }
 
 AxisWords ProgramPath::at(std::size_t index, double s) const {
-  const Piece& p = pieces_[index];
+  const Held& p = pieces_[index];
   const double length = p.s_end - p.s_begin;
-  return length > 0.0 ? p.curve.at(std::clamp((s - p.s_begin) / length, 0.0, 1.0)) : p.end;
+  if (!(length > 0.0)) return p.end;
+  return curve_of(index).at(std::clamp((s - p.s_begin) / length, 0.0, 1.0));
 }
 
 // Share of the piece that is behind; by the turn of the rotary axes where s stands.
@@ -119,7 +173,7 @@ double ProgramPath::fraction(const Piece& p, double s, const JointLayout& layout
 
 Joints ProgramPath::joints(std::size_t index, double s, const JointLayout& layout,
                            const Joints& Q_near) const {
-  const Piece& p = pieces_[index];
+  const Piece p = piece(index);
   const double share = fraction(p, s, layout, Q_near);
   const AxisWords words = p.curve.at(share);
   Joints Q = layout.joints(words);
@@ -134,22 +188,24 @@ Joints ProgramPath::joints(std::size_t index, double s, const JointLayout& layou
 }
 
 double ProgramPath::distance(const Eigen::Vector3d& point, std::size_t index) const {
-  const bool is_tip = pieces_[index].is_tip;
-  const auto to_piece = [&](const Piece& p) {
-    if (p.is_tip != is_tip) return std::numeric_limits<double>::infinity();
-    return (p.curve.at(p.curve.closest(point)).head<3>() - point).norm();
+  const bool is_tip = setting_of(pieces_[index]).is_tip;
+  const auto to_curve = [&](std::size_t i, const MoveCurve& curve) {
+    if (setting_of(pieces_[i]).is_tip != is_tip) return std::numeric_limits<double>::infinity();
+    return (curve.at(curve.closest(point)).head<3>() - point).norm();
   };
-  double best = to_piece(pieces_[index]);
+  double best = to_curve(index, curve_of(index));
   const double reach = best + kSearchMargin;
   double gone = 0.0;
   for (std::size_t i = index; i + 1 < pieces_.size() && gone < reach; ++i) {
-    best = std::min(best, to_piece(pieces_[i + 1]));
-    gone += pieces_[i + 1].curve.length();
+    const MoveCurve curve = curve_of(i + 1);
+    best = std::min(best, to_curve(i + 1, curve));
+    gone += curve.length();
   }
   gone = 0.0;
   for (std::size_t i = index; i > 0 && gone < reach; --i) {
-    best = std::min(best, to_piece(pieces_[i - 1]));
-    gone += pieces_[i - 1].curve.length();
+    const MoveCurve curve = curve_of(i - 1);
+    best = std::min(best, to_curve(i - 1, curve));
+    gone += curve.length();
   }
   return best;
 }

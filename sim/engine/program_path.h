@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <span>
@@ -10,13 +11,14 @@
 
 #include "controllers/path/tool_centre_point.h"
 #include "plant/vocabulary/axes.h"
-#include "plant/vocabulary/move.h"
 #include "plant/vocabulary/move_curve.h"
+#include "plant/vocabulary/move_list.h"
 
 namespace servomill::sim {
 
 /// The motion of the original program in machine coordinates, by arc length s (m). Where the
-/// program controls the tip, that is the tip in the workpiece, and s the length of its way.
+/// program controls the tip, that is the tip in the workpiece, and s the length of its way. A
+/// straight block takes 80 bytes.
 class ProgramPath {
  public:
   /// @param moves  canonical moves with s_begin, s_end
@@ -24,7 +26,7 @@ class ProgramPath {
   /// @param machine, tips  for moves under tool control: the ideal machine, and p_ST (3; m) by
   /// number
   ///               of tool offset
-  ProgramPath(std::span<const Move> moves, const AxisWords& start,
+  ProgramPath(const MoveRange& moves, const AxisWords& start,
               std::shared_ptr<const controllers::ToolCentrePoint> machine = nullptr,
               const std::map<int, Eigen::Vector3d>& tips = {});
 
@@ -48,9 +50,13 @@ class ProgramPath {
   /// Index of the piece that each of these moves belongs to.
   /// @param moves  those of the program, or what a strategy made of them: lines and arc lengths
   ///               carried over, in order. What moves nothing belongs to the piece before
-  std::vector<std::size_t> pieces_of(std::span<const Move> moves) const;
+  std::vector<std::size_t> pieces_of(const MoveRange& moves) const;
 
-  const Piece& piece(std::size_t index) const { return pieces_[index]; }
+  Piece piece(std::size_t index) const;
+  int line(std::size_t index) const { return pieces_[index].line; }
+  double s_end(std::size_t index) const { return pieces_[index].s_end; }  // m
+  int tool_offset(std::size_t index) const { return setting_of(pieces_[index]).tool_offset; }
+  bool is_rapid(std::size_t index) const { return setting_of(pieces_[index]).rapid; }
   std::size_t size() const { return pieces_.size(); }
 
   /// Programmed position at arc length s within that piece (6; m, rad).
@@ -72,13 +78,43 @@ class ProgramPath {
   const std::vector<std::string>& sections() const { return sections_; }
 
  private:
+  // Blocks that follow each other mostly have these in common.
+  struct Setting {
+    int tool_offset = 0, tool = 0;
+    bool rapid = false, is_tip = false;
+    int section = 0;
+    Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();
+    bool operator==(const Setting&) const = default;
+  };
+  // All that a piece is if it is not straight from the end of the piece before.
+  struct Curved {
+    MoveCurve curve;
+    AxisWords begin = AxisWords::Zero();
+    bool is_great_circle = false;
+    Eigen::Vector3d k_begin = Eigen::Vector3d::UnitZ(), k_end = Eigen::Vector3d::UnitZ();
+  };
+  static constexpr std::uint32_t kStraight = 0xffffffff;
+  struct Held {  // a piece
+    AxisWords end;
+    double s_begin = 0.0, s_end = 0.0;  // m
+    int line = 0;
+    std::uint32_t setting = 0;         // index into settings_
+    std::uint32_t curved = kStraight;  // index into curved_
+  };
+
+  void hold(const Piece& piece, const Move* move);
+  std::uint32_t index_of(const Setting& setting);
+  const Setting& setting_of(const Held& held) const { return settings_[held.setting]; }
+  MoveCurve curve_of(std::size_t index) const;
   AxisWords begin_of(const Piece& piece, const Piece* before, AxisWords at) const;
   void set_tool_axes(Piece& piece, const Move& move) const;
   double fraction(const Piece& piece, double s, const JointLayout& layout,
                   const Joints& Q_near) const;
 
   std::shared_ptr<const controllers::ToolCentrePoint> machine_;
-  std::vector<Piece> pieces_;
+  std::vector<Held> pieces_;
+  std::vector<Setting> settings_;
+  std::vector<Curved> curved_;
   std::vector<std::string> sections_ = {""};
 };
 

@@ -259,7 +259,7 @@ std::size_t Recorder::Rows::find_places(const std::vector<Snapshot>& block, std:
   int tool = 0;
   for (std::size_t n = first; n < block.size(); ++n) {
     const Snapshot& now = block[n];
-    const ProgramPath::Piece& piece = path_.piece(now.piece);
+    const ProgramPath::Piece piece = path_.piece(now.piece);
     if (n == first) tool = piece.tool_offset;
     if (piece.tool_offset != tool) return n;
     const bool by_turn = rotary_displaced_ && piece.s_end == piece.s_begin;
@@ -280,7 +280,7 @@ Joints Recorder::Rows::ideal_joints(const Joints& Q_true, int tool_offset) const
 
 // Where the tool is and where it should be.
 void Recorder::Rows::find_poses(std::span<const double> directions) {
-  const auto tip = tips_.find(path_.piece(pieces_.front()).tool_offset);
+  const auto tip = tips_.find(path_.tool_offset(pieces_.front()));
   p_ST_ = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;
   nominal_.resize(Q_prog_.size());
   actual_.resize(Q_prog_.size());
@@ -296,7 +296,7 @@ void Recorder::Rows::find_poses(std::span<const double> directions) {
 }
 
 void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to) {
-  const ProgramPath::Piece& piece = path_.piece(pieces_[place]);
+  const ProgramPath::Piece piece = path_.piece(pieces_[place]);
   if (cuts_) {
     actual_[place].p_WT += plant::linear_jacobian(machine_.chain, now.Q_true) * now.deflection;
   }

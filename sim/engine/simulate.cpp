@@ -144,7 +144,7 @@ class Cut {
   void start(const controllers::Trajectory::Sample& reference) { load_.start(reference.s); }
   void advance(const controllers::Trajectory::Sample& reference) {
     const NcSettings& nc = in_.machine.nc;
-    const int tool = in_.path.piece(in_.pieces[reference.move]).tool_offset;
+    const int tool = in_.path.tool_offset(in_.pieces[reference.move]);
     if (tool != tool_) p_ST_ = in_.tips.at(tool);
     tool_ = tool;
     load_.advance(reference.s, nc.periods.seconds(nc.periods.position), reference.Q_ref, p_ST_);

@@ -34,16 +34,17 @@ class PieceOfRow {
   PieceOfRow(const Series& series, const ProgramPath& path)
       : series_(series), path_(path), s_(*series.column("s")), line_(*series.column("line")) {}
 
-  const ProgramPath::Piece& at(std::size_t row) {
+  ProgramPath::Piece at(std::size_t row) {
     const double s = series_.at(row, s_) * mm;
     const int line = static_cast<int>(series_.at(row, line_));
-    while (piece_ + 1 < path_.size() && is_behind(path_.piece(piece_), s, line)) ++piece_;
+    while (piece_ + 1 < path_.size() && is_behind(s, line)) ++piece_;
     return path_.piece(piece_);
   }
 
  private:
-  static bool is_behind(const ProgramPath::Piece& piece, double s, int line) {
-    return s > piece.s_end + kSameS || (line != piece.line && s >= piece.s_end - kSameS);
+  bool is_behind(double s, int line) const {
+    const double s_end = path_.s_end(piece_);
+    return s > s_end + kSameS || (line != path_.line(piece_) && s >= s_end - kSameS);
   }
 
   const Series& series_;
@@ -71,12 +72,12 @@ Vector3d tip_that_cuts(const plant::Cutter& cutter, const Vector3d& k,
 // The ways of the cutters, and the first feed of each, which says what turned in the spindle.
 struct Ways {
   std::vector<plant::CutterPass> passes;
-  std::vector<const ProgramPath::Piece*> feeds;  // of each pass; null: it only moves in rapid
+  std::vector<std::optional<ProgramPath::Piece>> feeds;  // of each pass; none: only rapid
 
   // That of the pass which a position (counted through all of them) belongs to.
   const ProgramPath::Piece* feed_at(std::size_t position) const {
     for (std::size_t i = 0; i < passes.size(); ++i) {
-      if (position < passes[i].positions.size()) return feeds[i];
+      if (position < passes[i].positions.size()) return feeds[i] ? &*feeds[i] : nullptr;
       position -= passes[i].positions.size();
     }
     return nullptr;
@@ -96,11 +97,11 @@ Ways ways_of(const PartSource& source) {
     const plant::Cutter* cutter = cutter_of(source, piece);
     if (cutter != nullptr && cutter != cutting) {
       out.passes.push_back({*cutter, {}});
-      out.feeds.push_back(nullptr);
+      out.feeds.emplace_back();
     }
     cutting = cutter;
     if (cutter == nullptr) continue;
-    if (out.feeds.back() == nullptr && !piece.rapid) out.feeds.back() = &piece;
+    if (!out.feeds.back() && !piece.rapid) out.feeds.back() = piece;
     out.passes.back().positions.push_back(
         {frame.point(vector_at(servo, row, position) * mm),
          frame.direction(vector_at(servo, row, axis)).normalized()});

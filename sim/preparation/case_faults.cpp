@@ -22,11 +22,11 @@ void add_once(std::vector<Fault>& faults, Fault fault) {
 
 }  // namespace
 
-void refuse_unnumbered_tools(std::span<const Move> moves, const std::string& file) {
-  const auto found = std::find_if(moves.begin(), moves.end(), [](const Move& move) {
+void refuse_unnumbered_tools(const MoveRange& moves, const std::string& file) {
+  const auto found = first_move(moves, [](const Move& move) {
     return is_motion(move.kind) && move.tool_offset == controllers::kOtherToolOffset;
   });
-  if (found == moves.end()) return;
+  if (!found) return;
   throw InputError({file, found->line},
                    "moves with a tool offset of G43.1 or G43.2; a simulation takes the tool from "
                    "[[program.tool]]: use G43 H");

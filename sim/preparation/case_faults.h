@@ -7,7 +7,7 @@
 
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
-#include "plant/vocabulary/move.h"
+#include "plant/vocabulary/move_list.h"
 #include "sim/model/scenario.h"
 #include "strategies/strategy.h"
 
@@ -18,7 +18,7 @@ struct InterpretedProgram;
 /// A simulation knows tools by their numbers: those of G43.1 and G43.2 have none.
 /// @param file  of the program
 /// @throws InputError at the first motion with such a tool offset
-void refuse_unnumbered_tools(std::span<const Move> moves, const std::string& file);
+void refuse_unnumbered_tools(const MoveRange& moves, const std::string& file);
 
 /// Words of axes that the machine lacks would have no effect.
 /// @throws InputError for each such axis, where the program first moves it

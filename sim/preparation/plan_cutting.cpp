@@ -93,7 +93,7 @@ class Planner {
       if (!is_motion(move.kind)) continue;
       const int in_spindle = tool != 0 ? tool : move.tool_offset;
       const auto cutter = in_.cutters.find(in_spindle);
-      const auto& p = path_.piece(piece);
+      const auto p = path_.piece(piece);
       const bool turns = (p.end - p.begin).tail<3>() != Vector3d::Zero() || p.is_great_circle;
       stages_.push_back({piece++, in_spindle,
                          cutter == in_.cutters.end() ? nullptr : &cutter->second,
@@ -104,7 +104,7 @@ class Planner {
 
   // Where the tool is, at a share of a piece.
   plant::CutterPosition position(const Stage& stage, double share) {
-    const ProgramPath::Piece& p = path_.piece(stage.piece);
+    const ProgramPath::Piece p = path_.piece(stage.piece);
     const JointLayout& layout = in_.chain.layout;
     const double length = p.s_end - p.s_begin;
     // where s stands, the nearest joints choose the place
@@ -178,7 +178,7 @@ class Planner {
 
   // Positions up to the last one that lies well behind a place of the piece.
   std::size_t positions_before(const Stage& stage, double share) const {
-    const ProgramPath::Piece& p = path_.piece(stage.piece);
+    const ProgramPath::Piece p = path_.piece(stage.piece);
     const double behind = share - 0.5 * kBehind / (p.s_end - p.s_begin);
     const auto next = std::upper_bound(stage.shares.begin(), stage.shares.end(), behind);
     const auto last = std::max<std::ptrdiff_t>(0, next - stage.shares.begin() - 1);
@@ -186,7 +186,7 @@ class Planner {
   }
 
   void add_rows(const Stage& stage) {
-    const ProgramPath::Piece& p = path_.piece(stage.piece);
+    const ProgramPath::Piece p = path_.piece(stage.piece);
     const double length = p.s_end - p.s_begin;
     if (length <= 0.0) return;
     const double step =
@@ -207,7 +207,7 @@ class Planner {
 
   // Rows between a, which is in the table, and b, and b.
   void refine(const Stage& stage, const CuttingTable::Row& a, const CuttingTable::Row& b) {
-    const ProgramPath::Piece& p = path_.piece(stage.piece);
+    const ProgramPath::Piece p = path_.piece(stage.piece);
     const auto force = [](const CuttingTable::Row& r) {
       return Vector3d(r.edge + kUsualChip * r.shear);
     };
@@ -234,7 +234,7 @@ class Planner {
     if (!rows_.empty()) {
       const CuttingTable::Row& before = rows_.back();
       const double share = 0.5 * (static_cast<double>(cuts) + static_cast<double>(cut_before_));
-      const bool rapid = path_.piece(stage.piece).rapid;
+      const bool rapid = path_.is_rapid(stage.piece);
       row.cut = before.cut + (rapid ? 0.0 : share * (row.s - before.s));
     }
     cut_before_ = cuts;
@@ -251,7 +251,7 @@ class Planner {
   }
 
   CuttingTable::Row row(const Stage& stage, double share) {
-    const ProgramPath::Piece& p = path_.piece(stage.piece);
+    const ProgramPath::Piece p = path_.piece(stage.piece);
     const double length = p.s_end - p.s_begin;
     CuttingTable::Row row{.s = share < 1.0 ? p.s_begin + share * length : p.s_end};
     if (!may_meet(stage)) return row;
@@ -319,7 +319,7 @@ class Planner {
     above.position.tip += flutes * motion.position.axis;
     const double rubbed = height_in_material(body_radius(*stage.cutter), above, is_material);
     if (rubbed <= 0.0 || flutes + rubbed <= shank.depth + kRubbed) return;
-    shank = {path_.piece(stage.piece).line, flutes, flutes + rubbed};
+    shank = {path_.line(stage.piece), flutes, flutes + rubbed};
   }
 
   void warn_of_shanks() {
@@ -362,11 +362,11 @@ class Planner {
   }
 
   [[noreturn]] void refuse_standing(const Stage& stage) const {
-    throw InputError({in_.file, path_.piece(stage.piece).line},
+    throw InputError({in_.file, path_.line(stage.piece)},
                      "cuts while the spindle stands still; start it (M3 S...)");
   }
   [[noreturn]] void refuse_unknown(const Stage& stage) const {
-    const int line = path_.piece(stage.piece).line;
+    const int line = path_.line(stage.piece);
     throw InputError({in_.file, line},
                      stage.tool == 0
                          ? std::string("is in the stock without a tool; load one (T M6)")
@@ -377,7 +377,7 @@ class Planner {
   [[noreturn]] void refuse_untouched() const {
     Eigen::AlignedBox3d tips;
     for (const Stage& stage : stages_) {
-      if (stage.cutter != nullptr && !path_.piece(stage.piece).rapid) tips.extend(stage.tips);
+      if (stage.cutter != nullptr && !path_.is_rapid(stage.piece)) tips.extend(stage.tips);
     }
     const auto box = [](const Eigen::AlignedBox3d& b) {
       const Vector3d low = b.min() / mm, high = b.max() / mm;

@@ -5,7 +5,7 @@
 namespace servomill::sim {
 namespace {
 
-std::size_t weight_of(const std::vector<Move>& moves) { return moves.size() + 1; }
+std::size_t weight_of(const MoveList& moves) { return moves.size() + 1; }
 
 // An arc is one move and hundreds of phases and pieces.
 std::size_t weight_of(const PlannedMotion& motion) {
@@ -69,8 +69,7 @@ void add(MemoKey& key, const controllers::FilterChain& filters) {
 
 namespace {
 
-std::map<int, Eigen::Vector3d> tips_of(const std::vector<Move>& moves,
-                                       const controllers::ToolTable& tools) {
+std::map<int, Eigen::Vector3d> tips_of(const MoveList& moves, const controllers::ToolTable& tools) {
   std::map<int, Eigen::Vector3d> tips = {{0, Eigen::Vector3d::Zero()}};
   for (const Move& move : moves) {
     if (const auto* tool = tools.find(move.tool_offset)) {
@@ -86,37 +85,31 @@ bool controls_tip(const Move& move) {
 
 }  // namespace
 
-const Move* InterpretedProgram::first_tip_move() const {
-  const auto found = std::find_if(moves.begin(), moves.end(), controls_tip);
-  return found == moves.end() ? nullptr : &*found;
-}
-
-const Move* InterpretedProgram::first_shifted_feed() const {
-  const auto is_shifted_feed = [](const Move& move) {
+std::optional<Move> InterpretedProgram::first_shifted_feed() const {
+  return first_move(moves, [](const Move& move) {
     return (move.kind == MoveKind::feed || move.kind == MoveKind::arc) && move.is_shifted;
-  };
-  const auto found = std::find_if(moves.begin(), moves.end(), is_shifted_feed);
-  return found == moves.end() ? nullptr : &*found;
+  });
 }
 
-InterpretedProgram::InterpretedProgram(std::vector<Move> moves_in, std::vector<Fault> warnings_in,
+InterpretedProgram::InterpretedProgram(MoveList moves_in, std::vector<Fault> warnings_in,
                                        const controllers::ProgramSetup& setup)
     : moves(std::move(moves_in)),
       warnings(std::move(warnings_in)),
       tips(tips_of(moves, setup.tools)),
       path(moves, setup.start, setup.machine, tips) {
   const AxisWords& start = setup.start;
+  first_tip_move_ = first_move(moves, controls_tip);
   // the tip of the first tool that the program works with: the one that a strategy believes in
   const auto works = [](const Move& move) { return is_motion(move.kind) && move.tool_offset != 0; };
-  const auto first = std::find_if(moves.begin(), moves.end(), works);
-  if (first != moves.end()) first_tip = tips.at(first->tool_offset);
-  for (const Axis axis : kAllAxes) {
-    const auto leaves = [&](const Move& move) {
-      if (is_linear(axis) && controls_tip(move)) return false;  // those follow the tip
-      return is_motion(move.kind) && move.end_machine[index_of(axis)] != start[index_of(axis)];
-    };
-    const auto leaving = std::find_if(moves.begin(), moves.end(), leaves);
-    if (leaving != moves.end()) first_line[static_cast<std::size_t>(axis)] = leaving->line;
+  const auto first = first_move(moves, works);
+  if (first) first_tip = tips.at(first->tool_offset);
+  for (const Move& move : moves) {
+    if (!is_motion(move.kind)) continue;
+    for (const Axis axis : kAllAxes) {
+      if (is_linear(axis) && controls_tip(move)) continue;  // those follow the tip
+      int& line = first_line[static_cast<std::size_t>(axis)];
+      if (line == 0 && move.end_machine[index_of(axis)] != start[index_of(axis)]) line = move.line;
+    }
   }
 }
 

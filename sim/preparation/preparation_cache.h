@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "controllers/path/trajectory.h"
 #include "plant/drives/prepared_drives.h"
 #include "plant/geometry/volumetric.h"
+#include "plant/vocabulary/move_list.h"
 #include "sim/engine/cutting.h"
 #include "sim/engine/program_path.h"
 #include "sim/model/machine.h"
@@ -21,33 +23,36 @@
 namespace servomill::sim {
 
 /// Moves of a program, shared by all that was made of them.
-using SharedMoves = std::shared_ptr<const std::vector<Move>>;
+using SharedMoves = std::shared_ptr<const MoveList>;
 
 /// A program as the NC of a case reads it, before any strategy.
 struct InterpretedProgram {
   /// @param setup  with which the moves were read
-  InterpretedProgram(std::vector<Move> moves, std::vector<Fault> warnings,
+  InterpretedProgram(MoveList moves, std::vector<Fault> warnings,
                      const controllers::ProgramSetup& setup);
 
   /// The first move that controls the tip; nullptr: none does.
-  const Move* first_tip_move() const;
+  const Move* first_tip_move() const { return first_tip_move_ ? &*first_tip_move_ : nullptr; }
 
   /// The first feed in coordinates that the program has shifted; nullptr: none is.
-  const Move* first_shifted_feed() const;
+  std::optional<Move> first_shifted_feed() const;
 
-  std::vector<Move> moves;
+  MoveList moves;
   std::vector<Fault> warnings;
   std::map<int, Eigen::Vector3d> tips;                  // p_ST (m) by tool offset number
   Eigen::Vector3d first_tip = Eigen::Vector3d::Zero();  // m, of the first tool that works
   ProgramPath path;
   std::array<int, kAxisWords> first_line{};  // in which an axis leaves the start; 0: none
+
+ private:
+  std::optional<Move> first_tip_move_;
 };
 
 /// The moves that a strategy made of others, as the NC reads them from its text.
 struct RewrittenProgram {
   SharedMoves original;
   std::shared_ptr<const strategies::Strategy> strategy;
-  std::vector<Move> moves;
+  MoveList moves;
   std::string text;
 };
 

@@ -60,26 +60,31 @@ constexpr double kPrinted = 1e-8;  // m, rad
 
 // The rewritten program is written as text and read like any other; what the text cannot say, the
 // place on the original path, is carried over block by block.
-std::vector<Move> through_text(const std::vector<Move>& rewritten, const Scenario& scenario,
-                               const CaseSpec& spec, std::string& text) {
+MoveList through_text(const std::vector<Move>& rewritten, const Scenario& scenario,
+                      const CaseSpec& spec, std::string& text) {
   controllers::PrintOptions options;
   options.axes.clear();
   for (const auto& axis : scenario.machine.chain.layout.axis) {
     if (axis) options.axes += letter(*axis);
   }
   text = controllers::print_program(rewritten, options, header_of(scenario, spec)).text;
-  std::vector<Move> read = controllers::interpret(
+  controllers::Interpreter interpreter(
       text, fmt::format("{} as rewritten for case {}", scenario.program.file, spec.name),
       controllers::conversational::gcode_setup(
           controllers::ProgramText::of_text(scenario.program.text, scenario.program.file),
           setup_of(scenario, spec)));
+  MoveList read;
   auto original = rewritten.begin();
   const auto next_motion = [&] {
     return std::find_if(original, rewritten.end(),
                         [](const Move& move) { return is_motion(move.kind); });
   };
-  for (Move& move : read) {
-    if (!is_motion(move.kind)) continue;
+  while (const Move* next = interpreter.next()) {
+    Move move = *next;
+    if (!is_motion(move.kind)) {
+      read.push_back(move);
+      continue;
+    }
     original = next_motion();
     if (original == rewritten.end()) throw std::logic_error("a rewritten program gained a block");
     if ((move.end_machine - original->end_machine).cwiseAbs().maxCoeff() > kPrinted) {
@@ -92,6 +97,7 @@ std::vector<Move> through_text(const std::vector<Move>& rewritten, const Scenari
     move.line = original->line;
     move.s_begin = original->s_begin;
     move.s_end = original->s_end;
+    read.push_back(move);
     ++original;
   }
   if (next_motion() != rewritten.end()) throw std::logic_error("a rewritten program lost a block");
@@ -188,7 +194,7 @@ class Preparation {
     add(key, setup);
     return cache_.programs.get(key, [&] {
       std::vector<Fault> warnings;
-      std::vector<Move> moves = read_program(scenario_, spec_, &warnings);
+      MoveList moves = read_program(scenario_, spec_, &warnings);
       refuse_unnumbered_tools(moves, scenario_.program.file);
       return InterpretedProgram(std::move(moves), std::move(warnings), setup);
     });
@@ -256,14 +262,13 @@ class Preparation {
     add(key, scenario_.machine.chain.layout);
     return cache_.rewritten.get(key, [&] {
       RewrittenProgram out{moves, strategy, {}, {}};
-      out.moves = through_text(rewrite(*strategy, *moves), scenario_, spec_, out.text);
+      out.moves = through_text(rewrite(*strategy, moves->all()), scenario_, spec_, out.text);
       return out;
     });
   }
 
   // What the linear axes do for the tip.
-  controllers::TipMotions tip_motions(const std::vector<Move>& moves,
-                                      const InterpretedProgram& program,
+  controllers::TipMotions tip_motions(const MoveList& moves, const InterpretedProgram& program,
                                       const controllers::JointLimits& limits,
                                       const controllers::PathOptions& options) const {
     if (program.first_tip_move() == nullptr) return {};
@@ -306,11 +311,11 @@ class Preparation {
                                                                start_, limits, options)) {
         tip.slowed.push_back(*slowed);
       }
-      const auto blocks = std::count_if(moves->begin(), moves->end(),
-                                        [](const Move& move) { return is_motion(move.kind); });
+      double blocks = 0.0;
+      for (const Move& move : *moves) blocks += is_motion(move.kind) ? 1.0 : 0.0;
       return PlannedMotion{
           moves, controllers::plan(*moves, machine_.chain.layout, start_, limits, options, tip),
-          static_cast<double>(blocks), std::move(tip.slowed)};
+          blocks, std::move(tip.slowed)};
     });
   }
 
@@ -520,7 +525,7 @@ std::map<std::string, std::vector<Eigen::Vector3d>> PreparedCase::nominal_positi
   for (std::size_t n = 0; static_cast<double>(n) * period <= trajectory.duration(); ++n) {
     const auto now = trajectory.at(static_cast<double>(n) * period, cursor);
     const std::size_t piece = pieces[now.move];
-    const ProgramPath::Piece& at = path.piece(piece);
+    const ProgramPath::Piece at = path.piece(piece);
     std::vector<Eigen::Vector3d>* out = of_section[static_cast<std::size_t>(at.section)];
     if (at.rapid || out == nullptr) continue;
     const Joints Q_prog = path.joints(piece, now.s, machine.chain.layout, now.Q_ref);
@@ -564,12 +569,12 @@ std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(
       controllers::kGreatCircleShare * machine.nc.rotary_tolerance);
 }
 
-std::vector<Move> read_program(const Scenario& scenario, const CaseSpec& spec,
-                               std::vector<Fault>* warnings) {
+MoveList read_program(const Scenario& scenario, const CaseSpec& spec,
+                      std::vector<Fault>* warnings) {
   const ProgramSpec& program = scenario.program;
   try {
     controllers::Interpreter interpreter(program.text, program.file, setup_of(scenario, spec));
-    std::vector<Move> moves = interpreter.rest();
+    MoveList moves = interpreter.rest_held();
     if (warnings != nullptr) {
       warnings->insert(warnings->end(), interpreter.warnings().begin(),
                        interpreter.warnings().end());

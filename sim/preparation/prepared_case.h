@@ -87,8 +87,8 @@ std::vector<PreparedCase> prepare_cases(const Scenario& scenario,
 
 /// Interprets the program of a case as its machine would (work offset, tools, parameters).
 /// @param warnings  what the NC put right is added; may be nullptr
-std::vector<Move> read_program(const Scenario& scenario, const CaseSpec& spec,
-                               std::vector<Fault>* warnings = nullptr);
+MoveList read_program(const Scenario& scenario, const CaseSpec& spec,
+                      std::vector<Fault>* warnings = nullptr);
 
 /// What the NC of a machine knows for tool-centre-point control.
 std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(

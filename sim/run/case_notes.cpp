@@ -89,11 +89,11 @@ std::string note_of(const NotedCase& one, const strategies::Saturation& held) {
 
 // Probes and stock stay where the work_offset has them, whatever the program does to its zero.
 std::optional<Fault> shifted_program(const NotedCase& one) {
-  const Move* move = one.program.first_shifted_feed();
+  const std::optional<Move> move = one.program.first_shifted_feed();
   std::vector<std::string_view> unshifted;
   if (!one.scenario.probes.empty()) unshifted.push_back("[[probe]]");
   if (!one.scenario.stock.empty()) unshifted.push_back("[[part.stock]]");
-  if (move == nullptr || unshifted.empty()) return std::nullopt;
+  if (!move || unshifted.empty()) return std::nullopt;
   return Fault{{one.scenario.program.file, move->line},
                fmt::format("feeds in coordinates shifted by G52, G92, G10 or another work system "
                            "than G54, which does not shift {}",

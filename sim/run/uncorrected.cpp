@@ -32,10 +32,10 @@ void look_along(const ProgramPath& path, const JointLayout& layout, Visit visit)
   const std::size_t stride = total / kMost + 1;
   std::size_t look = 0;
   for (std::size_t n = 0; n < path.size(); ++n) {
-    const ProgramPath::Piece& piece = path.piece(n);
+    const ProgramPath::Piece piece = path.piece(n);
     const std::size_t looks = looks_of(piece);
     if (looks == 0) continue;
-    const bool has_begin = n == 0 || path.piece(n - 1).rapid;  // otherwise the end of the last one
+    const bool has_begin = n == 0 || path.is_rapid(n - 1);  // otherwise the end of the last one
     for (std::size_t i = has_begin ? 0 : 1; i <= looks; ++i) {
       if (look++ % stride != 0) continue;
       const double share = static_cast<double>(i) / static_cast<double>(looks);

@@ -12,8 +12,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <fstream>
-#include <sstream>
 
 #include "controllers/gcode/interpreter.h"
 #include "controllers/path/trajectory.h"
@@ -99,19 +97,17 @@ void measure(const Trajectory& path, const std::vector<Move>& moves) {
 }
 
 int run(const char* file, double tolerance) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
   Stopwatch watch;
-  std::vector<Move> moves = interpret(text.str(), file, {});
-  const double reading = watch.lap();
+  Interpreter interpreter(ProgramText::of_file(file), {});
+  MoveList moves;
   double programmed = 0.0;
-  for (const Move& move : moves) {
+  while (const Move* next = interpreter.next()) {
+    Move move = *next;
     if (move.kind == MoveKind::feed) programmed += (move.s_end - move.s_begin) / move.feed;
+    if (tolerance > 0.0) move.path_tolerance = tolerance;
+    moves.push_back(move);
   }
-  if (tolerance > 0.0) {
-    for (Move& move : moves) move.path_tolerance = tolerance;
-  }
+  const double reading = watch.lap();
   const double before = peak_megabytes();
   watch.lap();
   const Trajectory path = plan(moves, kLayout, Joints::Zero(), machine_limits());
@@ -120,7 +116,7 @@ int run(const char* file, double tolerance) {
   fmt::print("interpreted in {:.2f} s, planned in {:.2f} s\n", reading, planning);
   fmt::print("motion {:.3f} min, programmed feed alone {:.3f} min\n", path.duration() / minute,
              programmed / minute);
-  fmt::print("peak memory {:.0f} MB with text and moves, {:.0f} MB with the plan\n", before,
+  fmt::print("peak memory {:.0f} MB with the moves, {:.0f} MB with the plan\n", before,
              peak_megabytes());
   std::size_t pieces = 0, phases = 0;
   for (const auto& chain : path.chains()) {
@@ -128,7 +124,7 @@ int run(const char* file, double tolerance) {
     phases += chain.law.phases.size();
   }
   fmt::print("{} pieces, {} phases\n", pieces, phases);
-  if (std::getenv("PLANNER_BENCH_QUICK") == nullptr) measure(path, moves);
+  if (std::getenv("PLANNER_BENCH_QUICK") == nullptr) measure(path, moves.all());
   return 0;
 }
 

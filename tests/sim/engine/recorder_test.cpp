@@ -18,7 +18,7 @@ class Recording : public testing::Test {
  protected:
   Recording()
       : scenario_(small_scenario("G1 X10 Y5 F1000\nG1 X20\nM2\n", "[[case]]\nname = \"one\"\n")),
-        moves_(read_program(scenario_, scenario_.cases.front())),
+        moves_(read_program(scenario_, scenario_.cases.front()).all()),
         path_(moves_, AxisWords::Zero()),
         truth_(scenario_.machine.chain, {}) {
     boost::random::mt19937 random(1);

@@ -68,7 +68,7 @@ TEST(SubroutineFiles, AScenarioKeepsTheirTexts) {
   std::filesystem::remove(folder.path("go.ngc"));
   const Scenario again = read_resolved_scenario(scenario.resolved, "again");
   EXPECT_EQ(again.resolved, scenario.resolved);
-  const std::vector<Move> moves = read_program(again, again.cases.front(), nullptr);
+  const std::vector<Move> moves = read_program(again, again.cases.front(), nullptr).all();
   ASSERT_EQ(moves.size(), 2U);
   EXPECT_DOUBLE_EQ(moves[0].end[0], 3e-3);
 }
