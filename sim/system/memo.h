@@ -40,7 +40,8 @@ class MemoKey {
 };
 
 /// Results by key, the least recently used ones forgotten. Any number of threads: the first that
-/// asks for a key computes it, the others wait for it. Whoever was given a result keeps it.
+/// asks for a key computes it, the others wait for it. Whoever was given a result keeps it, and as
+/// long as somebody does, it is given to others, too: it takes no more memory.
 template <class T>
 class Memo {
  public:
@@ -62,10 +63,12 @@ class Memo {
       if (const auto known = by_key_.find(key.bytes()); known != by_key_.end()) {
         entries_.splice(entries_.begin(), entries_, known->second);
         result = known->second->result;
+      } else if (Pointer kept = kept_elsewhere(key)) {
+        return kept;
       } else {
         mine = true;
         ++made_;
-        entries_.push_front({key.bytes(), promise.get_future().share(), 0});
+        entries_.push_front({key.bytes(), promise.get_future().share(), 0, {}});
         by_key_.emplace(entries_.front().key, entries_.begin());
       }
     }
@@ -76,7 +79,7 @@ class Memo {
     try {
       Pointer made = pointer_to(make());
       promise.set_value(made);
-      keep(key, *made);
+      keep(key, made);
       return made;
     } catch (...) {
       promise.set_value(nullptr);
@@ -100,19 +103,25 @@ class Memo {
   struct Entry {
     std::string key;
     std::shared_future<Pointer> result;
-    std::size_t weight;  // 0 while it is computed
+    std::size_t weight;            // 0 while it is computed
+    std::weak_ptr<const T> alive;  // empty while it is computed
   };
 
   static Pointer pointer_to(Pointer made) { return made; }
   static Pointer pointer_to(T&& made) { return std::make_shared<const T>(std::move(made)); }
 
-  void keep(const MemoKey& key, const T& made) {
+  Pointer kept_elsewhere(const MemoKey& key) const {
+    const auto known = forgotten_.find(key.bytes());
+    return known == forgotten_.end() ? nullptr : known->second.lock();
+  }
+  void keep(const MemoKey& key, const Pointer& made) {
     const std::lock_guard lock(mutex_);
     const auto known = by_key_.find(key.bytes());
     if (known == by_key_.end()) return;
     weight_ -= known->second->weight;  // another thread may have made it, too
-    known->second->weight = weigh_ != nullptr ? weigh_(made) : 1;
+    known->second->weight = weigh_ != nullptr ? weigh_(*made) : 1;
     weight_ += known->second->weight;
+    known->second->alive = made;
     while (weight_ > capacity_ && entries_.size() > 1) drop(std::prev(entries_.end()));
   }
   void forget(const MemoKey& key) {
@@ -122,6 +131,9 @@ class Memo {
   void drop(typename std::list<Entry>::iterator entry) {
     weight_ -= entry->weight;
     by_key_.erase(entry->key);
+    entry->result = {};
+    std::erase_if(forgotten_, [](const auto& known) { return known.second.expired(); });
+    if (!entry->alive.expired()) forgotten_.insert_or_assign(entry->key, entry->alive);
     entries_.erase(entry);
   }
 
@@ -130,6 +142,7 @@ class Memo {
   mutable std::mutex mutex_;
   std::list<Entry> entries_;  // the most recently used one first
   std::unordered_map<std::string_view, typename std::list<Entry>::iterator> by_key_;
+  std::unordered_map<std::string, std::weak_ptr<const T>> forgotten_;  // held by others, maybe
   std::size_t weight_ = 0, made_ = 0;
 };
 

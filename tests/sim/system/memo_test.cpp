@@ -44,6 +44,20 @@ TEST(Memo, ComputesOnceWhatWasAskedForBefore) {
   EXPECT_EQ(memo.made(), 2U);
 }
 
+// It takes memory as it is: a second one would take as much again.
+TEST(Memo, GivesWhatItForgotAsLongAsSomebodyHoldsIt) {
+  Memo<int> memo(1);
+  const auto ask = [&](int x) { return memo.get(key_of(x), [x] { return x; }); };
+  auto held = ask(1);
+  const auto other = ask(2);  // there is room for one
+  EXPECT_EQ(memo.size(), 1U);
+  EXPECT_EQ(ask(1), held);
+  EXPECT_EQ(memo.made(), 2U);
+  held.reset();
+  EXPECT_EQ(*ask(1), 1);
+  EXPECT_EQ(memo.made(), 3U);
+}
+
 TEST(Memo, ForgetsWhatWasNotUsedForLongestAndNoMore) {
   Memo<int> memo(3);
   const auto ask = [&](int x) { return memo.get(key_of(x), [x] { return x; }); };
