@@ -1,0 +1,83 @@
+/// The memory that planning takes from the heap, for each line.
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "programs.h"
+#include "tests/counting_new.h"
+
+namespace servomill::controllers::test {
+namespace {
+
+// Rows over a curved surface, in chords of that length (m).
+MoveList surface(std::size_t lines, double shortest, double longest, double feed) {
+  std::mt19937 dice(5);
+  Program program;
+  MoveList out;
+  double x = 0.0, y = 0.0, direction = 1.0, s = 0.0;
+  AxisWords at = AxisWords::Zero();
+  for (std::size_t n = 0; n < lines; ++n) {
+    const double share = static_cast<double>(dice()) / 4294967296.0;
+    x += direction * (shortest + share * (longest - shortest));
+    if (std::abs(x - 0.1) > 0.1) {
+      direction = -direction;
+      y += 0.3 * mm;
+    }
+    Move move;
+    move.line = static_cast<int>(n) + 1;
+    move.feed = feed;
+    move.path_tolerance = 10 * um;
+    move.end.head<3>() << x, y, 0.006 * std::sin(x / 0.031) * std::cos(y / 0.023);
+    move.end_machine = move.end;
+    move.s_begin = s;
+    s += (move.end - at).head<3>().norm();
+    move.s_end = s;
+    at = move.end;
+    out.push_back(move);
+  }
+  return out;
+}
+
+struct Memory {
+  double peak = 0.0, kept = 0.0;  // bytes a line
+};
+
+Memory memory_of(const MoveList& moves) {
+  const std::size_t before = bytes_in_use;
+  most_bytes_in_use = before;
+  const Trajectory path = plan(moves, kLayout, Joints::Zero(), machine_limits());
+  const auto lines = static_cast<double>(moves.size());
+  return {static_cast<double>(most_bytes_in_use - before) / lines,
+          static_cast<double>(bytes_in_use - before) / lines};
+}
+
+void expect_bounded(const char* what, const Memory& one, const Memory& twice, double peak) {
+  fmt::print(
+      "{}: {:.0f} bytes a line at most, {:.0f} kept; {:.0f} and {:.0f} at twice the length\n", what,
+      one.peak, one.kept, twice.peak, twice.kept);
+  EXPECT_LE(one.peak, peak);
+  EXPECT_LE(twice.peak, peak);
+  EXPECT_LE(twice.peak, 1.1 * one.peak);
+  EXPECT_LE(twice.kept, 1.2 * one.kept);
+}
+
+// Ten intervals of a time law a line, whose points took 11 000 bytes more.
+TEST(PlanMemory, OfLongLinesIsBounded) {
+  constexpr std::size_t kLines = 4000;
+  constexpr double kMost = 1800.0;
+  const auto moves = [](std::size_t n) { return surface(n, 0.6 * mm, 4.0 * mm, 10 * mm); };
+  expect_bounded("long lines", memory_of(moves(kLines)), memory_of(moves(2 * kLines)), kMost);
+}
+
+// Vertices, windows and spans: 560 bytes when each of them said all about itself.
+TEST(PlanMemory, OfShortLinesIsBounded) {
+  constexpr std::size_t kLines = 60'000;
+  constexpr double kMost = 250.0;
+  const auto moves = [](std::size_t n) { return surface(n, 0.05 * mm, 0.2 * mm, 50 * mm); };
+  expect_bounded("short lines", memory_of(moves(kLines)), memory_of(moves(2 * kLines)), kMost);
+}
+
+}  // namespace
+}  // namespace servomill::controllers::test
