@@ -189,15 +189,19 @@ class Fitter {
     const double mismatch = (in_plane(to) - centre).norm() - r;
     // what the NC makes of unequal radii is its own business
     if (std::abs(mismatch) > kMissed * options_.tolerance) return false;
+    // the angle from the begin, near what it is on the programmed arc
+    const auto turned_to = [&](const Vector2d& p, double expected) {
+      const double angle = std::atan2(a.x() * p.y() - a.y() * p.x(), a.dot(p));
+      return angle +
+             2.0 * std::numbers::pi * std::round((expected - angle) / (2.0 * std::numbers::pi));
+    };
+    // a helix rises with its own angle, which another centre makes another one
+    const double whole = turned_to(in_plane(to) - centre, sweep);
+    if (whole * sweep <= 0.0) return false;
     for (std::size_t k = i + 1; k < j; ++k) {
       const Vector2d p = in_plane(looks_[k].c) - centre;
       const double share = (looks_[k].t - looks_[i].t) / (looks_[j].t - looks_[i].t);
-      // the angle, near what it is on the programmed arc
-      const double expected = sweep * share;
-      const double angle = std::atan2(a.x() * p.y() - a.y() * p.x(), a.dot(p));
-      const double turned = angle + 2.0 * std::numbers::pi *
-                                        std::round((expected - angle) / (2.0 * std::numbers::pi));
-      const double along = from[n] + (to[n] - from[n]) * turned / sweep;
+      const double along = from[n] + (to[n] - from[n]) * turned_to(p, whole * share) / whole;
       const double off = std::hypot(p.norm() - r, looks_[k].c[n] - along);
       if (!(off <= kForArcs * options_.tolerance)) return false;
     }

@@ -164,7 +164,7 @@ DialectWriter::Words DialectWriter::words_of(const Step& step, const AxisWords& 
     const auto k = static_cast<std::size_t>(i);
     const double unit = printer_->unit(axis), grid = std::pow(10.0, -printer_->decimals(axis));
     const bool is_feed = step.move->kind != MoveKind::rapid;
-    const double still = is_feed ? kStill : 0.5 * grid * unit;
+    const double still = is_feed && !step.is_place ? kStill : 0.5 * grid * unit;
     const bool moves =
         out_known_[k] ? std::abs(target[i] - at[i]) > still : step.is_commanded[k] || is_feed;
     if (moves && walk_.has(axis)) out.emplace_back(axis, target[i] / unit);

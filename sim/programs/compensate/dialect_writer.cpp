@@ -202,6 +202,7 @@ void DialectWriter::write_other(const Move& move, const Block& block, std::size_
       return printer_->coolant(M == 70 || M == 80 ? M / 10 : 9);
     }
     case MoveKind::dwell:
+      if (move.value == 0.0) return;
       restate_spindle_and_coolant();
       return printer_->dwell(move.value);
     case MoveKind::stop:

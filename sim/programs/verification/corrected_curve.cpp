@@ -85,6 +85,11 @@ double CorrectedCurve::share(const AxisWords& from, const AxisWords& end, double
 double CorrectedCurve::distance(const AxisWords& position, double t) const {
   Vector3d off = (position - at(t)).head<3>();
   if (rotates() || length_ == 0.0) return off.norm();
+  if (arc_) {  // to where the position is abreast of the path
+    const Vector3d along = derivative(t);
+    t = std::clamp(t + off.dot(along) / along.squaredNorm(), 0.0, 1.0);
+    off = (position - at(t)).head<3>();
+  }
   const Vector3d e = derivative(t).normalized();
   off -= off.dot(e) * e;
   return off.norm();

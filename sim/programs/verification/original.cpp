@@ -163,6 +163,8 @@ void Original::take_other(const Move& move) {
       auxiliary_.coolant = move.number;
       return;
     case MoveKind::dwell:
+      if (move.value == 0.0) return;
+      [[fallthrough]];
     case MoveKind::tool:
     case MoveKind::stop:
     case MoveKind::end: {
