@@ -1,8 +1,9 @@
 // The conformance programs, compensated without errors for every dialect: each is verified, or
 // refused with a reason.
-#include <map>
+#include <filesystem>
 
 #include "tests/sim/programs/compensate/trial.h"
+#include "tests/sim/programs/verification/replay_count.h"
 
 namespace servomill::sim {
 namespace {
@@ -27,47 +28,19 @@ CompensateRequest request_for(const std::string& program, Dialect dialect) {
   return request;
 }
 
-bool is_of_verification(const std::string& message) {
-  return message.find("would do something else") != std::string::npos ||
-         message.find("cannot be verified") != std::string::npos;
-}
-
-// Numbers out of a message, so that reasons can be counted.
-std::string reason_of(const std::string& message) {
-  std::string out;
-  for (const char c : message) {
-    const bool is_number = (c >= '0' && c <= '9') || c == '.' || c == '-';
-    if (!is_number) out += c;
-    if (is_number && (out.empty() || out.back() != '#')) out += '#';
-  }
-  return out.substr(0, 70);
-}
-
 class ConformanceReplay : public testing::TestWithParam<Dialect> {};
 
 TEST_P(ConformanceReplay, ProgramsAreVerifiedOrRefused) {
-  int verified = 0, refused = 0, differing = 0;
-  std::map<std::string, int> reasons;
+  constexpr int kOften = 5;
+  ReplayCount count;
   for (const auto& entry :
        fs::directory_iterator(SERVOMILL_SOURCE_DIR "/tests/conformance/programs")) {
-    if (entry.path().extension() != ".ngc") continue;
-    try {
-      compensate(request_for(entry.path().string(), GetParam()));
-      ++verified;
-    } catch (const InputError& error) {
-      const std::string message = error.faults().front().message;
-      const bool differs = is_of_verification(message) && entry.path().stem() != kEndBehindSlash;
-      ++(differs ? differing : refused);
-      ++reasons[reason_of(message)];
-      if (differs) ADD_FAILURE() << error.what();
-    }
+    if (entry.path().extension() != ".ngc" || entry.path().stem() == kEndBehindSlash) continue;
+    const std::string message = count.add(request_for(entry.path().string(), GetParam()));
+    if (!message.empty()) ADD_FAILURE() << message;
   }
-  const auto name = kDialects[static_cast<std::size_t>(GetParam())];
-  fmt::print("{}: {} verified, {} refused, {} differ\n", name, verified, refused, differing);
-  for (const auto& [reason, n] : reasons) {
-    if (n >= 5) fmt::print("  {:4} {}\n", n, reason);
-  }
-  EXPECT_GT(verified, 50);
+  count.print(GetParam(), kOften);
+  EXPECT_GT(count.verified, 50);
 }
 
 INSTANTIATE_TEST_SUITE_P(Dialects, ConformanceReplay,

@@ -6,6 +6,8 @@
 
 #include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+#include "sim/programs/verification/linuxcnc_replay.h"
 #include "sim/programs/verification/readings.h"
 
 namespace servomill::sim {
@@ -120,6 +122,27 @@ std::vector<Effect> effects_of(const std::string& text, Dialect dialect,
     for (const Reading& reading : readings_of(text, dialect, setup, {})) {
       Observer observer;
       for (const MachineAction& one : reading.read()) observer.see(one);
+      out.push_back(observer.take());
+    }
+  } catch (const InputError&) {
+    return {};
+  }
+  return out;
+}
+
+std::vector<Effect> linuxcnc_effects_of(const std::string& text, controllers::ProgramSetup setup,
+                                        const JointLayout& layout) {
+  setup.reader = controllers::Reader::linuxcnc;
+  OriginalOptions options;
+  options.layout = layout;
+  std::vector<Effect> out;
+  try {
+    for (const double start : {0.0, 17.0 * mm}) {
+      setup.start.head<3>().setConstant(start);
+      Observer observer;
+      for (const MachineAction& one : replay_linuxcnc(text, "mutant", setup, options)) {
+        observer.see(one);
+      }
       out.push_back(observer.take());
     }
   } catch (const InputError&) {

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "controllers/dialects/machine_action.h"
+#include "controllers/gcode/program_setup.h"
+#include "plant/vocabulary/axes.h"
 #include "sim/programs/compensate/compensate.h"
 
 namespace servomill::sim {
@@ -24,6 +26,10 @@ struct Effect {
 /// One for each setting of the control; none where it refuses the text.
 std::vector<Effect> effects_of(const std::string& text, Dialect dialect,
                                const controllers::ControlSetup& setup);
+
+/// The same of a program for LinuxCNC, read by strict rules from two starts.
+std::vector<Effect> linuxcnc_effects_of(const std::string& text, controllers::ProgramSetup setup,
+                                        const JointLayout& layout);
 
 /// Whether both go along the same paths within `tolerance` (m), and do the same otherwise.
 bool is_within(const std::vector<Effect>& a, const std::vector<Effect>& b, double tolerance);

@@ -2,6 +2,7 @@
 // the control does.
 #include <random>
 
+#include "sim/input/read_machine.h"
 #include "sim/programs/verification/verification.h"
 #include "tests/sim/programs/compensate/trial.h"
 #include "tests/sim/programs/verification/effect.h"
@@ -70,7 +71,15 @@ CompensateRequest request_for(Dialect dialect) {
   return request;
 }
 
+std::vector<Effect> linuxcnc_effects(const std::string& text) {
+  const CompensateRequest request = request_for(Dialect::linuxcnc);
+  controllers::ProgramSetup setup = program_setup(request.inputs, "mutant");
+  setup.work_offset[0].head<3>() << 0.4, 0.35, -0.09;
+  return linuxcnc_effects_of(text, setup, read_machine_description(kRouter).machine.chain.layout);
+}
+
 std::vector<Effect> effects(const std::string& text, Dialect dialect) {
+  if (dialect == Dialect::linuxcnc) return linuxcnc_effects(text);
   controllers::ControlSetup setup;
   setup.work_offset[0] = (AxisWords() << 0.4, 0.35, -0.09, 0.0, 0.0, 0.0).finished();
   setup.tool_length = {{1, 40.0 * mm}, {2, 55.5 * mm}};
@@ -144,7 +153,8 @@ TEST_P(Mutations, ThatChangeWhatTheControlDoesAreFound) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Dialects, Mutations,
-                         testing::Values(Dialect::heidenhain, Dialect::fanuc, Dialect::siemens),
+                         testing::Values(Dialect::linuxcnc, Dialect::heidenhain, Dialect::fanuc,
+                                         Dialect::siemens),
                          [](const auto& one) {
                            return std::string(kDialects[static_cast<std::size_t>(one.param)]);
                          });

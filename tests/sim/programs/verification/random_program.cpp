@@ -21,17 +21,45 @@ RandomProgram::RandomProgram(std::uint32_t seed, const Options& options)
       &RandomProgram::coolant,     &RandomProgram::spindle,    &RandomProgram::dwell,
       &RandomProgram::plane};
   // a few seldom things a program, so that most programs can be written for every control
-  const std::vector<Step> seldom = {
-      &RandomProgram::shift,          &RandomProgram::work_system,
-      &RandomProgram::stop,           &RandomProgram::machine_position,
-      &RandomProgram::home,           &RandomProgram::cycle,
-      &RandomProgram::pocket,         &RandomProgram::loop,
-      &RandomProgram::expression,     &RandomProgram::by_time,
-      &RandomProgram::per_revolution, &RandomProgram::path_mode,
-      &RandomProgram::slash,          &RandomProgram::change_tool};
+  const std::vector<Step> seldom = {&RandomProgram::shift,
+                                    &RandomProgram::work_system,
+                                    &RandomProgram::stop,
+                                    &RandomProgram::machine_position,
+                                    &RandomProgram::home,
+                                    &RandomProgram::cycle,
+                                    &RandomProgram::pocket,
+                                    &RandomProgram::loop,
+                                    &RandomProgram::expression,
+                                    &RandomProgram::by_time,
+                                    &RandomProgram::per_revolution,
+                                    &RandomProgram::path_mode,
+                                    &RandomProgram::slash,
+                                    &RandomProgram::change_tool,
+                                    &RandomProgram::arc_by_radius,
+                                    &RandomProgram::arc_about_absolute_centre,
+                                    &RandomProgram::contour,
+                                    &RandomProgram::subroutine,
+                                    &RandomProgram::branch,
+                                    &RandomProgram::repeat,
+                                    &RandomProgram::spindle_cycle,
+                                    &RandomProgram::repeated_cycle,
+                                    &RandomProgram::side_cycle,
+                                    &RandomProgram::other_home,
+                                    &RandomProgram::suspended_shift,
+                                    &RandomProgram::stored_offset,
+                                    &RandomProgram::other_length,
+                                    &RandomProgram::message,
+                                    &RandomProgram::preselect,
+                                    &RandomProgram::pallet,
+                                    &RandomProgram::switch_unit,
+                                    &RandomProgram::machine_feed,
+                                    &RandomProgram::saved_state,
+                                    &RandomProgram::spelling};
   for (int i = 0; i < 3; ++i) steps.push_back(seldom[pick(static_cast<unsigned>(seldom.size()))]);
   if (options.has_rotary_axes) {
-    for (int i = 0; i < 4; ++i) steps.push_back(&RandomProgram::rotate);
+    for (int i = 0; i < 3; ++i) steps.push_back(&RandomProgram::rotate);
+    steps.push_back(&RandomProgram::rotate_far);
+    steps.push_back(&RandomProgram::rotate_with_all);
   }
   begin();
   for (int i = 0; i < options.steps; ++i)
@@ -192,15 +220,18 @@ void RandomProgram::shift() {
 
 void RandomProgram::work_system() {
   if (is_incremental_) return;
-  line(fmt::format("G{}", 54 + pick(3)));
+  const unsigned system = one_in(4) ? pick(9) : pick(3);
+  line(system < 6 ? fmt::format("G{}", 54 + system) : fmt::format("G59.{}", system - 5));
   line("G0" + axis(2, uniform(5, 20)));
   line("G0" + axis(0, uniform(10, 90)) + axis(1, uniform(10, 90)));
 }
 
-void RandomProgram::coolant() { line(one_in(3) ? "M9" : one_in(3) ? "M7" : "M8"); }
+void RandomProgram::coolant() { line(one_in(3) ? "M9" : one_in(12) ? "M7" : "M8"); }
 
 void RandomProgram::spindle() {
   if (one_in(2)) return line(fmt::format("S{}", 100 * (5 + pick(100))));
+  if (one_in(6)) return line(fmt::format("G97 S{:.3f}", uniform(500, 9000)));
+  if (one_in(6)) line("M5");
   line(one_in(3) ? "M4" : "M3");
 }
 
@@ -305,10 +336,30 @@ void RandomProgram::per_revolution() {
 }
 
 void RandomProgram::path_mode() {
-  line(one_in(3) ? "G61.1" : one_in(2) ? "G64 P" + number(0.01) : "G64");
+  const unsigned which = pick(5);
+  line(which == 0   ? "G61.1"
+       : which == 1 ? "G61"
+       : which == 2 ? "G64 P" + number(0.01)
+       : which == 3 ? "G64 P" + number(0.02) + " Q" + number(0.01)
+                    : "G64");
 }
 
-void RandomProgram::slash() { line("/M8"); }
+// What the operator's switch leaves out.
+void RandomProgram::slash() {
+  const unsigned which = pick(6);
+  if (which == 0) return line("/M8");
+  if (which == 1) return line("/M9");
+  if (which == 2) return line(fmt::format("/G4 P{:.2f}", uniform(0.1, 2)));
+  if (which == 3) return line("/(MSG, not with the switch)");
+  if (which == 4) {
+    line(one_in(2) ? "/M0" : "/M1");
+    if (!one_in(4)) approach();
+    return;
+  }
+  if (is_incremental_) return;
+  line("/G1" + axis(0, uniform(10, 80)) + " F" + number(300));
+  approach();
+}
 
 void RandomProgram::plane() {
   if (one_in(2)) return;

@@ -9,7 +9,7 @@
 
 namespace servomill::sim {
 
-/// Tools 1 and 2 (diameters 6 and 8 mm), work systems G54 ... G56; rotary axes A and C on request.
+/// Tools 1 and 2 (diameters 6 and 8 mm), all work systems; rotary axes A and C on request.
 class RandomProgram {
  public:
   struct Options {
@@ -62,6 +62,30 @@ class RandomProgram {
   void path_mode();
   void slash();
   void plane();
+
+  // seldom ones (random_program_seldom.cpp)
+  void arc_by_radius();
+  void arc_about_absolute_centre();
+  void contour();
+  void subroutine();
+  void branch();
+  void repeat();
+  void spindle_cycle();
+  void repeated_cycle();
+  void side_cycle();
+  void other_home();
+  void suspended_shift();
+  void stored_offset();
+  void other_length();
+  void message();
+  void preselect();
+  void pallet();
+  void switch_unit();
+  void machine_feed();
+  void saved_state();
+  void spelling();
+  void rotate_far();
+  void rotate_with_all();
 
   std::mt19937 random_;
   Options options_;
