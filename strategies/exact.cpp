@@ -42,7 +42,9 @@ class ExactStrategy final : public Strategy {
       const ToolPose P_0 = plant::forward(inverse_.chain(), Q_0, belief_.p_ST);
       const ToolPose P_1 = plant::forward(inverse_.chain(), Q_1, belief_.p_ST);
       if (angle_between(P_0.k_W, P_1.k_W) >= plant::kRoundTurn) {
-        throw InputError(Place{}, "the tool axis turns round: no way of turning is the shortest");
+        throw InputError(
+            Place{},
+            "the tool axis is reversed (180 deg): no direction of rotation is the shorter one");
       }
       plant::LinearisedPath way = plant::linearise(
           inverse_, belief_.p_ST, plant::StraightToolPath(P_0, P_1), Q_0, tolerance_);

@@ -84,7 +84,7 @@ class AptReader : ClReader {
     if (statement.text.empty()) return;
     const Spot at = statement.spot();
     if (ended_) {
-      if (!warned_of_end_) warn(at, "what stands behind FINI is not read");
+      if (!warned_of_end_) warn(at, "text after FINI is ignored");
       warned_of_end_ = true;
       return;
     }

@@ -339,7 +339,8 @@ class Post {
 
   void feed_to(const ToolPose& P, int line, double feed) {
     if (angle_between(here_.k_W, P.k_W) >= plant::kRoundTurn) {
-      return fault(line, "the tool axis turns round: no way of turning is the shortest");
+      return fault(
+          line, "the tool axis is reversed (180 deg): no direction of rotation is the shorter one");
     }
     const plant::JointSolution end = inverse_.nearest(P, p_ST_, Q_);
     if (!end.is_reached()) return fault(line, reason(end, inverse_));
@@ -510,7 +511,7 @@ std::string reason(const plant::JointSolution& solution, const plant::InverseKin
   }
   const bool linear = solution.joint < kLinearJoints;
   const double unit = linear ? mm : deg;
-  return fmt::format("axis {} would stand at {:.6g} {}, beyond its travel of {:g} to {:g}",
+  return fmt::format("axis {} would move to {:.6g} {}, outside its travel of {:g} to {:g}",
                      inverse.chain().layout.letter_of(solution.joint),
                      solution.Q[solution.joint] / unit, linear ? "mm" : "deg",
                      inverse.settings().lower[solution.joint] / unit,

@@ -297,8 +297,11 @@ class SpeedPlanner {
     return law;
   }
 
-  // Does every phase end where the next begins, and the last at rest at the end?
+  // Does every phase end where the next begins, and the last at rest at the end? The times are sums
+  // from the begin of the law and are rounded with its duration: short phases of a high jerk behind
+  // hours of a slow feed are met only so well.
   bool is_continuous(const TimeLaw& law) const {
+    const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * law.duration;  // s
     for (std::size_t i = 0; i < law.phases.size(); ++i) {
       const bool last = i + 1 == law.phases.size();
       const Phase& p = law.phases[i];
@@ -307,10 +310,10 @@ class SpeedPlanner {
       const double x = next.t - p.t;
       const double s = p.s + x * (p.v + x * (p.a / 2.0 + x * p.j / 6.0));
       const double v = p.v + x * (p.a + x * p.j / 2.0), a = p.a + x * p.j;
-      if (std::abs(s - next.s) > kJoint || std::abs(v - next.v) > kJoint ||
-          std::abs(a - next.a) > 1e3 * kJoint) {
-        return false;
-      }
+      const bool meets = std::abs(s - next.s) <= kJoint + std::abs(v) * rounding &&
+                         std::abs(v - next.v) <= kJoint + std::abs(a) * rounding &&
+                         std::abs(a - next.a) <= 1e3 * kJoint + std::abs(p.j) * rounding;
+      if (!meets) return false;
     }
     return true;
   }

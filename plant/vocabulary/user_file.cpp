@@ -55,7 +55,9 @@ std::string size_text(std::uintmax_t bytes) {
 OpenFile open_regular(const std::string& path, struct stat& about, std::string& why) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) {
-    why = std::strerror(errno);
+    why = path == "-" && errno == ENOENT
+              ? "standard input is no input, for files are read more than once; name a file"
+              : std::strerror(errno);
     return nullptr;
   }
   why = ::fstat(descriptor, &about) != 0 ? std::strerror(errno) : kind_of(about.st_mode);
@@ -138,7 +140,9 @@ std::string read_input(const std::string& path, std::uintmax_t most, std::string
 
 std::string not_a_regular_file(const std::string& path) {
   struct stat about {};
-  return ::stat(path.c_str(), &about) == 0 ? kind_of(about.st_mode) : std::string();
+  if (::stat(path.c_str(), &about) != 0) return {};
+  const std::string kind = kind_of(about.st_mode);
+  return kind.substr(0, kind.find(','));  // of an output no size counts
 }
 
 }  // namespace servomill

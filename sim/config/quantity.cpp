@@ -116,10 +116,19 @@ const Name* find_name(Quantity quantity) {
   return nullptr;
 }
 
-// The one symbol that is nearest to a word; empty if several are: "mn" may be mm, m, min or ms.
-std::string_view nearest_symbol(std::string_view word) {
-  std::vector<std::string_view> names;
-  for (const Symbol& symbol : kSymbols) names.push_back(symbol.name);
+// Symbols that a word may mean: those of the quantity if it has some of its own, else all.
+std::vector<std::string_view> symbols_for(const Quantity* quantity) {
+  std::vector<std::string_view> own, all;
+  for (const Symbol& symbol : kSymbols) {
+    all.push_back(symbol.name);
+    if (quantity != nullptr && symbol.quantity == *quantity) own.push_back(symbol.name);
+  }
+  return own.empty() ? all : own;
+}
+
+// The one symbol that is nearest to a word; empty if several are: "mn" may be mm, m or nm.
+std::string_view nearest_symbol(std::string_view word, const Quantity* quantity) {
+  std::vector<std::string_view> names = symbols_for(quantity);
   const std::string_view nearest = nearest_name(word, names);
   std::erase(names, nearest);
   const std::string_view next = nearest_name(word, names);
@@ -128,8 +137,9 @@ std::string_view nearest_symbol(std::string_view word) {
   return is_unique ? nearest : std::string_view();
 }
 
-std::string unknown_symbol(std::string_view word) {
-  const std::string_view nearest = nearest_symbol(word);
+// @param quantity  that is expected; nullptr: any
+std::string unknown_symbol(std::string_view word, const Quantity* quantity) {
+  const std::string_view nearest = nearest_symbol(word, quantity);
   return fmt::format("unknown unit '{}'{}", word,
                      nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
 }
@@ -253,7 +263,7 @@ ParsedUnit parse_unit(std::string_view symbol) {
     return {std::move(product.unit), ""};
   }
   return {std::nullopt, product.unknown.empty() ? fmt::format("unknown unit '{}'", symbol)
-                                                : unknown_symbol(product.unknown)};
+                                                : unknown_symbol(product.unknown, nullptr)};
 }
 
 std::optional<Unit> unit_of_key(std::string_view key, Quantity quantity) {
@@ -312,12 +322,16 @@ ScaledText scale_text(std::string_view text, Quantity quantity) {
   if (!split) return {0.0, {}, expected()};
   if (split->unit.empty()) return {0.0, {}, "has no unit; " + expected()};
   ParsedUnit parsed = parse_unit(split->unit);
-  const bool is_product = split->unit.find_first_of(" /^") != std::string_view::npos;
-  if (!parsed.unit && !is_product && nearest_symbol(split->unit).empty()) {
-    const std::string symbols = symbols_of(quantity);
-    if (!symbols.empty()) {
-      parsed.complaint += fmt::format("; {} is in {}", name_of(quantity), symbols);
-    }
+  if (!parsed.unit) {
+    const bool is_product = split->unit.find_first_of(" /^") != std::string_view::npos;
+    const std::string symbols = is_product ? "" : symbols_of(quantity);
+    const std::string what = is_product ? parsed.complaint : unknown_symbol(split->unit, &quantity);
+    // a question ends a message
+    const std::size_t question = what.find("; did you mean");
+    const std::string kind =
+        symbols.empty() ? expected() : fmt::format("{} is in {}", name_of(quantity), symbols);
+    parsed.complaint = fmt::format("{}; {}{}", what.substr(0, question), kind,
+                                   question == std::string::npos ? "" : what.substr(question));
   }
   if (!parsed.unit) return {0.0, {}, parsed.complaint};
   if (parsed.unit->quantity != quantity) {

@@ -111,20 +111,26 @@ void Reader::State::report_unread(const Value& value) {
   const auto at = tables.find(&value);
   if (at == tables.end()) return;
   const Table& table = at->second;
-  std::vector<std::string_view> candidates;
-  for (const std::string& name : table.known) {
-    if (value.find(name) == nullptr) candidates.emplace_back(name);
-  }
+  const auto nearest_of = [&](std::string_view word) {
+    std::vector<std::string_view> absent, given;
+    for (const std::string& name : table.known) {
+      (value.find(name) == nullptr ? absent : given).emplace_back(name);
+    }
+    const std::string missing = did_you_mean(word, absent);
+    if (!missing.empty()) return missing;
+    const std::string_view near = nearest_name(word, given);
+    return near.empty() ? std::string() : fmt::format("; '{}' is given, too", near);
+  };
   for (const Value& entry : value.children) {
     const bool known =
         std::find(table.known.begin(), table.known.end(), entry.key) != table.known.end();
     if (table.read.contains(entry.key)) {
       report_unread(entry);
     } else if (!table.rest_is_skipped) {
-      faults.push_back({entry.key_place,
-                        fmt::format("{} {}", joined_key(table.path, entry.key),
-                                    known ? "is not used here"
-                                          : "is not known" + did_you_mean(entry.key, candidates))});
+      faults.push_back(
+          {entry.key_place,
+           fmt::format("{} {}", joined_key(table.path, entry.key),
+                       known ? "is not used here" : "is not known" + nearest_of(entry.key))});
     }
   }
 }

@@ -62,7 +62,7 @@ MeasuredResponse measure(const MachineSettings& machine, int joint, Tick reading
                          PositionLoop loop, const Measurement& how,
                          const std::vector<double>& wanted);
 
-/// Amplitude for which the velocity loop's proportional part asks for 2 % of the largest current.
+/// Amplitude for which the velocity loop's proportional part takes 2 % of the current limit.
 double default_amplitude(const MachineSettings& machine, int joint, Entry entry);
 
 /// Velocity at which friction does not stick under that amplitude; 0 for an axis without friction

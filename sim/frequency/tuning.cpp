@@ -139,7 +139,7 @@ double step_overshoot(const MachineSettings& linear, int joint, Tick reading_del
   throw InputError(
       {"axis " + std::string(1, machine.chain.layout.letter_of(joint))},
       fmt::format("no {} has a phase margin of {:.4g} deg together with a gain margin of {:.4g} "
-                  "dB; ask for less, or for a larger --reset-ratio",
+                  "dB; lower the margins or raise --reset-ratio",
                   gain, wanted.phase_margin / deg, 20.0 * std::log10(wanted.gain_margin)));
 }
 

@@ -20,7 +20,7 @@ Fault instability(const MachineSettings& machine, int joint, double radius) {
   const controllers::CurrentLoopParams& current = machine.nc.functions[j].current_loop;
   const plant::FeedDriveParams& drive = machine.drives[j];
   const char axis = machine.chain.layout.letter_of(joint);
-  const std::string_view watch = "or set nc.check_stability = false to watch it diverge";
+  const std::string_view watch = "or set nc.check_stability = false to simulate it regardless";
   if (drive.has_winding() && !(current.Kp * current.Ti < 2.0 * drive.L)) {
     return {places.winding_bandwidth,
             fmt::format("axis {}: the current loop is unstable with winding.bandwidth = {:.4g} "
@@ -30,14 +30,14 @@ Fault instability(const MachineSettings& machine, int joint, double radius) {
   if (velocity_spectral_radius(machine, joint) >= kMarginal) {
     return {places.velocity_bandwidth,
             fmt::format("axis {}: the velocity loop is unstable with velocity_bandwidth = {:.4g} "
-                        "rad/s over its current loop and filters; lower it or make those faster, "
+                        "rad/s over its current loop and filters; lower it or make them faster, "
                         "{}",
                         axis, cascade.Kp / cascade.J, watch)};
   }
   return {places.Kv,
           fmt::format("axis {}: the servo loop is unstable with Kv = {:.4g} 1/s over a stable "
                       "velocity loop of {:.4g} rad/s (grows by a factor {:.6g} each period); lower "
-                      "Kv or quicken the velocity loop, {}",
+                      "Kv or make the velocity loop faster, {}",
                       axis, cascade.Kv, cascade.Kp / cascade.J, radius, watch)};
 }
 

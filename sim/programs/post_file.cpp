@@ -1,4 +1,5 @@
 #include "sim/programs/post_file.h"
+#include "sim/config/option_value.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +11,6 @@
 #include "controllers/gcode/printer.h"
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_machine.h"
-#include "sim/model/design.h"
 #include "sim/programs/verify_post.h"
 #include "sim/system/read_file.h"
 
@@ -35,16 +35,21 @@ Joints joints_of(const std::string& text, const JointLayout& layout) {
     const std::string word = text.substr(from, end - from);
     from = end + 1;
     const auto axis = word.empty() ? std::nullopt : axis_of(word.front());
-    const double value =
-        axis && word.substr(1, 1) == "=" ? number_of(word.substr(2)) : std::nan("");
-    if (!std::isfinite(value)) {
-      throw InputError({"--start " + text}, "must be positions such as A=10,C=90");
+    if (!axis || word.size() < 3 || word[1] != '=') {
+      throw InputError({"--start " + text},
+                       "must be positions, such as A=10,C=90 (in mm and deg) or \"C=90 deg\"");
+    }
+    const ScaledText value =
+        scale_option(std::string_view(word).substr(2), is_linear(*axis) ? kLength : kAngle,
+                     is_linear(*axis) ? "mm" : "deg");
+    if (!value.complaint.empty()) {
+      throw InputError({"--start " + text}, fmt::format("{}: {}", word, value.complaint));
     }
     if (!layout.joint_of(*axis)) {
       throw InputError({"--start " + text}, fmt::format("the machine has no axis {}; it has {}",
                                                         letter(*axis), names_of(layout)));
     }
-    words[index_of(*axis)] = value * (is_linear(*axis) ? mm : deg);
+    words[index_of(*axis)] = value.si;
   }
   return layout.joints(words);
 }

@@ -8,6 +8,7 @@
 #include "sim/evaluation/comparison.h"
 #include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/program_survey.h"
+#include "sim/system/counted.h"
 
 namespace servomill::sim {
 namespace {
@@ -37,10 +38,6 @@ std::string in_time(double seconds) {
   const std::string rest =
       fmt::format("{:.0f} min {:.1f} s", minutes, tenths - hours * kHour - minutes * kMinute);
   return hours > 0.0 ? fmt::format("{:.0f} h {}", hours, rest) : rest;
-}
-
-std::string counted(std::size_t count, std::string_view singular, std::string_view plural) {
-  return fmt::format("{} {}", count, count == 1 ? singular : plural);
 }
 
 // "line 3", "lines 3, 7, 12, ...".
@@ -171,15 +168,14 @@ void add_cycle_time(const ProgramSurvey& survey, Text& text) {
   std::vector<std::string> without;
   if (!time.left_out.empty()) {
     without.push_back(fmt::format("{} from unknown positions ({})",
-                                  counted(time.left_out.size(), "move", "moves"),
+                                  counted(time.left_out.size(), "move"),
                                   lines_text(time.left_out)));
   }
   if (survey.tool_changes > 0) {
-    without.push_back(
-        counted(static_cast<std::size_t>(survey.tool_changes), "tool change", "tool changes"));
+    without.push_back(counted(static_cast<std::size_t>(survey.tool_changes), "tool change"));
   }
   if (survey.stops > 0) {
-    without.push_back(counted(static_cast<std::size_t>(survey.stops), "stop", "stops"));
+    without.push_back(counted(static_cast<std::size_t>(survey.stops), "stop"));
   }
   if (!without.empty()) {
     text.add("cycle time", fmt::format("without {}", fmt::join(without, ", ")));

@@ -136,7 +136,8 @@ class PostReplay {
     switch (move.kind) {
       case MoveKind::tool:
         if (tools_.empty() || tools_.front() != move.number) {
-          fail(fmt::format("tool {} is loaded, which the locations do not ask for", move.number));
+          fail(fmt::format("tool {} is loaded, which the cutter locations do not call for",
+                           move.number));
         }
         wanted_.tool = now_.tool = tools_.front();
         tools_.pop_front();
@@ -167,7 +168,7 @@ class PostReplay {
         !events_.empty() && events_.front()->kind == move.kind &&
         (move.kind != MoveKind::stop || events_.front()->number == move.number) &&
         (move.kind != MoveKind::dwell || std::abs(events_.front()->value - move.value) <= kTime);
-    if (!is_wanted) fail("a dwell, stop or message that the locations do not ask for here");
+    if (!is_wanted) fail("a dwell, stop or message that the cutter locations do not have here");
     events_.pop_front();
     const bool at_location = !has_location_ || changes_tool_ || near(now_.P, last_);
     if (move.kind == MoveKind::dwell && !at_location) fail("the dwell is not at its location");
@@ -179,9 +180,9 @@ class PostReplay {
     if (now_.tool != wanted_.tool) fail(fmt::format("tool {} is in the spindle", now_.tool));
     const bool same_speed = std::abs(now_.speed - wanted_.speed) <= kTime * std::abs(wanted_.speed);
     if (now_.direction != wanted_.direction || (wanted_.direction != 0 && !same_speed)) {
-      fail("the spindle does not run as the locations ask for");
+      fail("the spindle does not run as the cutter locations specify");
     }
-    if (now_.coolant != wanted_.coolant) fail("the coolant is not as the locations ask for");
+    if (now_.coolant != wanted_.coolant) fail("the coolant is not as the cutter locations specify");
   }
 
   // ---- motion
@@ -265,7 +266,7 @@ class PostReplay {
     do {
       const Move* move = next_motion();
       if (move == nullptr) fail("the program ends before this location");
-      if (move->kind != MoveKind::feed) fail("a rapid, where the location asks for a feed");
+      if (move->kind != MoveKind::feed) fail("a rapid where the cutter locations have a feed");
       if (move->tool_offset != now_.tool) {
         fail(fmt::format("length {} is in force with tool {}", move->tool_offset, now_.tool));
       }
@@ -337,7 +338,7 @@ class PostReplay {
       const Block block = block_of(*move);
       const bool is_feed = move->kind == MoveKind::feed;
       if (has_fed || (is_feed && record.kind == MoveKind::rapid)) {
-        fail("a feed, where the location asks for a rapid");
+        fail("a feed where the cutter locations have a rapid");
       }
       has_fed = is_feed;
       if (is_safe()) check_safe(block, &P);

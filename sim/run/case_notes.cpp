@@ -158,7 +158,7 @@ std::vector<std::string> notes_of_left_tables(const NotedCase& one) {
       const char axis = layout.letter_of(left.table.joint);
       out.push_back(fmt::format(
           "{}:{}: warning: case {}: strategy {}: the table over {} ends at {:.4f} mm, the "
-          "program goes on to {:.4f} mm; from here on the last value stays",
+          "program goes on to {:.4f} mm; from there on the last value is held",
           one.scenario.program.file, left.line, one.spec.name, one.spec.strategies[k].entry->name,
           axis, left.table.end / mm, left.farthest / mm));
     }

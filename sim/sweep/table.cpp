@@ -89,13 +89,14 @@ SweepTable::SweepTable(const std::string& path, bool force, const Scenario& base
     return;
   }
   file_.emplace(unborn ? path_ : writable_name(path_, replace), replace || unborn);
+  TemporaryFile empty = TemporaryFile::existing(partial_path());  // until its rows are there
   try {
     make(base);
   } catch (...) {
     file_.reset();
-    fs::remove(partial_path(), ignored);  // nothing is in it yet
     throw;
   }
+  empty.release();
 }
 
 namespace {

@@ -108,8 +108,13 @@ TemporaryFile::TemporaryFile(std::string name, int) : name_(std::move(name)) {
 TemporaryFile::~TemporaryFile() {
   if (name_.empty()) return;
   ::unlink(name_.c_str());
+  release();
+}
+
+void TemporaryFile::release() {
   const std::scoped_lock lock(temporary().mutex);
   temporary().names.erase(temporary().names.find(name_));
+  name_.clear();
 }
 
 void TemporaryFile::remove_all() {
@@ -126,7 +131,8 @@ std::string output_target(const std::string& path, Existing existing) {
   }
   refuse_missing_folder(path, target);
   if (const std::string kind = not_a_regular_file(target.string()); !kind.empty()) {
-    throw InputError({path}, kind + "; name another one");
+    throw InputError(
+        {path}, kind + "; results are files that get their name when they are complete: name one");
   }
   refuse_input(path, target.string());
   refuse_input(path, target.string() + ".partial", "its partial file ");

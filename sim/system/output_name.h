@@ -22,6 +22,8 @@ class TemporaryFile {
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   ~TemporaryFile();
   const std::string& name() const { return name_; }
+  /// From here on the file stays.
+  void release();
 
   /// Removes all that there are, where nothing destroys them any more.
   static void remove_all();

@@ -343,7 +343,7 @@ TableExport export_tables(const MachineSettings& machine, const plant::ErrorMode
   std::erase_if(e.tables, [](const CompensationTable& table) { return table.is_second_order; });
   if (e.tables.empty() && !(csv && !errors.is_zero())) {
     const std::string why = csv ? "" : joined(too_coarse(e));
-    throw InputError({}, fmt::format("{} tables over the axes that are asked for can hold nothing "
+    throw InputError({}, fmt::format("{} tables over the chosen axes can hold nothing "
                                      "of the error model '{}'{}",
                                      name_of(request.format), request.model, why));
   }

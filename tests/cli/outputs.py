@@ -202,7 +202,7 @@ class Links(Folder):
                           ("ring/out.ngc", "the folder 'ring' is a symbolic link that leads back to itself"),
                           ("part.cls/out.ngc", "'part.cls' is no folder"),
                           ("store/", "is a folder; name a file"),
-                          ("/dev/null", "is a device, not a file of known size; name another one")):
+                          ("/dev/null", "is a device; results are files that get their name when they are complete: name one")):
             for command, option, _ in COMMANDS:
                 result = self.run_here(*command, option, name, "-f")
                 self.assertEqual((result.returncode, result.stderr), (2, f"{name}: error: {why}\n"), command[0])

@@ -162,8 +162,8 @@ class Signals(unittest.TestCase):
                     self.assertEqual(new, [], said)
                     if status == 130:
                         self.assertTrue(stderr.splitlines()[-1].startswith("interrupted"), said)
-                    if "kept in" in stderr:
-                        self.assertTrue(os.path.exists(os.path.join(self.folder, "out.h5.partial")), said)
+                    partial = os.path.exists(os.path.join(self.folder, "out.h5.partial"))
+                    self.assertEqual("kept in out.h5.partial" in stderr, partial, said)
                 worst_of_all = max(worst_of_all, worst)
                 print(f"{name:<22} {duration:6.2f} s whole, {INSTANTS} signals, ended {ended}, latest {1e3 * worst:4.0f} ms",
                       flush=True)

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/config/option_value.h"
 
 namespace servomill::tools {
 
@@ -70,24 +70,13 @@ std::vector<int> chosen_joints(const Options& options, const sim::MachineSetting
   return joints;
 }
 
-std::optional<double> plain_number(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_whole = error == std::errc() && end == text.data() + text.size();
-  return is_whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
-
 std::optional<double> quantity_option(const Options& options, const std::string& name,
                                       sim::Quantity quantity, std::string_view bare_unit) {
   if (!options.has(name)) return std::nullopt;
   const auto& text = options.get<std::string>(name);
-  const bool is_bare = plain_number(text).has_value();
-  const sim::ScaledText scaled =
-      sim::scale_text(is_bare ? fmt::format("{} {}", text, bare_unit) : text, quantity);
-  if (scaled.complaint.empty() && std::isfinite(scaled.si)) return scaled.si;
-  throw InputError(
-      {"--" + name},
-      fmt::format("'{}' {}", text, scaled.complaint.empty() ? "is not finite" : scaled.complaint));
+  const sim::ScaledText scaled = sim::scale_option(text, quantity, bare_unit);
+  if (scaled.complaint.empty()) return scaled.si;
+  throw InputError({"--" + name}, fmt::format("'{}' {}", text, scaled.complaint));
 }
 
 std::optional<double> positive_option(const Options& options, const std::string& name,
@@ -105,11 +94,11 @@ std::optional<double> retract_option(const Options& options) {
   const auto& text = options.get<std::string>("retract");
   const bool names_Z = text.size() > 2 && (text[0] == 'Z' || text[0] == 'z') && text[1] == '=';
   if (names_Z) {
-    if (const auto value = plain_number(text.substr(2))) return *value * mm;
-    const sim::ScaledText scaled = sim::scale_text(text.substr(2), sim::kLength);
-    if (scaled.complaint.empty() && std::isfinite(scaled.si)) return scaled.si;
+    const sim::ScaledText scaled = sim::scale_option(text.substr(2), sim::kLength, "mm");
+    if (scaled.complaint.empty()) return scaled.si;
   }
-  throw InputError({"--retract " + text}, "must be Z=NUMBER, a machine coordinate in mm");
+  throw InputError({"--retract " + text},
+                   "must be Z=NUMBER, a machine coordinate, such as Z=-5 (in mm) or \"Z=-5 mm\"");
 }
 
 std::string_view bare_unit(sim::Quantity quantity) {
@@ -126,6 +115,17 @@ double positive_number(const Options& options, const std::string& name) {
   const double value = options.get<double>(name);
   if (value > 0.0 && std::isfinite(value)) return value;
   throw InputError({"--" + name}, fmt::format("{:g}; must be > 0", value));
+}
+
+double decibel_option(const Options& options, const std::string& name) {
+  const auto& text = options.get<std::string>(name);
+  std::string_view number = text;
+  if (number.ends_with("dB")) number.remove_suffix(2);
+  while (number.ends_with(' ')) number.remove_suffix(1);
+  const auto value = sim::plain_number(number);
+  if (value && *value > 0.0) return *value;
+  throw InputError({"--" + name},
+                   fmt::format("'{}' must be a ratio > 0 dB such as \"8 dB\"", text));
 }
 
 std::size_t choice_option(const Options& options, const std::string& name,

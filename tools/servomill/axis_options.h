@@ -22,9 +22,6 @@ sim::Scenario scenario_for_axes(const Options& options);
 /// @throws InputError for an axis that the machine lacks
 std::vector<int> chosen_joints(const Options& options, const sim::MachineSettings& machine);
 
-/// The finite number that a whole text is, or nullopt.
-std::optional<double> plain_number(std::string_view text);
-
 /// Value of an option that takes a number with a unit ("20 um"), in SI. A bare number is in
 /// `bare_unit`, which the help of the option names.
 /// @throws InputError
@@ -45,6 +42,10 @@ std::optional<double> retract_option(const Options& options);
 /// Value of an option that takes a bare number > 0.
 /// @throws InputError for anything else, NaN included
 double positive_number(const Options& options, const std::string& name);
+
+/// Value of an option that takes a ratio > 0 dB: "8 dB", "8".
+/// @throws InputError
+double decibel_option(const Options& options, const std::string& name);
 
 /// A word out of several. @throws InputError with the nearest
 std::size_t choice_option(const Options& options, const std::string& name,

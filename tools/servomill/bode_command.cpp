@@ -75,8 +75,8 @@ sim::BodeSettings settings_of(const Options& options, const sim::MachineSettings
                               sim::BodeLoop loop, int joint) {
   sim::BodeSettings settings;
   settings.loop = loop;
-  settings.from = positive_number(options, "from");
-  if (options.has("to")) settings.to = positive_number(options, "to");
+  settings.from = *positive_option(options, "from", sim::kRate, "Hz");
+  if (const auto to = positive_option(options, "to", sim::kRate, "Hz")) settings.to = *to;
   const int points = options.get<int>("points");
   if (points < 2 || points > static_cast<int>(kMostPoints)) {
     throw InputError({"--points"}, fmt::format("{}; must be >= 2 and <= {}", points, kMostPoints));
@@ -249,10 +249,11 @@ int bode_command(const Arguments& arguments) {
   add_axis_options(options);
   options.add()("loop,l", po::value<std::string>()->default_value("position")->value_name("LOOP"),
                 "position, velocity, compliance or all");
-  options.add()("from", po::value<double>()->default_value(1.0)->value_name("HZ"),
-                "lowest frequency");
-  options.add()("to", po::value<double>()->value_name("HZ"),
-                "highest frequency, up to half the rate of the loop (default: 0.4 times its rate)");
+  options.add()("from", po::value<std::string>()->default_value("1 Hz")->value_name("\"1 Hz\""),
+                "lowest frequency; a bare number is in Hz");
+  options.add()("to", po::value<std::string>()->value_name("\"100 Hz\""),
+                "highest frequency, bare numbers in Hz, up to half the rate of the loop (default: "
+                "0.4 times its rate)");
   options.add()("points", po::value<int>()->default_value(30)->value_name("N"),
                 "frequencies, evenly spaced in the logarithm");
   options.add()("method", po::value<std::string>()->default_value("sine")->value_name("METHOD"),
@@ -262,7 +263,7 @@ int bode_command(const Arguments& arguments) {
                 "peak of what is fed in: a length (position), a velocity (velocity), a force "
                 "(compliance), angles and torques for a rotary axis; bare numbers in mm, mm/s, N, "
                 "deg, deg/s, Nm (default: the velocity loop "
-                "asks for 2 % of the largest current)");
+                "takes 2 % of the current limit)");
   options.add()("velocity", po::value<std::string>()->value_name("\"300 mm/min\""),
                 "steady velocity beneath, so that friction does not stick; bare numbers in mm/min "
                 "or deg/min (default: 0 without "

@@ -25,7 +25,7 @@ void declare(Options& options) {
                 "programs: position of G54 in the machine, mm and deg; G55:X=10,R=30 for another "
                 "one and with a rotation");
   options.add()("tool-length", texts("1=50"),
-                "programs: length of tool 1, mm, in place of that of --tools");
+                "programs: length of tool 1 (in mm, or \"1=50 mm\"), in place of that of --tools");
   options.add()("json", "prints one JSON object a file");
   options.add()("quiet,q", "prints nothing but faults");
 }

@@ -185,15 +185,16 @@ int compensate_command(const Arguments& arguments) {
   namespace po = boost::program_options;
   Options options(
       "compensate", "PROGRAM --machine M.toml [-o OUT] [...]",
-      "Writes a program corrected for the errors of the machine that runs it. What is not motion\n"
-      "stays as it stands: comments, spindle, coolant, tools, order. Moves are split only as far "
+      "Writes a program with the errors of the machine corrected. Only motion changes: comments,\n"
+      "spindle, coolant, tool calls and the order of blocks are kept. Moves are split as little "
       "as\n"
-      "the tolerance asks for; arcs stay arcs where they can. Loops and subroutines are unrolled,\n"
-      "expressions become numbers, canned cycles and cutter compensation their moves.\n\n"
-      "Errors depend on machine coordinates: say where the work lies (--work-offset or\n"
-      "--parameter-file) and how long the tools are (--tools). Places of the machine (G53, G28, "
-      "G30)\n"
-      "are not corrected, rapids at their ends only.\n\n"
+      "the tolerance allows, and arcs are kept as arcs where possible. Loops and subroutines are\n"
+      "unrolled, expressions are replaced by numbers, canned cycles and cutter compensation by "
+      "their\n"
+      "moves.\n\n"
+      "Errors depend on machine coordinates: give the work offset (--work-offset or\n"
+      "--parameter-file) and the tool lengths (--tools or --tool-length). Machine positions (G53,\n"
+      "G28, G30) are not corrected, rapids are corrected at their end points only.\n\n"
       "The result is read back as its control reads it, under every setting of the machine "
       "builder,\n"
       "and compared with the original before it gets its name; a difference is refused.",
@@ -211,14 +212,14 @@ int compensate_command(const Arguments& arguments) {
                 "before its extension; PROGRAM_compensated.h or .mpf for heidenhain, siemens, "
                 "O1234.nc for fanuc");
   options.add()("tolerance", text()->default_value("1 um")->value_name("\"1 um\""),
-                "by which the path may leave the exactly corrected one; a bare number is in um");
-  options.add()("max-block", text()->value_name("\"1 mm\""),
-                "longest block where the correction varies, bare numbers in mm; default: as long "
-                "as the tolerance "
-                "allows");
-  options.add()("split-rapids", "corrects G0 on its way, too");
+                "largest deviation from the exactly corrected path; a bare number is in um");
+  options.add()(
+      "max-block", text()->value_name("\"1 mm\""),
+      "longest block where the correction varies, bare numbers in mm; default: as long as "
+      "the tolerance allows");
+  options.add()("split-rapids", "corrects G0 along its path, too");
   options.add()("axes", text()->default_value("linear")->value_name("linear|all"),
-                "axes that correct: X, Y, Z, or rotary axes, too");
+                "axes that carry the correction: X, Y and Z only, or rotary axes, too");
   options.add()("dialect", text()->default_value("linuxcnc")->value_name("NAME"),
                 "linuxcnc, or blocks for heidenhain, fanuc, siemens");
   options.add()("retract", text()->value_name("Z=-5"),
@@ -245,13 +246,13 @@ int compensate_command(const Arguments& arguments) {
                 "stay arcs). Default: it may have each");
   add_program_options(options);
   options.add()("work-offset", texts()->value_name("X=10,Y=-5"),
-                "where G54 lies in the machine, mm and deg; G55:X=10,R=30 for another one and with "
-                "a rotation; several of one system add up");
+                "position of G54 in the machine, such as X=10,Y=-5 (mm, deg) or \"X=10 mm\"; "
+                "G55:X=10,R=30 for another one with a rotation; may be given once per axis");
   options.add()("tool-length", texts()->value_name("1=50"),
-                "length of tool 1, mm, in place of that of --tools");
+                "length of tool 1 (in mm, or \"1=50 mm\"), in place of that of --tools");
   options.add()("start", text()->value_name("X=0,Y=0"),
-                "where the machine stands before the program, in machine coordinates: for programs "
-                "that feed before every axis was named");
+                "machine position before the program, for programs that feed before every axis has "
+                "been programmed");
   options.add()("record", text()->value_name("OUT.h5"), "path and correction, for tools/plot.py");
   options.add()("json", "prints what it changed as JSON");
   options.add()("force,f", "replaces OUT if it exists");

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <mutex>
 #include <thread>
@@ -26,6 +27,7 @@ sem_t wanted;
 std::atomic<bool> told = false;
 std::mutex kept_mutex;
 std::function<std::string()> what_is_kept;
+std::string kept_when_thrown;  // what an interrupt that went through as an exception has left
 
 void on_signal(int signal) {
   interrupt_wanted = true;
@@ -72,7 +74,17 @@ KeptWhenInterrupted::KeptWhenInterrupted(std::function<std::string()> what) {
 
 KeptWhenInterrupted::~KeptWhenInterrupted() {
   const std::scoped_lock lock(kept_mutex);
+  if (std::uncaught_exceptions() > 0) kept_when_thrown = what_is_kept();
   what_is_kept = nullptr;
+}
+
+void print_interrupted() {
+  std::string kept;
+  {
+    const std::scoped_lock lock(kept_mutex);
+    kept = kept_when_thrown;
+  }
+  print_interrupted(kept);
 }
 
 void print_interrupted(const std::string& kept) {

@@ -25,6 +25,10 @@ class KeptWhenInterrupted {
   ~KeptWhenInterrupted();
 };
 
+/// Says on standard error that the command was interrupted by an exception, with what was kept when
+/// that was thrown.
+void print_interrupted();
+
 /// Prints "interrupted" and what is kept, once in a process: whoever comes first.
 void print_interrupted(const std::string& kept);
 

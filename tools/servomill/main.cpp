@@ -112,7 +112,7 @@ int guarded(const servomill::tools::Arguments& arguments) {
     return tools::kSystemFailed;
   } catch (const Interrupted&) {
     std::fflush(stdout);
-    tools::print_interrupted("");
+    tools::print_interrupted();
     return tools::kInterrupted;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "servomill: not enough memory\n");

@@ -64,7 +64,7 @@ bool Options::parse(const Arguments& arguments) {
   } catch (const po::unknown_option& error) {
     throw InputError(place, unknown_option(error, description_));
   } catch (const po::too_many_positional_options_error&) {
-    throw InputError(place, "takes no words beside its options; see --help");
+    throw InputError(place, "takes no arguments besides its options; see --help");
   } catch (const po::error& error) {
     throw InputError(place, error.what());
   }

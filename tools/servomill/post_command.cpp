@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "plant/vocabulary/units.h"
-#include "sim/model/design.h"
+#include "sim/config/option_value.h"
 #include "sim/programs/post_file.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/axis_options.h"
@@ -45,12 +45,15 @@ Eigen::Vector3d part_zero_of(const std::string& text) {
   std::size_t from = 0, n = 0;
   for (; n < values.size() && from <= text.size(); ++n) {
     const std::size_t end = std::min(text.find(',', from), text.size());
-    values[n] = sim::number_of(text.substr(from, end - from)) * mm;
-    if (!std::isfinite(values[n])) break;
+    const auto value =
+        sim::scale_option(std::string_view(text).substr(from, end - from), sim::kLength, "mm");
+    if (!value.complaint.empty()) break;
+    values[n] = value.si;
     from = end + 1;
   }
   if (n < values.size() || from <= text.size()) {
-    throw InputError({"--part-zero " + text}, "must be three numbers in mm, such as 10,0,-5.5");
+    throw InputError({"--part-zero " + text},
+                     "must be three lengths, such as 10,0,-5.5 (in mm) or \"10 mm,0 mm,-5.5 mm\"");
   }
   return {values[0], values[1], values[2]};
 }

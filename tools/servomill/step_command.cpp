@@ -61,9 +61,11 @@ sim::StepSettings settings_of(const Options& options, sim::StepKind kind, int jo
     throw InputError({"--height"},
                      fmt::format("'{}' must not be 0", options.get<std::string>("height")));
   }
-  const double band = positive_number(options, "band");
-  if (band >= 100.0) throw InputError({"--band"}, fmt::format("{:g}; must be < 100", band));
-  settings.band = band / 100.0;
+  settings.band = *positive_option(options, "band", sim::kNumber, "%");
+  if (settings.band >= 1.0) {
+    throw InputError({"--band"},
+                     fmt::format("'{}' must be < 100 %", options.get<std::string>("band")));
+  }
   settings.duration = positive_option(options, "duration", sim::kTime, "s").value_or(0.0);
   if (settings.duration > kLongestDuration) {
     throw InputError({"--duration"},
@@ -134,8 +136,10 @@ int step_command(const Arguments& arguments) {
   options.add()("height", po::value<std::string>()->value_name("\"0.1 mm\""),
                 "of the step, with --kind (default: 0.1 mm, 10 mm/s, 500 N; 0.02 deg, 1 deg/s, "
                 "50 Nm); bare numbers are in these units");
-  options.add()("band", po::value<double>()->default_value(2.0)->value_name("PERCENT"),
-                "settled within this share of the height, of the peak of a load step");
+  options.add()(
+      "band", po::value<std::string>()->default_value("2 %")->value_name("\"2 %\""),
+      "settled within this share of the height, of the peak of a load step; a bare number "
+      "is in %");
   options.add()(
       "duration", po::value<std::string>()->value_name("\"0.5 s\""),
       "simulated after the step, bare numbers in s (default: 12 of the slowest time constant)");

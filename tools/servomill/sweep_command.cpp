@@ -139,32 +139,38 @@ int sweep_command(const Arguments& arguments) {
   sim::output_target(sim::csv_name(out), sim::Existing::replaced);
   const auto of_a_point = sweep.refuse_hopeless();
 
+  constexpr std::int64_t kNotCounted = -1;
+  std::atomic<std::int64_t> left = kNotCounted;
+  std::atomic<bool> is_complete = false;
+  const auto said = [&, partial = out + ".partial"] {
+    const auto all = static_cast<std::int64_t>(selection.size());
+    return kept_in(is_complete ? out : partial,
+                   left == kNotCounted ? "its complete points"
+                                       : fmt::format("{} complete points of {}", all - left, all));
+  };
+  const KeptWhenInterrupted told(said);
   sim::SweepTable table(out, force, sweep.base(), sim::columns_of(sweep.base()), selection);
+  is_complete = table.is_complete();
   if (options.has("retry-failed")) table.forget(sim::PointStatus::failed);
   const std::vector<bool> done = points_done(table, selection, sweep, signals);
-  std::atomic<std::uint64_t> left =
-      static_cast<std::uint64_t>(std::count(done.begin(), done.end(), false));
+  left = std::count(done.begin(), done.end(), false);
   const bool quiet = options.has("quiet") || options.has("json") || options.has("csv");
   if (table.is_complete() && left == 0) {
     if (!quiet) fmt::print("{} holds all {} points already\n", out, selection.size());
     return status_of(table.counts());
   }
   const std::uint64_t there = selection.size() - table.counts()[0];
-  const std::uint64_t without_signals = left - table.counts()[0];
+  const auto to_do = static_cast<std::uint64_t>(left);
+  const std::uint64_t without_signals = to_do - table.counts()[0];
   const std::string path = table.is_complete() ? out : table.partial_path();
   if (there > 0 && !quiet) {
     fmt::print("{}: {} of {} points are there already\n", path, there, selection.size());
     if (without_signals > 0) fmt::print("{} of them lack signals, run again\n", without_signals);
   }
 
-  if (of_a_point) tell_estimate(*of_a_point, left, threads, !signals.empty());
+  if (of_a_point) tell_estimate(*of_a_point, to_do, threads, !signals.empty());
 
   const auto& stop = stop_on_interrupt();
-  const auto said = [&] {
-    const std::uint64_t all = selection.size();
-    return kept_in(path, fmt::format("{} complete points of {}", all - left, all));
-  };
-  const KeptWhenInterrupted told(said);
   ProgressBar bar(options.has("quiet"));
   SweepLines lines = lines_of(options, sweep, selection, done);
   sim::SweepControl control;
@@ -185,7 +191,7 @@ int sweep_command(const Arguments& arguments) {
           return table.statuses()[selection.place(point.index)] == sim::PointStatus::not_run;
         });
     if (rows != points.begin()) table.write({points.begin(), rows});
-    left -= points.size();
+    left -= static_cast<std::int64_t>(points.size());
     bar.clear();
     for (const sim::SweepPoint& point : points) lines.add(point);
   };

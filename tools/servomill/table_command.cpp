@@ -7,6 +7,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/config/option_value.h"
 #include "sim/input/read_errors.h"
 #include "sim/input/read_machine.h"
 #include "sim/system/output_name.h"
@@ -20,8 +21,6 @@ namespace {
 
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
-
-double unit_of(int joint) { return joint < kLinearJoints ? mm : deg; }
 
 // Machine and error models: a scenario's, or those of --machine and of a file of error models, by
 // default the machine's own.
@@ -87,6 +86,16 @@ AxisWord axis_word(const std::string& option, std::string_view text, std::string
       fmt::format("'{}'; must be {}, in mm or deg; the machine has {}", text, form, letters));
 }
 
+// "200" or "200 mm" of an option's value, in SI.
+double position_of(const char* option, const std::string& text, std::string_view position,
+                   int joint) {
+  const bool linear = joint < kLinearJoints;
+  const sim::ScaledText value =
+      sim::scale_option(position, linear ? sim::kLength : sim::kAngle, linear ? "mm" : "deg");
+  if (value.complaint.empty()) return value.si;
+  throw InputError({option}, fmt::format("'{}': '{}' {}", text, position, value.complaint));
+}
+
 void read_axes(const Options& options, const sim::MachineSettings& machine,
                sim::TableRequest& request) {
   const auto place_of = [&](int joint) -> auto& {
@@ -99,20 +108,19 @@ void read_axes(const Options& options, const sim::MachineSettings& machine,
     const auto [joint, range] = axis_word("travel", text, kTravelForm, machine);
     const auto colon = range.find(':');
     const bool split = colon != std::string_view::npos;
-    const auto from = split ? plain_number(range.substr(0, colon)) : std::nullopt;
-    const auto to = split ? plain_number(range.substr(colon + 1)) : std::nullopt;
-    if (!from || !to || !(*from < *to)) {
+    if (!split) throw InputError({"--travel"}, fmt::format("'{}'; must be {}", text, kTravelForm));
+    const double from = position_of("--travel", text, range.substr(0, colon), joint);
+    const double to = position_of("--travel", text, range.substr(colon + 1), joint);
+    if (!(from < to)) {
       throw InputError({"--travel"},
                        fmt::format("'{}'; must be {} with FROM < TO", text, kTravelForm));
     }
-    place_of(joint).from = *from * unit_of(joint);
-    place_of(joint).to = *to * unit_of(joint);
+    place_of(joint).from = from;
+    place_of(joint).to = to;
   }
   for (const std::string& text : options.list("at")) {
     const auto [joint, value] = axis_word("at", text, kAtForm, machine);
-    const auto position = plain_number(value);
-    if (!position) throw InputError({"--at"}, fmt::format("'{}'; must be {}", text, kAtForm));
-    place_of(joint).reference = *position * unit_of(joint);
+    place_of(joint).reference = position_of("--at", text, value, joint);
   }
 }
 

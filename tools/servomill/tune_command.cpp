@@ -17,17 +17,20 @@ namespace po = boost::program_options;
 
 sim::TuneSettings settings_of(const Options& options) {
   sim::TuneSettings settings;
-  const double phase = positive_number(options, "phase-margin");
-  if (phase >= 90.0) throw InputError({"--phase-margin"}, fmt::format("{:g}; must be < 90", phase));
-  settings.phase_margin = phase * deg;
-  settings.gain_margin = std::pow(10.0, positive_number(options, "gain-margin") / 20.0);
-  const double overshoot = options.get<double>("overshoot");
-  if (!(overshoot >= 0.0 && overshoot < 100.0)) {
-    throw InputError({"--overshoot"}, fmt::format("{:g}; must be >= 0 and < 100", overshoot));
-  }
-  // what rounds to none
-  settings.overshoot = std::max(overshoot, 0.01) / 100.0;
-  if (options.has("bandwidth")) settings.bandwidth = positive_number(options, "bandwidth");
+  const auto refuse = [&](const char* name, std::string_view rule) {
+    throw InputError({std::string("--") + name},
+                     fmt::format("'{}' must be {}", options.get<std::string>(name), rule));
+  };
+  constexpr double kRight = 90.0 * deg;
+  settings.phase_margin = *positive_option(options, "phase-margin", sim::kAngle, "deg");
+  if (settings.phase_margin >= kRight) refuse("phase-margin", "< 90 deg");
+  settings.gain_margin = std::pow(10.0, decibel_option(options, "gain-margin") / 20.0);
+  const double overshoot = *quantity_option(options, "overshoot", sim::kNumber, "%");
+  if (!(overshoot >= 0.0 && overshoot < 1.0)) refuse("overshoot", ">= 0 and < 100 %");
+  constexpr double kNone = 1e-4;
+  settings.overshoot = std::max(overshoot, kNone);
+  if (const auto bandwidth = positive_option(options, "bandwidth", sim::kRate, "Hz"))
+    settings.bandwidth = *bandwidth;
   settings.wv_most = positive_option(options, "velocity-bandwidth", sim::kAngularVelocity, "rad/s");
   settings.reset_ratio = positive_number(options, "reset-ratio");
   return settings;
@@ -54,7 +57,7 @@ std::string reason(const sim::Limit& limit, const sim::TuneSettings& wanted,
       return fmt::format("the overshoot of {:g} % after a step of the set point",
                          100.0 * wanted.overshoot);
     case sim::Limit::Kind::bandwidth:
-      return fmt::format("the bandwidth of {:g} Hz that is asked for", limit.frequency);
+      return fmt::format("the requested bandwidth of {:g} Hz", limit.frequency);
     case sim::Limit::Kind::most:
       return "--velocity-bandwidth";
     case sim::Limit::Kind::range:
@@ -186,14 +189,16 @@ int tune_command(const Arguments& arguments) {
       "Several axes get one Kv, as interpolation needs it: the smallest rules.",
       "SCENARIO.toml");
   add_axis_options(options);
-  options.add()("phase-margin", po::value<double>()->default_value(60.0)->value_name("DEG"),
-                "least of both loops");
-  options.add()("gain-margin", po::value<double>()->default_value(8.0)->value_name("DB"),
-                "least of both loops");
-  options.add()("overshoot", po::value<double>()->default_value(5.0)->value_name("PERCENT"),
-                "most after a step of the set point, nothing fed forward");
-  options.add()("bandwidth", po::value<double>()->value_name("HZ"),
-                "of the closed position loop (-3 dB); Kv goes no higher than it needs");
+  const auto text = [] { return po::value<std::string>(); };
+  options.add()("phase-margin", text()->default_value("60 deg")->value_name("\"60 deg\""),
+                "minimum of both loops; a bare number is in deg");
+  options.add()("gain-margin", text()->default_value("8 dB")->value_name("\"8 dB\""),
+                "minimum of both loops; a bare number is in dB");
+  options.add()("overshoot", text()->default_value("5 %")->value_name("\"5 %\""),
+                "maximum after a step of the setpoint without feed-forward; a bare number is in %");
+  options.add()("bandwidth", text()->value_name("\"50 Hz\""),
+                "of the closed position loop (-3 dB): Kv is raised no further than that; a bare "
+                "number is in Hz");
   options.add()("velocity-bandwidth", po::value<std::string>()->value_name("\"300 rad/s\""),
                 "no more than this; a bare number is in rad/s");
   options.add()("reset-ratio", po::value<double>()->default_value(4.0)->value_name("N"),
@@ -232,15 +237,17 @@ int tune_command(const Arguments& arguments) {
       continue;
     }
     fmt::print("{}{}\n\n", k == 0 ? "" : "\n", axis_headline(machine, joint, delay));
-    fmt::print("  wv = {:.4g} rad/s: {} rules\n", t.after.gains.wv,
+    fmt::print("  wv = {:.4g} rad/s: limited by {}\n", t.after.gains.wv,
                reason(t.velocity, wanted, drive, "velocity"));
     fmt::print("  Tn = {:.4g} ms: {:g} / wv, which costs {:.0f} deg of phase at wv\n",
                t.after.gains.Tn / ms, wanted.reset_ratio,
                std::atan(1.0 / wanted.reset_ratio) / deg);
-    fmt::print("  Kv = {:.4g} 1/s: {} rules\n", own, reason(t.position, wanted, drive, "position"));
+    fmt::print("  Kv = {:.4g} 1/s: limited by {}\n", own,
+               reason(t.position, wanted, drive, "position"));
     if (t.wv_lowered > 0.0 || t.Kv_lowered > 0.0) {
       fmt::print(
-          "  Both are {:.2g} % and {:.2g} % lower than found first, to keep what is asked for\n",
+          "  Both are {:.2g} % and {:.2g} % lower than found first, to keep the requested "
+          "margins\n",
           100.0 * t.wv_lowered, 100.0 * t.Kv_lowered);
     }
     if (t.calmer_wv > 0.0) {
@@ -253,11 +260,12 @@ int tune_command(const Arguments& arguments) {
       fmt::print("  The bandwidth of {:g} Hz is not reached.\n", *wanted.bandwidth);
     }
     if (own > common) {
-      fmt::print("  Kv = {:.4g} 1/s, equal for interpolating axes: axis {} rules\n", common,
+      fmt::print("  Kv = {:.4g} 1/s, equal for interpolating axes: that of axis {}\n", common,
                  ruling);
     }
     if (!sim::keeps(t.after, wanted)) {
-      fmt::print("  With the common Kv the axis does NOT keep what is asked for: see the table.\n");
+      fmt::print(
+          "  With the common Kv the axis does NOT keep the requested margins: see the table.\n");
     }
     fmt::print("\n");
     print_table(t, joint);

@@ -39,7 +39,7 @@ void DialectWriter::write_reference(const Move& move, const Block& block, bool i
         is_G28 ? "G28" : "G30")};
   }
   if (block.state->is_incremental && request['Z'] != 0.0) {
-    throw Unsayable{"goes home by way of an increment; name Z0 under G91"};
+    throw Unsayable{"goes home by an incremental move; program Z0 under G91"};
   }
   if (!is_last) {
     if (block.state->is_incremental) return;

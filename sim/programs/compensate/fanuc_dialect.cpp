@@ -108,7 +108,7 @@ class Fanuc final : public IsoDialect {
   }
 
   void path_mode(PathMode mode, double tolerance) override {
-    if (mode == PathMode::exact_path) throw Unsayable{"asks for G61 as LinuxCNC means it"};
+    if (mode == PathMode::exact_path) throw Unsayable{"needs G61 as LinuxCNC defines it"};
     if (tolerance > 0.0)
       warn("G64 P: the tolerance is left out; smoothing is G5.1's on this control");
     put(mode == PathMode::exact_stop ? "G61" : "G64");

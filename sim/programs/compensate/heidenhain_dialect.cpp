@@ -100,7 +100,7 @@ class Heidenhain final : public DialectPrinter {
   }
 
   void path_mode(PathMode mode, double tolerance) override {
-    if (mode != PathMode::continuous) throw Unsayable{"asks for exact stops (G61, G61.1)"};
+    if (mode != PathMode::continuous) throw Unsayable{"needs exact stops (G61, G61.1)"};
     put("CYCL DEF 32.0 TOLERANCE");
     put(tolerance > 0.0 ? "CYCL DEF 32.1 T" + fixed_text(tolerance / mm, 4) : "CYCL DEF 32.1");
   }

@@ -79,7 +79,7 @@ class Siemens final : public IsoDialect {
     modes_.length = 0;
   }
   void path_mode(PathMode mode, double tolerance) override {
-    if (mode == PathMode::exact_path) throw Unsayable{"asks for G61 as LinuxCNC means it"};
+    if (mode == PathMode::exact_path) throw Unsayable{"needs G61 as LinuxCNC defines it"};
     if (mode == PathMode::exact_stop) return put("G60");
     put(tolerance > 0.0 ? fmt::format("G642 CTOL={}", fixed_text(tolerance / mm, 5)) : "G64");
   }

@@ -1,4 +1,5 @@
 #include "sim/programs/compensate/summary.h"
+#include "sim/system/counted.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -26,11 +27,11 @@ double share(double part, double whole) { return whole > 0.0 ? part / whole : 0.
 
 std::vector<std::string> Summary::report(const JointLayout& layout) const {
   std::vector<std::string> out;
-  out.push_back(fmt::format("{} blocks of motion became {}: {} points added", blocks_before,
-                            blocks_after, points_added));
+  out.push_back(fmt::format("{} of motion became {}: {} added", counted(blocks_before, "block"),
+                            blocks_after, counted(points_added, "point")));
   if (arcs_before > 0) {
-    out.push_back(fmt::format("{} arcs: {} stay one arc, {} become several, {} lines", arcs_before,
-                              arcs_kept, arcs_split, arcs_to_lines));
+    out.push_back(fmt::format("{}: {} kept as one arc, {} split into several, {} replaced by lines",
+                              counted(arcs_before, "arc"), arcs_kept, arcs_split, arcs_to_lines));
   }
   const double most = largest.correction.head<3>().norm();
   if (most > 0.0) {
@@ -44,14 +45,13 @@ std::vector<std::string> Summary::report(const JointLayout& layout) const {
   }
   if (reversals > 0) {
     out.push_back(fmt::format(
-        "{} changes of direction compensated; while each develops, over {:g} mm at most, up to "
-        "{:.1f} um stay",
-        reversals, reversal_distance / mm, reversal_width / um));
+        "{} compensated; while each develops, over {:g} mm at most, up to {:.1f} um remain",
+        counted(reversals, "reversal"), reversal_distance / mm, reversal_width / um));
   }
   if (undirected) {
     out.push_back(fmt::format(
         "the direction of travel is not known from line {} on until each axis has moved: the mean "
-        "of both is taken there, up to {:.1f} um stay",
+        "of both is taken there, up to {:.1f} um remain",
         undirected->line, undirected_width / um));
   }
   if (!smoothing.empty()) out.push_back(smoothing);

@@ -10,7 +10,7 @@
 #include "controllers/gcode/parameters.h"
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/units.h"
-#include "sim/model/design.h"
+#include "sim/config/option_value.h"
 #include "sim/programs/compensate/compensate.h"
 #include "sim/programs/compensate/walk.h"
 
@@ -26,22 +26,27 @@ AxisValues axis_values(const std::string& option, std::string_view text, const J
     const std::size_t end = std::min(text.find(',', from), text.size());
     const std::string_view item = text.substr(from, end - from);
     from = end + 1;
-    const double value =
-        item.size() > 2 && item[1] == '=' ? number_of(std::string(item.substr(2))) : std::nan("");
     const bool is_rotation = takes_rotation && !item.empty() && (item[0] == 'R' || item[0] == 'r');
     const auto axis = item.empty() ? std::nullopt : axis_of(item.front());
-    if (!std::isfinite(value) || (!axis && !is_rotation)) {
-      throw InputError(place, "must be positions in mm and deg, such as X=10,Y=-5.5");
+    if (item.size() < 3 || item[1] != '=' || (!axis && !is_rotation)) {
+      throw InputError(place,
+                       "must be positions, such as X=10,Y=-5.5 (in mm and deg) or \"X=10 mm\"");
+    }
+    const bool is_length = !is_rotation && is_linear(*axis);
+    const ScaledText value =
+        scale_option(item.substr(2), is_length ? kLength : kAngle, is_length ? "mm" : "deg");
+    if (!value.complaint.empty()) {
+      throw InputError(place, fmt::format("{}: {}", item, value.complaint));
     }
     if (is_rotation) {
-      out.rotation = value * deg;
+      out.rotation = value.si;
       out.has_rotation = true;
       continue;
     }
     if (layout != nullptr && !layout->joint_of(*axis)) {
       throw InputError(place, fmt::format("the machine has no axis {}", letter(*axis)));
     }
-    out.words[index_of(*axis)] = value * (is_linear(*axis) ? mm : deg);
+    out.words[index_of(*axis)] = value.si;
     out.given[static_cast<std::size_t>(index_of(*axis))] = true;
   }
   return out;
@@ -98,18 +103,18 @@ GivenWorkOffsets work_offsets(const std::vector<std::string>& texts, const Joint
 void add_tool_length(const std::string& text, controllers::ToolTable& tools) {
   const Place place{"--tool-length " + text};
   const std::size_t equals = text.find('=');
-  const double number =
-      equals == std::string::npos ? std::nan("") : number_of(text.substr(0, equals));
-  const double length =
-      equals == std::string::npos ? std::nan("") : number_of(text.substr(equals + 1));
-  if (!std::isfinite(length) || !(number >= 1.0) || number != std::floor(number) ||
-      number > 99999.0) {
-    throw InputError(place, "must be NUMBER=LENGTH with the length in mm, such as 1=50");
+  const bool has_number = equals != std::string::npos;
+  const double number = has_number ? plain_number(text.substr(0, equals)).value_or(0.0) : 0.0;
+  constexpr double kMost = 99999.0;
+  if (number < 1.0 || number > kMost || number != std::floor(number)) {
+    throw InputError(place, "must be NUMBER=LENGTH of a tool, such as 1=50 (in mm) or \"1=50 mm\"");
   }
+  const ScaledText length = scale_option(std::string_view(text).substr(equals + 1), kLength, "mm");
+  if (!length.complaint.empty()) throw InputError(place, "length " + length.complaint);
   controllers::ToolEntry tool;
   if (const auto* known = tools.find(static_cast<int>(number))) tool = *known;
   tool.number = static_cast<int>(number);
-  tool.offset[index_of(Axis::Z)] = length * mm;
+  tool.offset[index_of(Axis::Z)] = length.si;
   tools.replace(tool);
 }
 

@@ -189,7 +189,7 @@ TEST(ClData, WhatIsSkippedIsSaid) {
                                       "p.cls:5:11: warning: 'THRU' of COOLNT is skipped",
                                       "p.cls:6:10: warning: 'ADJUST' of LOADTL is skipped",
                                       "p.cls:6:17: warning: '1' of LOADTL is skipped",
-                                      "p.cls:9:1: warning: what stands behind FINI is not read"}));
+                                      "p.cls:9:1: warning: text after FINI is ignored"}));
 }
 
 TEST(ClData, FaultsOfApt) {

@@ -45,6 +45,23 @@ TEST(TimeLaw, StandsAtBothEnds) {
   EXPECT_NEAR(end.a, 0.0, 1e-12);
 }
 
+// record.max_duration_h allows 24 h. Times are sums of up to 8.6e4 s, rounded to 1.5e-11 s, in
+// which a jerk of 1e7 m/s^3 changes the acceleration by 1.5e-4 m/s^2.
+TEST(TimeLaw, IsContinuousAfterHoursOfASlowFeed) {
+  constexpr double kDay = 86400.0, kSlow = 1e-6;
+  for (const double j : {1.0, 1e4, 1e7}) {
+    const double length = kSlow * kDay * 0.999;
+    const std::vector<StretchLimits> stretches = {{0.4 * length, kSlow, 10.0, j},
+                                                  {0.5 * length, 3.0 * kSlow, 10.0, j},
+                                                  {length, kSlow, 10.0, j}};
+    const TimeLaw law = plan_speed(stretches);  // asserts that it is
+    EXPECT_NEAR(law.duration, kDay * 0.999 * (0.9 + 0.1 / 3.0), 1.0) << j;
+    const State end = state(law, law.duration);
+    EXPECT_NEAR(end.s, length, 1e-15) << j;
+    EXPECT_NEAR(end.v, 0.0, 1e-9) << j;
+  }
+}
+
 TEST(TimeLaw, KeepsTheLimitsOfRandomStretches) {
   std::mt19937 dice(1);
   const auto log_uniform = [&](double low, double high) {

@@ -295,7 +295,7 @@ TEST(TableExport, RefusesAModelOfWhichTheFormatHoldsNothing) {
   plant::ErrorModel errors;
   errors.component("EYX"_err) = plant::harmonic(10.0 * um, 120.0 * mm);
   EXPECT_EQ(refusal(machine_of("[w X b Y Z t]"), errors, request_of(TableFormat::linuxcnc)),
-            "linuxcnc tables over the axes that are asked for can hold nothing of the error "
+            "linuxcnc tables over the chosen axes can hold nothing of the error "
             "model 'test'");
   EXPECT_EQ(refusal(machine_of("[w X b Y Z t]"), errors, request_of(TableFormat::siemens)), "");
 }

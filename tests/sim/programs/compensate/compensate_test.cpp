@@ -320,9 +320,9 @@ TEST(Compensate, ReversalIsCompensatedForTheDirectionOfTravel) {
             "X0.005\n"
             "Y5\n"
             "M2\n");
-  EXPECT_EQ(done.report[2],
-            "2 changes of direction compensated; while each develops, over 0.02 mm at most, up to "
-            "10.0 um stay");
+  EXPECT_EQ(
+      done.report[2],
+      "2 reversals compensated; while each develops, over 0.02 mm at most, up to 10.0 um remain");
 }
 
 TEST(Compensate, ReversalOnAnArcIsCompensatedWhereTheAxisTurns) {
@@ -358,7 +358,7 @@ TEST(Compensate, ReversalBeforeAnAxisHasMovedIsReported) {
   const Compensated done = trial.run();
   EXPECT_EQ(done.report[2],
             "the direction of travel is not known from line 3 on until each axis has moved: the "
-            "mean of both is taken there, up to 5.0 um stay");
+            "mean of both is taken there, up to 5.0 um remain");
 }
 
 }  // namespace

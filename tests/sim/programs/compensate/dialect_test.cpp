@@ -164,7 +164,7 @@ TEST(Dialect, WhatItCannotExpressIsRefusedWithItsPlace) {
             "plate.ngc:5: error: selects a work system other than G54; presets are the control's; "
             "that cannot be expressed for heidenhain");
   EXPECT_EQ(refusal(Dialect::siemens, start + "G61 G1 X1 F100\nM2\n"),
-            "plate.ngc:5: error: asks for G61 as LinuxCNC means it; that cannot be expressed for "
+            "plate.ngc:5: error: needs G61 as LinuxCNC defines it; that cannot be expressed for "
             "siemens");
   EXPECT_EQ(refusal(Dialect::siemens, start + "G10 L2 P1 X3\nM2\n"),
             "plate.ngc:5:1: error: G10 cannot be expressed for siemens");
