@@ -108,6 +108,37 @@ std::string number(double value) {
   return value == 0.0 ? "0" : fmt::format("{:+.2g}", value);
 }
 
+// A share of the imposed displacement is as uncertain as the displacement is. What that is follows
+// from the residual, which is evaluated with it.
+constexpr std::string_view kForShares = "for shares";  // kind of a quantity that is not printed
+
+void add_residuals_of_shares(Scenario& scenario) {
+  const std::vector<QuantitySpec> given = scenario.quantities;
+  for (const QuantitySpec& spec : given) {
+    if (spec.name != "brought_out") continue;
+    QuantitySpec& residual = scenario.quantities.emplace_back(spec);
+    residual.name = "imposed_curve_residual";
+    residual.statistic = "max";
+    residual.kind = kForShares;
+  }
+}
+
+// Resolution in % of a share, in the order of comparison rows: r / (residual / (1 - share)).
+double resolution_of_share(const Scenario& scenario, const ComparisonRow& share,
+                           std::span<const ComparisonRow> rows) {
+  constexpr double kPercent = 100.0;
+  for (const ComparisonRow& residual : rows) {
+    if (residual.kind != kForShares || residual.case_name != share.case_name ||
+        residual.axis != share.axis || residual.sections != share.sections) {
+      continue;
+    }
+    const double imposed = residual.value / (1.0 - share.value / kPercent);
+    const double resolution = kPercent * resolution_of(scenario, residual) / imposed;
+    return std::isfinite(resolution) ? std::abs(resolution) : 0.0;
+  }
+  return 0.0;
+}
+
 // The power of ten of the last digit that an error does not reach.
 int last_place(double error) { return static_cast<int>(std::ceil(std::log10(2.0 * error))); }
 
@@ -199,7 +230,8 @@ std::vector<std::string> halved(Refinement refinement, const Scenario& scenario)
 std::optional<Convergence> find_convergence(const ScenarioSource& source,
                                             const std::set<Refinement>& refinements,
                                             const ConvergeControl& control) {
-  const Scenario base = source.at();
+  Scenario base = source.at();
+  add_residuals_of_shares(base);
   PreparationCache cache;
   const double runs = 1.0 + static_cast<double>(refinements.size());
   double done = 0.0;
@@ -220,7 +252,10 @@ std::optional<Convergence> find_convergence(const ScenarioSource& source,
       out.stopped.push_back(fmt::format("case {}: {}", one.name, outcome.reason));
   }
   for (const ComparisonRow& row : as_it_is.comparison) {
-    out.rows.push_back({row, {}, resolution_of(base, row)});
+    if (row.kind == kForShares) continue;
+    const double resolution = row.unit == "%" ? resolution_of_share(base, row, as_it_is.comparison)
+                                              : resolution_of(base, row);
+    out.rows.push_back({row, {}, resolution});
   }
   if (refinements.contains(Refinement::block)) out.inputs = blocks_as_inputs(base);
   for (const Refinement refinement : refinements) {

@@ -69,7 +69,8 @@ struct ConvergeControl {
   std::function<void(double)> progress;  // share done, 0 to 1
 };
 
-/// Resolution (um or urad by `unit`; else 0: not known) of what a row is computed from: the larger
+/// Resolution (um or urad by `unit`; else 0: not known; of shares of the imposed displacement
+/// find_convergence has it) of what a row is computed from: the larger
 /// of the rounding of recorded values and, if the case has servo loops, the measuring step of its
 /// scales, of one axis or the largest of its kind.
 double resolution_of(const Scenario& scenario, const ComparisonRow& row);

@@ -21,6 +21,8 @@ TILTING = "GOTO/0,0,10,0.3,0.1,0.9\nGOTO/5,0,10,0.2,0.3,0.9\nGOTO/5,0,10,0.1,0.3
 POST = ["post", "part.cls", "-m", MACHINE, "-o", "-", "--tool-length", "0"]
 POST_5 = ["post", "tilt.cls", "-m", "trunnion.toml", "-o", "-", "--part-zero", "0,0,0", "--feed", "500", "--turn-feed", "900"]
 COMPENSATE = ["compensate", "cut.ngc", "-m", MACHINE, "--errors", "errors.toml", "--work-offset", "X=0,Y=0,Z=0", "-o", "-"]
+COMPENSATE_TOOL = ["compensate", "tool.ngc", "-m", MACHINE, "--errors", "angles.toml", "--work-offset", "X=0,Y=0,Z=0",
+                   "--tools", "tool.tbl", "-o", "-"]
 TABLE = ["table", SCENARIO, "--format", "siemens", "-f", "-o", "out"]
 TABLE_C = ["table", "--machine", "turning.toml", "--format", "csv", "-f", "-o", "out"]
 BODE = ["bode", SCENARIO, "-a", "Y", "--points", "2", "--from", "20", "--to", "40"]
@@ -45,6 +47,19 @@ OPTIONS = [
     (STEP + ["--kind", "load"], "--height", "300", "300 N", "400"),
     (STEP + ["--kind", "position"], "--duration", "0.4", "0.4 s", "0.3"),
     (["tune", SCENARIO, "-a", "Y"], "--velocity-bandwidth", "150", "150 rad/s", "120"),
+    (["tune", SCENARIO, "-a", "Y"], "--phase-margin", "50", "50 deg", "55"),
+    (["tune", SCENARIO, "-a", "Y"], "--gain-margin", "14", "14 dB", "15dB"),
+    (["tune", SCENARIO, "-a", "Y"], "--overshoot", "3", "3 %", "0.1"),
+    (["tune", SCENARIO, "-a", "Y"], "--bandwidth", "5", "5 Hz", "6Hz"),
+    (STEP + ["--kind", "position"], "--band", "7", "7 %", "1"),
+    (BODE[:-4] + ["--method", "none", "--to", "40"], "--from", "10", "10 Hz", "0.02 kHz"),
+    (BODE[:-4] + ["--method", "none"], "--to", "100", "100 Hz", "0.2 kHz"),
+    (COMPENSATE[:-4] + ["-o", "-"], "--work-offset", "X=10,Y=0,Z=0", "X=10 mm,Y=0mm,Z=0", "X=9,Y=0,Z=0"),
+    (COMPENSATE_TOOL, "--tool-length", "1=50", "1=50mm", "1=9 mm"),
+    (POST_5[:-6] + ["--feed", "500", "--turn-feed", "900", "--tool-length", "0"], "--part-zero", "1,2,3", "1 mm,2mm,3", "1,2,4"),
+    (POST + ["--feed", "500"], "--start", "X=10", "X=10 mm", "X=11"),
+    (TABLE, "--travel", "X=0:100", "X=0:0.1 m", "X=0:90"),
+    (TABLE, "--at", "X=50", "X=50 mm", "X=60"),
 ]
 
 
@@ -53,9 +68,10 @@ class CommandLine(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
-        files = {"part.cls": PART, "tilt.cls": TILTING, "cut.ngc": PROGRAM, "trunnion.toml": TRUNNION,
+        files = {"part.cls": PART, "tool.ngc": PROGRAM.replace("G0 X0", "T1 M6\nG43 H1\nG0 X0"),
+                 "angles.toml": "[errors.e]\nEBX = { polynomial_urad = [0.0, 1.0] }\n", "tilt.cls": TILTING, "cut.ngc": PROGRAM, "trunnion.toml": TRUNNION,
                  "errors.toml": "[errors.e]\nEXX = { polynomial_um = [0.0, 0.1, 0.0005] }\n",
-                 "turning.toml": TRUNNION + "axis.X.travel_mm = [0.0, 10.0]\naxis.Y.travel_mm = [0.0, 10.0]\n"
+                 "tool.tbl": "T1 P1 Z+20\n", "turning.toml": TRUNNION + "axis.X.travel_mm = [0.0, 10.0]\naxis.Y.travel_mm = [0.0, 10.0]\n"
                  "[errors.e]\nECC = { harmonic = { amplitude_urad = 30.0, period_deg = 90.0 } }\n"}
         for name, text in files.items():
             with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:

@@ -73,8 +73,21 @@ TEST(ParseUnit, GuessesNothingWhereSeveralSymbolsAreAsNear) {
             "unknown unit 'mn'; a length is in m, mm, um, nm, inch");
   EXPECT_EQ(scale_text("5 mn", kTime).complaint,
             "unknown unit 'mn'; a time is in s, ms, us, min, h");
-  EXPECT_EQ(scale_text("5 mn", kStiffness).complaint, "unknown unit 'mn'");
-  EXPECT_EQ(scale_text("5 1/mn", kRate).complaint, "unknown unit 'mn'");
+  EXPECT_EQ(scale_text("5 mn", kStiffness).complaint,
+            "unknown unit 'mn'; must be a stiffness such as \"3 N/um\"");
+  EXPECT_EQ(scale_text("5 1/mn", kRate).complaint,
+            "unknown unit 'mn'; must be a rate such as \"3 1/s\"");
+}
+
+TEST(ScaleText, NamesTheKindAndTheNearestUnitOfIt) {
+  EXPECT_EQ(scale_text("5 mmm", kLength).complaint,
+            "unknown unit 'mmm'; a length is in m, mm, um, nm, inch; did you mean 'mm'?");
+  EXPECT_EQ(scale_text("5 mins", kTime).complaint,
+            "unknown unit 'mins'; a time is in s, ms, us, min, h; did you mean 'min'?");
+  EXPECT_EQ(scale_text("5 kgs", kMass).complaint,
+            "unknown unit 'kgs'; a mass is in g, kg; did you mean 'kg'?");
+  EXPECT_EQ(scale_text("5 mm/mins", kVelocity).complaint,
+            "unknown unit 'mins'; must be a velocity such as \"3 mm/s\"; did you mean 'min'?");
 }
 
 TEST(ParseUnit, RefusesWhatIsNoProduct) {

@@ -159,7 +159,8 @@ TEST(Gallery, Units) {
   const auto lead = [](Reader& r) { r.real("lead_mm", kLength); };
   const auto gain = [](Reader& r) { r.real("Kv", kRate); };
   EXPECT_EQ(faults("lead_mm = '20 mmm'", lead),
-            "s.toml:1:11: error: lead_mm = '20 mmm'; unknown unit 'mmm'; did you mean 'mm'?");
+            "s.toml:1:11: error: lead_mm = '20 mmm'; unknown unit 'mmm'; a length is in m, mm, um, "
+            "nm, inch; did you mean 'mm'?");
   EXPECT_EQ(faults("lead_mm = '20 ms'", lead),
             "s.toml:1:11: error: lead_mm = '20 ms'; 'ms' is the unit of a time; must be a length "
             "such as \"3 mm\"");
@@ -251,7 +252,7 @@ TEST(Gallery, UnknownKeys) {
                    [](Reader& r) {
                      for (Reader& c : r.tables("case")) c.text("name");
                    }),
-            "s.toml:1:23: error: case[0].nmae is not known");  // 'name' is there already
+            "s.toml:1:23: error: case[0].nmae is not known; 'name' is given, too");
   EXPECT_EQ(faults("lead_m = 1", [](Reader& r) { r.real("lead_mm", kLength); }),
             "s.toml: error: lead_mm is missing\n"
             "s.toml:1:1: error: lead_m is not known; did you mean 'lead_mm'?");

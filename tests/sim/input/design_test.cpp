@@ -89,6 +89,9 @@ TEST(Design, ReadsTheExampleOfItsHeader) {
 TEST(Design, SpacesRangesEvenlyOrInEqualRatios) {
   const SweepDesign linear = design_of("a = { linear = [1.0, 2.0], count = 5 }\n");
   EXPECT_EQ(all_points(linear), (std::vector<Point>{{"1"}, {"1.25"}, {"1.5"}, {"1.75"}, {"2"}}));
+  // 0.2 + 2 / 3 (2.6 - 0.2) rounds to 1.7999999999999998
+  const SweepDesign rounded = design_of("a = { linear = [0.2, 2.6], count = 4 }\n");
+  EXPECT_EQ(all_points(rounded), (std::vector<Point>{{"0.2"}, {"1"}, {"1.8"}, {"2.6"}}));
   const SweepDesign log = design_of("a = { log = [\"1 mm\", \"100 mm\"], count = 3 }\n");
   EXPECT_EQ(all_points(log), (std::vector<Point>{{"\"1 mm\""}, {"\"10 mm\""}, {"\"100 mm\""}}));
   EXPECT_EQ(log.column(0).unit, "mm");

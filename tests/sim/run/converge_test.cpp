@@ -154,6 +154,23 @@ TEST_F(Converging, KnowsTheResolutionOfARow) {
   EXPECT_EQ(resolution_of(servo, of_y), 0.0);
 }
 
+// The share of 100 um that a scale of step r can tell is r / 100 um.
+TEST_F(Converging, SharesAreAsUncertainAsTheDisplacement) {
+  const std::string share =
+      "[[quantity]]\nname = \"brought_out\"\naxis = \"Y\"\nbase = \"nominal\"\n";
+  const Convergence found = converge(file(blocks(1.0, "cascade", 0.1) + share), {});
+  const ConvergedRow* brought = nullptr;
+  for (const ConvergedRow& row : found.rows) {
+    if (row.row.quantity == "brought_out" && row.row.case_name == "gcode") brought = &row;
+  }
+  ASSERT_NE(brought, nullptr);
+  const Scenario scenario = ScenarioSource(file(blocks(1.0, "cascade", 0.1) + share)).at();
+  const double step_um = scenario.machine.scale[1].step() / 1e-6;
+  EXPECT_NEAR(brought->resolution, step_um, 0.02 * step_um) << "%, of 100 um";
+  EXPECT_TRUE(brought->is_limited_by_resolution());
+  EXPECT_EQ(brought->digits(), 3);
+}
+
 // A chord of length L across a sine of amplitude a misses it by a (2 pi / period)^2 L^2 / 8.
 TEST_F(Converging, ChordsAreOfSecondOrderInTheLengthOfBlocks) {
   const std::string exact = "[machine_override.nc]\npath_tolerance_um = 0.001\n";
