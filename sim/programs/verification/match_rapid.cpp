@@ -97,10 +97,9 @@ ReplayComparison::Targets ReplayComparison::targets_of(const OriginalAction& act
     out.is_required[i] = changed[i] || (action.is_named[i] && is_open);
     const bool may_be_restated = !at_[i] && (action.was_ever_known[i] || limits_.is_linuxcnc);
     out.is_allowed[i] = changed[i] || action.is_named[i] || may_be_restated;
-    if (limits_.strategy_tip) out.is_required[i] = out.is_allowed[i] = true;
   }
   out.programmed = out.corrected = action.move.end_machine;
-  if (action.is_machine_position && !limits_.strategy_tip) return out;
+  if (action.is_machine_position) return out;
   out.corrected += correction_.at(action.move.end_machine);
   out.is_programmed_allowed = !is_all_known;
   return out;
@@ -122,8 +121,7 @@ void ReplayComparison::check_rapid_block(const OriginalAction& action, const Tar
   if (one.kind != (may_feed ? ActionKind::feed : ActionKind::rapid)) {
     fail("a rapid must come here, and another action comes");
   }
-  const bool is_place = action.is_machine_position && !limits_.strategy_tip;
-  if (one.is_machine_position != is_place) {
+  if (one.is_machine_position != action.is_machine_position) {
     fail(action.is_machine_position ? "a machine position is written as one of the workpiece"
                                     : "a position of the workpiece is written as a machine one");
   }

@@ -252,10 +252,10 @@ void ReplayComparison::match(const OriginalAction& action) {
 }
 
 void ReplayComparison::match_motion(const OriginalAction& action) {
-  correction_.set_tool(limits_.strategy_tip.value_or(action.p_ST));
+  correction_.set_tool(action.p_ST);
   if (!has_moved_ && !limits_.is_linuxcnc) skip_retracts(&action);
   has_moved_ = true;
-  if (action.is_machine_position && !limits_.strategy_tip) return match_place(action);
+  if (action.is_machine_position) return match_place(action);
   if (action.move.kind == MoveKind::rapid && !limits_.corrects_rapids) return match_rapid(action);
   match_path(action);
 }

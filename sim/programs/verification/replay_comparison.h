@@ -25,9 +25,6 @@ struct ComparisonLimits {
   bool corrects_rapids = false;   // on their way, not at their ends only
   bool is_linuxcnc = false;       // no state is lost at tool changes and stops
   std::optional<double> retract;  // m, machine: Z of the frames; nullopt: reference positions only
-  /// p_ST (m) that a strategy of the simulator has displaced every motion for: rapids at their end
-  /// in all axes, and positions of the machine, too.
-  std::optional<Eigen::Vector3d> strategy_tip;
 };
 
 /// Why a written program does not do what the original does.
