@@ -119,7 +119,10 @@ void Reader::State::report_unread(const Value& value) {
     const std::string missing = did_you_mean(word, absent);
     if (!missing.empty()) return missing;
     const std::string_view near = nearest_name(word, given);
-    return near.empty() ? std::string() : fmt::format("; '{}' is given, too", near);
+    const bool is_a_letter = near.size() == 1;  // of another axis
+    return near.empty() || is_a_letter
+               ? std::string()
+               : fmt::format("; did you mean '{}', which is given, too?", near);
   };
   for (const Value& entry : value.children) {
     const bool known =

@@ -48,7 +48,7 @@ OPTIONS = [
     (STEP + ["--kind", "position"], "--duration", "0.4", "0.4 s", "0.3"),
     (["tune", SCENARIO, "-a", "Y"], "--velocity-bandwidth", "150", "150 rad/s", "120"),
     (["tune", SCENARIO, "-a", "Y"], "--phase-margin", "50", "50 deg", "55"),
-    (["tune", SCENARIO, "-a", "Y"], "--gain-margin", "14", "14 dB", "15dB"),
+    (["tune", SCENARIO, "-a", "Y"], "--gain-margin", "20", "20 dB", "30dB"),
     (["tune", SCENARIO, "-a", "Y"], "--overshoot", "3", "3 %", "0.1"),
     (["tune", SCENARIO, "-a", "Y"], "--bandwidth", "5", "5 Hz", "6Hz"),
     (STEP + ["--kind", "position"], "--band", "7", "7 %", "1"),
@@ -57,7 +57,7 @@ OPTIONS = [
     (COMPENSATE[:-4] + ["-o", "-"], "--work-offset", "X=10,Y=0,Z=0", "X=10 mm,Y=0mm,Z=0", "X=9,Y=0,Z=0"),
     (COMPENSATE_TOOL, "--tool-length", "1=50", "1=50mm", "1=9 mm"),
     (POST_5[:-6] + ["--feed", "500", "--turn-feed", "900", "--tool-length", "0"], "--part-zero", "1,2,3", "1 mm,2mm,3", "1,2,4"),
-    (POST + ["--feed", "500"], "--start", "X=10", "X=10 mm", "X=11"),
+    (POST_5 + ["--tool-length", "0"], "--start", "C=10", "C=10 deg", "C=200"),
     (TABLE, "--travel", "X=0:100", "X=0:0.1 m", "X=0:90"),
     (TABLE, "--at", "X=50", "X=50 mm", "X=60"),
 ]

@@ -252,7 +252,8 @@ TEST(Gallery, UnknownKeys) {
                    [](Reader& r) {
                      for (Reader& c : r.tables("case")) c.text("name");
                    }),
-            "s.toml:1:23: error: case[0].nmae is not known; 'name' is given, too");
+            "s.toml:1:23: error: case[0].nmae is not known; did you mean 'name', which is "
+            "given, too?");
   EXPECT_EQ(faults("lead_m = 1", [](Reader& r) { r.real("lead_mm", kLength); }),
             "s.toml: error: lead_mm is missing\n"
             "s.toml:1:1: error: lead_m is not known; did you mean 'lead_mm'?");

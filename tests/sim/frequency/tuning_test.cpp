@@ -182,7 +182,7 @@ TEST(Tune, RefusesWhatNoGainHas) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
                  "axis Y: error: no velocity_bandwidth above 20 rad/s has a phase margin of 85 deg "
-                 "together with a gain margin of 8 dB; ask for less, or for a larger "
+                 "together with a gain margin of 8 dB; lower the margins or raise "
                  "--reset-ratio");
   }
 }

@@ -88,7 +88,7 @@ TEST(MachineOverride, IsReadLikeAMachine) {
             "6: case[1].machine_override = 3; must be a table\n");
   EXPECT_EQ(message("machine_override.nc.Kv = -1.0\nmachine_override.axis.X.laod = 3.0\n"),
             "6: machine.nc.Kv = -1.0; must be > 0\n"
-            "7: machine.axis.X.laod is not known; 'load' is given, too\n");
+            "7: machine.axis.X.laod is not known; did you mean 'load', which is given, too?\n");
   EXPECT_EQ(message("machine_override.nc.Kv = \"40 m/min/mm\"\n").substr(0, 55),
             "6: case second: axis X: the servo loop is unstable with");
 }

@@ -104,7 +104,7 @@ TEST(EndOfATable, IsToldWhereTheProgramGoesOn) {
   EXPECT_TRUE(
       note_of(run_case(scenario, "both"))
           .ends_with("small.ngc:5: warning: case both: strategy table: the table over X ends "
-                     "at -15.0000 mm, the program goes on to -20.0000 mm; from here on the "
+                     "at -15.0000 mm, the program goes on to -20.0000 mm; from there on the "
                      "last value is held"))
       << note_of(run_case(scenario, "both"));
 }
