@@ -81,10 +81,11 @@ struct DialectMotion {
   std::vector<std::pair<Axis, double>> words;
   std::optional<DialectArc> arc;
   FeedMode feed_mode = FeedMode::units_per_minute;
-  double feed = 0.0;    // mm/min or deg/min, mm or deg a revolution, 1/min
-  int work_system = 1;  // 1: G54
-  int length = 0;       // number of the tool whose length is in force; 0: none
-  int tool = 0;         // in the spindle
+  double feed = 0.0;        // mm/min or deg/min, mm or deg a revolution, 1/min
+  int work_system = 1;      // 1: G54
+  int length = 0;           // number of the tool whose length is in force; 0: none
+  int tool = 0;             // in the spindle
+  bool is_Z_known = false;  // before it
 
   bool names(Axis axis) const;
   bool rises() const { return arc && names(kAllAxes[static_cast<std::size_t>(arc->path.c)]); }

@@ -35,7 +35,8 @@ void DialectWriter::write_reference(const Move& move, const Block& block, bool i
     if (axis != Axis::Z && !request.has(letter(axis))) continue;
     if (axis == Axis::Z && request.has('Z')) continue;
     throw Unsayable{fmt::format(
-        "{} of other axes than Z goes to places that LinuxCNC has stored; write G53 G0 X... Y...",
+        "{} of other axes than Z goes to places that LinuxCNC has stored; write G53 G0 X... Y... "
+        "with the places of this machine",
         is_G28 ? "G28" : "G30")};
   }
   if (block.state->is_incremental && request['Z'] != 0.0) {
@@ -89,11 +90,14 @@ DialectMotion DialectWriter::motion_of(const Block& block, const Step& step) con
   motion.work_system = move.work_offset;
   motion.length = move.tool_offset;
   motion.tool = tool_;
+  motion.is_Z_known = out_known_[static_cast<std::size_t>(index_of(Axis::Z))];
   AxisWords across = block.state->tool_offset;
   across[index_of(Axis::Z)] = 0.0;
   if (!motion.is_place && !across.isZero(0.0)) {
     throw Unsayable{
-        fmt::format("moves with offsets of tool {} in other axes than Z", move.tool_offset)};
+        fmt::format("moves with offsets of tool {0} in other axes than Z; give tool {0} none of "
+                    "X, Y, ... in the tool table",
+                    move.tool_offset)};
   }
   return motion;
 }
@@ -111,7 +115,7 @@ void DialectWriter::set_feed(DialectMotion& motion, const Step& step,
                                       [](const auto& word) { return is_linear(word.first); });
   if (turned > 0.0 && (has_linear || move.feed_mode == FeedMode::inverse_time)) {
     if (move.feed_mode == FeedMode::units_per_revolution) {
-      throw Unsayable{"feeds rotary axes per revolution of the spindle (G95)"};
+      throw Unsayable{"feeds rotary axes per revolution of the spindle (G95); write G94 or G93"};
     }
     const double share = std::max(fitted.t_end - fitted.t_begin, kShortestShare);
     motion.feed_mode = FeedMode::inverse_time;
@@ -278,13 +282,15 @@ std::vector<Axis> DialectWriter::lost_axes(const Move& move, const Block& block)
     axes += fmt::format("{}{}", axes.empty() ? "" : ", ", letter(axis));
   throw InputError(
       {file_, move.line},
-      fmt::format("moves Z while the position of {0} is not known: the tool change may have moved "
-                  "it, and no block names it; name {0} in a rapid between M6 and this line, or the "
-                  "start with --start",
-                  axes));
+      fmt::format(
+          "moves Z while the position of {0} is not known: the tool change or stop may have "
+          "moved it, and no block names it; name {0} in a rapid between it and this line, "
+          "or the start with --start",
+          axes));
 }
 
-// A tool change leaves axes wherever its macro takes them: Z goes down where the program has them.
+// A tool change or a stop leaves axes wherever macro or operator takes them: Z goes down where the
+// program has them.
 void DialectWriter::restate_axes(const Move& move, const Block& block) {
   const bool is_cycle =
       block.request != nullptr && controllers::is_canned_cycle(block.request->motion_code());
@@ -293,6 +299,8 @@ void DialectWriter::restate_axes(const Move& move, const Block& block) {
   const double end = move.end_machine[index_of(Axis::Z)];
   const bool changes_Z = before && std::abs(end - *before) > kSamePlace;
   if (!names_Z && !changes_Z) return;
+  // behind a stop, out of the workpiece first
+  if (height_ && end > *height_ + kSamePlace) return;
   const std::vector<Axis> lost = lost_axes(move, block);
   if (lost.empty()) return;
   restate_spindle_and_coolant();

@@ -33,6 +33,8 @@ bool is_in_the_moves(const Code& code) {
     case Group::g_work_system:
     case Group::g_path_control:
       return true;
+    case Group::g_work_plane:
+      return code.tenths == 690;
     case Group::g_tool_length:
       return code.tenths == 430 || code.tenths == 490;
     case Group::g_spindle_mode:
@@ -41,7 +43,7 @@ bool is_in_the_moves(const Code& code) {
       return code.tenths == 40 || code.tenths == 280 || code.tenths == 300 || code.tenths == 530 ||
              code.tenths == 520 || (code.tenths >= 920 && code.tenths <= 923);
     case Group::m_stop:
-      return code.tenths <= 20 || code.tenths == 300 || code.tenths == 990;
+      return code.tenths <= 20 || code.tenths == 300 || code.tenths == 600 || code.tenths == 990;
     case Group::m_tool:
       return code.tenths == 60;
     case Group::m_spindle:
@@ -51,6 +53,39 @@ bool is_in_the_moves(const Code& code) {
     default:
       return false;
   }
+}
+
+// G10 L2 and L20 move work systems: what they make of positions is in the numbers.
+bool moves_work_system(const Code& code, const controllers::Request& request) {
+  if (code.group != Group::g_non_modal || code.tenths != 100) return false;
+  return request['L'] == 2.0 || request['L'] == 20.0;
+}
+
+// M48 ... M51: whether the operator's override switches act is no motion.
+bool is_override(const Code& code) { return code.group == Group::m_override && code.tenths <= 510; }
+
+struct Remedy {
+  bool is_M;
+  int first, last;  // tenths
+  std::string_view text;
+};
+
+constexpr std::array kRemedies = {
+    Remedy{false, 100, 100, "enter tools and their lengths at the control"},
+    Remedy{false, 281, 301, "write G53 G0 where the program goes to the place that it stores"},
+    Remedy{false, 431, 432, "write G43 H with the number of a length that the control has"},
+    Remedy{false, 434, 435, "post-process the program to positions of the axes"},
+    Remedy{false, 531, 531, "post-process the program to positions of the axes"},
+    Remedy{false, 682, 682, "post-process the program to positions of the axes"},
+    Remedy{true, 520, 530, "adaptive feed and feed stop are inputs of LinuxCNC; take it out"},
+    Remedy{true, 700, 730, "write the modes out that it saves or restores"},
+};
+
+std::string_view remedy_of(bool is_M, int tenths) {
+  for (const Remedy& one : kRemedies) {
+    if (one.is_M == is_M && tenths >= one.first && tenths <= one.last) return one.text;
+  }
+  return "take it out";
 }
 
 std::string comment_text(std::string_view piece) {
@@ -79,15 +114,19 @@ DialectWriter::DialectWriter(Walk& walk, Summary& summary, const DialectSettings
       height_(settings.retract_Z) {}
 DialectWriter::~DialectWriter() = default;
 
-void DialectWriter::check_codes(const Block& block) const {
+void DialectWriter::check_codes(const Block& block) {
   if (block.request == nullptr) return;
   for (const auto& chosen : block.request->codes) {
     if (chosen.code == nullptr || is_in_the_moves(*chosen.code)) continue;
+    moves_work_systems_ |= moves_work_system(*chosen.code, *block.request);
+    has_overrides_ |= is_override(*chosen.code);
+    if (moves_work_system(*chosen.code, *block.request) || is_override(*chosen.code)) continue;
     const bool is_M = chosen.code->group >= Group::m_input_output;
     throw InputError({file_, block.line, chosen.column},
-                     fmt::format("{} cannot be expressed for {}",
+                     fmt::format("{} cannot be expressed for {}; {}",
                                  controllers::code_name(is_M ? 'M' : 'G', chosen.code->tenths),
-                                 kDialects[static_cast<std::size_t>(settings_.dialect)]));
+                                 kDialects[static_cast<std::size_t>(settings_.dialect)],
+                                 remedy_of(is_M, chosen.code->tenths)));
   }
 }
 
@@ -216,12 +255,20 @@ void DialectWriter::write_other(const Move& move, const Block& block, std::size_
   }
 }
 
-// The operator may have jogged behind it.
+// The operator may have jogged behind it. M60 is the builder's on other controls: a stop at which
+// the operator exchanges the pallets, from a height that nobody knows.
 void DialectWriter::write_stop(int number) {
+  constexpr int kPalletStop = 60;
   printer_->end_smoothing();
+  if (number == kPalletStop) printer_->message("exchange the pallets (M60)");
   printer_->stop(number == 1 ? 1 : 0);
   if (coolant_ != 0) known_coolant_.reset();
   forget_positions();
+  is_lost_.fill(true);
+  if (number != kPalletStop) return;
+  has_pallets_ = true;
+  printer_->retract();
+  height_ = settings_.retract_Z;
 }
 
 void DialectWriter::write_end() {
@@ -261,6 +308,16 @@ void DialectWriter::restate_spindle_and_coolant() {
 
 std::vector<std::string> DialectWriter::warnings() const {
   std::vector<std::string> out = printer_->warnings();
+  if (has_overrides_) {
+    out.emplace_back("M48 ... M51 are left out: the override switches stay the operator's");
+  }
+  if (moves_work_systems_) {
+    out.emplace_back(
+        "G10 acts on the numbers of this program only: the work offsets of the control stay");
+  }
+  if (has_pallets_) {
+    out.emplace_back("M60 is a stop (M0) at which the operator exchanges the pallets");
+  }
   if (arcs_to_lines_ > 0) {
     out.push_back(fmt::format("arcs in G18 and G19 written as lines: {}; {}", arcs_to_lines_,
                               printer_->why_lines()));

@@ -19,8 +19,8 @@ namespace servomill::sim {
 ///   stops the coolant, retracts and stops the spindle.
 /// - A position that nothing has named is unknown: a move to it is written wherever it ends. After
 ///   a tool change everything is unknown, after M0, M1 and M60 the positions are.
-/// - Before Z moves behind a tool change, rapids bring the other axes back to where the program has
-///   them.
+/// - Before Z moves behind a tool change, and before it goes down behind a stop, rapids bring the
+///   other axes back to where the program has them.
 /// - A rapid in Z and other axes becomes two: Z first where it goes up, last where it goes down or
 ///   comes from an unknown height. After a stop the height is that before it, in case that nobody
 ///   has jogged. Axes may run at their own rates (Fanuc LRP, No. 1401#1, = 0;
@@ -40,7 +40,7 @@ class DialectWriter final : public ProgramWriter {
   using Block = controllers::ExecutedBlock;
   using Words = std::vector<std::pair<Axis, double>>;
 
-  void check_codes(const Block& block) const;
+  void check_codes(const Block& block);
   void refuse_slash(const Block& block) const;
   void note_what_became_numbers(const Block& block);
   void note_unit(const Block& block);
@@ -81,7 +81,7 @@ class DialectWriter final : public ProgramWriter {
   std::unique_ptr<DialectPrinter> printer_;
   std::optional<double> height_;  // m: machine coordinate of Z, where known if nobody jogs
   AxisFlags out_known_{};         // axes that a block has named since positions were lost
-  AxisFlags is_lost_{};           // axes that a tool change may have moved, not named since
+  AxisFlags is_lost_{};  // axes that a tool change or a stop may have moved, not named since
   /// In which coordinates an axis has been written last. 0: those of the machine
   std::array<int, kAxisWords> system_{};
   int tool_ = 0, coolant_ = 0, direction_ = 0;
@@ -92,6 +92,7 @@ class DialectWriter final : public ProgramWriter {
   std::string path_;             // code in force
   bool has_ended_ = false;
   std::size_t arcs_to_lines_ = 0;  // outside the XY plane
+  bool has_overrides_ = false, moves_work_systems_ = false, has_pallets_ = false;
 };
 
 }  // namespace servomill::sim

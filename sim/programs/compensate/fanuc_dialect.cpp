@@ -108,7 +108,7 @@ class Fanuc final : public IsoDialect {
   }
 
   void path_mode(PathMode mode, double tolerance) override {
-    if (mode == PathMode::exact_path) throw Unsayable{"needs G61 as LinuxCNC defines it"};
+    if (mode == PathMode::exact_path) throw Unsayable{std::string(kExactPath)};
     if (tolerance > 0.0)
       warn("G64 P: the tolerance is left out; smoothing is G5.1's on this control");
     put(mode == PathMode::exact_stop ? "G61" : "G64");
@@ -130,7 +130,9 @@ class Fanuc final : public IsoDialect {
   }
   // X of G4 counts revolutions under G95 where DWL, No. 3405#1, is 1 (M)
   void dwell(double seconds) override {
-    if (seconds > kLongestDwell) throw Unsayable{fmt::format("dwells for {:g} s", seconds)};
+    if (seconds > kLongestDwell) {
+      throw Unsayable{fmt::format("dwells for {:g} s, more than {:g} s", seconds, kLongestDwell)};
+    }
     std::string text;
     if (modes_.feed_mode != FeedMode::units_per_minute) {
       text = "G94";
@@ -220,14 +222,21 @@ class Fanuc final : public IsoDialect {
 
   // By way of the retracted height, which no cut can take.
   void cancel_length(const DialectMotion& motion) {
-    if (!motion.is_rapid || motion.words.size() > 1) {
-      throw Unsayable{"cancels the tool length (G49) on the way; let Z retract first"};
+    const bool is_in_force = motion.is_Z_known && modes_.length != 0;
+    if (!motion.is_rapid || motion.words.size() > 1 || is_in_force) {
+      throw Unsayable{
+          "moves Z without the tool length that was in force (G49 after G43), which the control "
+          "cancels safely on a retract only; write G53 G0 Z... before G49"};
     }
     retract();
   }
 
   void place(const DialectMotion& motion) {
-    if (!motion.is_rapid) throw Unsayable{"feeds in machine coordinates; G53 is a rapid"};
+    if (!motion.is_rapid)
+      throw Unsayable{
+          "feeds in machine coordinates (G53 G1), and G53 is a rapid there; write G53 G0, or the "
+          "feed in "
+          "work coordinates"};
     assume("machine coordinates count from the same zero as in the original");
     const bool has_Z = motion.names(Axis::Z);
     modes_.code.reset();
@@ -240,7 +249,9 @@ class Fanuc final : public IsoDialect {
   }
 
   static std::string system_code(int system) {
-    if (system > 6) throw Unsayable{"selects G59.1 ... G59.3"};
+    if (system > 6) {
+      throw Unsayable{"selects G59.1 ... G59.3; write one of G54 ... G59"};
+    }
     return fmt::format("G{}", 53 + system);
   }
   void work_system(int system) {

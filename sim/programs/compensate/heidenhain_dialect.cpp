@@ -100,7 +100,9 @@ class Heidenhain final : public DialectPrinter {
   }
 
   void path_mode(PathMode mode, double tolerance) override {
-    if (mode != PathMode::continuous) throw Unsayable{"needs exact stops (G61, G61.1)"};
+    if (mode != PathMode::continuous) {
+      throw Unsayable{"needs exact stops (G61, G61.1), which no word sets; write G64"};
+    }
     put("CYCL DEF 32.0 TOLERANCE");
     put(tolerance > 0.0 ? "CYCL DEF 32.1 T" + fixed_text(tolerance / mm, 4) : "CYCL DEF 32.1");
   }
@@ -131,7 +133,9 @@ class Heidenhain final : public DialectPrinter {
   }
   bool is_spindle_known() const override { return direction_.has_value(); }
   void coolant(int code) override {
-    if (code == 7) throw Unsayable{"switches mist (M7), which is the machine builder's"};
+    if (code == 7)
+      throw Unsayable{
+          "switches mist (M7), which is the machine builder's; write M8, or take it out"};
     put(fmt::format("L M{}", code));
   }
   void dwell(double seconds) override {
@@ -195,20 +199,22 @@ class Heidenhain final : public DialectPrinter {
 
   void check_frame(const DialectMotion& motion) {
     if (motion.work_system != 1) {
-      throw Unsayable{"selects a work system other than G54; presets are the control's"};
+      throw Unsayable{
+          "selects a work system other than G54; write a program for each, with its --preset"};
     }
     if (!settings_.preset) assume("the active preset is G54");
     if (!tool_) {
       throw Unsayable{
-          "moves before a tool is called (T, M6); the control takes axis and length of the tool "
-          "called"};
+          "moves before a tool is called; the control takes axis and length of the tool called: "
+          "write "
+          "T... M6 before"};
     }
     if (!motion.names(Axis::Z)) return;
     if (motion.length != motion.tool) {
-      throw Unsayable{
-          fmt::format("moves with the length of tool {} while tool {} is called; the "
-                      "control takes that of the tool called",
-                      motion.length, motion.tool)};
+      throw Unsayable{fmt::format(
+          "moves with the length of tool {0} while tool {1} is called; the control takes that of "
+          "the tool called: write G43 H{1}",
+          motion.length, motion.tool)};
     }
     if (motion.length != 0) {
       assume(fmt::format("the tool table holds the length of tool {}", motion.length));

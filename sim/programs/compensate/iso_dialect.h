@@ -10,6 +10,10 @@
 
 namespace servomill::sim {
 
+/// LinuxCNC's G61 keeps to the path and stops where it must only; other controls stop at each end.
+inline constexpr std::string_view kExactPath =
+    "needs the exact path of LinuxCNC's G61; write G61.1 (stops at each end) or G64";
+
 class IsoDialect : public DialectPrinter {
  public:
   using DialectPrinter::DialectPrinter;

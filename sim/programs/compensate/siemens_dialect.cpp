@@ -79,7 +79,7 @@ class Siemens final : public IsoDialect {
     modes_.length = 0;
   }
   void path_mode(PathMode mode, double tolerance) override {
-    if (mode == PathMode::exact_path) throw Unsayable{"needs G61 as LinuxCNC defines it"};
+    if (mode == PathMode::exact_path) throw Unsayable{std::string(kExactPath)};
     if (mode == PathMode::exact_stop) return put("G60");
     put(tolerance > 0.0 ? fmt::format("G642 CTOL={}", fixed_text(tolerance / mm, 5)) : "G64");
   }
@@ -206,8 +206,8 @@ class Siemens final : public IsoDialect {
   static int edge(const DialectMotion& motion) {
     if (motion.length != 0 && motion.length != motion.tool) {
       throw Unsayable{
-          fmt::format("moves with the length of tool {} while tool {} is in the spindle; D1 is "
-                      "that of the tool",
+          fmt::format("moves with the length of tool {0} while tool {1} is in the spindle; D1 is "
+                      "that of the tool: write G43 H{1}",
                       motion.length, motion.tool)};
     }
     return motion.length == 0 ? 0 : 1;

@@ -43,7 +43,7 @@ void ReplayComparison::note_named(const Action& action) {
   }
 }
 
-// Without Z, of axes that a tool change has lost, to where the original has them.
+// Without Z, of axes that a tool change or a stop has lost, to where the original has them.
 bool ReplayComparison::restates(const OriginalAction& action, const Action& one) const {
   if (one.kind != ActionKind::rapid || one.is_commanded[kZ]) return false;
   bool is_any = false;
@@ -70,7 +70,7 @@ void ReplayComparison::check_lost_axes(const OriginalAction& action) const {
   for (std::size_t i = 0; i < at_.size(); ++i) {
     if (i == kZ || !correction_.layout().joint_of(kAllAxes[i])) continue;
     if (!is_lost_[i] || !action.was_ever_known[i]) continue;
-    fail(fmt::format("moves Z where the tool change has left {}, which the original knows",
+    fail(fmt::format("moves Z where the tool change or stop has left {}, which the original knows",
                      name_of(i)));
   }
 }
@@ -136,7 +136,11 @@ void ReplayComparison::check_rapid_block(const OriginalAction& action, const Tar
     }
     if (!one.end[i]) fail(fmt::format("leads {} to a place that is not known", name_of(i)));
   }
-  if (moves_Z && !limits_.is_linuxcnc && !one.is_machine_position) check_lost_axes(action);
+  // behind a stop Z may go up from where it was, if nobody has jogged
+  const bool goes_up = unmoved_[kZ] && one.end[kZ] && *one.end[kZ] > *unmoved_[kZ] + kSame;
+  if (moves_Z && !limits_.is_linuxcnc && !one.is_machine_position && !goes_up) {
+    check_lost_axes(action);
+  }
   if (!moves_Z || !moves_other || limits_.is_linuxcnc) return;
   if (from_unknown) fail("a rapid of Z together with other axes from a place that is not known");
   if (!one.is_straight) {

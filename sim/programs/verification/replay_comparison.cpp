@@ -226,9 +226,11 @@ void ReplayComparison::match_other(const OriginalAction& action) {
   if (needs_retract && !is_retracted_) fail("ends without a retract of Z in machine coordinates");
   const bool is_dwell = kind == ActionKind::dwell;
   if (!is_dwell) at_ = one.end;
+  const bool is_pallet = kind == ActionKind::stop && action.move.number == kPalletStop;
+  if (kind == ActionKind::tool || is_pallet) unmoved_ = {};
+  const bool is_stop = kind == ActionKind::stop && !limits_.is_linuxcnc;
+  if (kind == ActionKind::tool || is_stop) is_lost_.fill(true);
   if (kind == ActionKind::tool) {
-    unmoved_ = {};
-    is_lost_.fill(true);
     auxiliary_.direction.reset();
     if (!limits_.is_linuxcnc) auxiliary_.coolant.reset();
   }

@@ -100,9 +100,9 @@ class ReplayComparison {
   Correction& correction_;
   std::size_t next_ = 0;
   controllers::KnownPosition at_;
-  controllers::KnownPosition unmoved_;                // if nobody has jogged at a stop
-  AxisFlags6 is_lost_{};                              // by a tool change, and not named since
-  Directions directions_{};                           // of travel, as the original has them
+  controllers::KnownPosition unmoved_;  // if nobody has jogged at a stop
+  AxisFlags6 is_lost_{};                // by a tool change or a stop, and not named since
+  Directions directions_{};             // of travel, as the original has them
   AuxiliaryState auxiliary_, auxiliary_before_line_;  // before the line of the last change
   int auxiliary_line_ = 0;
   bool has_motion_ = false, is_retracted_ = false;  // the last motion of Z was a retract

@@ -94,8 +94,8 @@ TEST(DialectRules, ReturnsToTheReferenceBecomeTheControlsOwnOrTheRetractedHeight
             "D1 Z5\n");
   EXPECT_EQ(refusal(Dialect::fanuc, kStart + "G28\nM2\n"),
             "plate.ngc:5: error: G28 of other axes than Z goes to places that LinuxCNC has stored; "
-            "write G53 G0 X... Y...; "
-            "that cannot be expressed for fanuc");
+            "write G53 G0 X... Y... "
+            "with the places of this machine; that cannot be expressed for fanuc");
 }
 
 TEST(DialectRules, PolarMovesAreWrittenWhileZIsUnknown) {
@@ -159,8 +159,10 @@ TEST(DialectRules, FanucCancelsTheLengthWithG53Only) {
       << text;
   EXPECT_EQ(
       refusal(Dialect::fanuc, kStart + "G0 X1 Y1 Z5\nG1 Z-1 F100\nG49\nG1 X2 Z-2\nM2\n"),
-      "plate.ngc:8: error: cancels the tool length (G49) on the way; let Z retract first; that "
-      "cannot be expressed for fanuc");
+      "plate.ngc:8: error: moves Z without the tool length that was in force (G49 after G43), "
+      "which "
+      "the control cancels safely on a retract only; write G53 G0 Z... before G49; that cannot be "
+      "expressed for fanuc");
 }
 
 // G20 and G21 change origin offsets: the unit of the program stays.
@@ -481,6 +483,54 @@ TEST(DialectRules, PresetsOfAnyNumberAreVerified) {
   }
 }
 
+// M60 is the builder's: the operator exchanges the pallets, from a height that nobody knows.
+TEST(DialectRules, PalletsAreExchangedByTheOperator) {
+  const Trial trial = dialect_trial(Dialect::siemens,
+                                    kStart + "G0 X1 Y1 Z5\nG0 Z50\nM60\nG0 Z5\nG1 Z-1 F100\nM2\n");
+  const std::string text = body(trial);
+  EXPECT_TRUE(
+      text.ends_with("Z50\n"
+                     "MSG(\"exchange the pallets [M60]\")\n"
+                     "M0\n"
+                     "SUPA G0 Z-2 D0\n"
+                     "M3\n"
+                     "X1 Y1\n"
+                     "D1 Z5\n"
+                     "G1 Z-1 F100\n"))
+      << text;
+}
+
+TEST(DialectRules, OverridesStayTheOperators) {
+  const Trial trial = dialect_trial(Dialect::fanuc, kStart + "M49\nG0 X1 Y1 Z5\nM48\nM50 P0\nM2\n");
+  EXPECT_TRUE(body(trial).ends_with("G0 X1. Y1.\nG43 H1 Z5.\n")) << body(trial);
+  EXPECT_NE(
+      trial.run().program.find("(WARNING: M48 ... M51 ARE LEFT OUT: THE OVERRIDE SWITCHES STAY "
+                               "THE OPERATOR'S)\n"),
+      std::string::npos);
+}
+
+// G10 L2 of the program and #5221 are the same.
+TEST(DialectRules, WorkSystemsThatTheProgramMovesAreInTheNumbers) {
+  const std::string moved =
+      body(Dialect::fanuc,
+           kStart + "G0 X1 Y1\nZ5\nG10 L2 P1 X210 Y250 Z-90\nX0\nG10 L20 P1 X0\nX1\nM2\n");
+  EXPECT_TRUE(moved.ends_with("G43 H1 Z5.\nX10.\nX11.\n")) << moved;
+  EXPECT_EQ(
+      refusal(Dialect::fanuc, kStart + "G10 L1 P1 Z50\nM2\n"),
+      "plate.ngc:5:1: error: G10 cannot be expressed for fanuc; enter tools and their lengths "
+      "at the control");
+}
+
+TEST(DialectRules, G49BehindAMoveWithALengthIsRefusedInItsOwnWords) {
+  EXPECT_EQ(
+      refusal(Dialect::fanuc, kStart + "G0 X1 Y1\nZ5\nG49\nG0 Z60\nM2\n"),
+      "plate.ngc:8: error: moves Z without the tool length that was in force (G49 after G43), "
+      "which the control cancels safely on a retract only; write G53 G0 Z... before G49; that "
+      "cannot be expressed for fanuc");
+  EXPECT_EQ(refusal(Dialect::fanuc, kStart + "G0 X1 Y1\nZ5\nG53 G0 Z-2\nG49\nG0 Z60\nM2\n"),
+            "taken");
+}
+
 // A circle of short lines: smoothed by more it takes less time, and leaves the path by as much.
 TEST(DialectRules, SmoothingIsSimulated) {
   std::string program = kStart + "G0 X20 Y0\nZ5\nG1 Z-1 F3000\n";
@@ -549,9 +599,10 @@ TEST(DialectRules, CyclesFromAnUnknownHeightAreRefused) {
 }
 
 TEST(DialectRules, HeidenhainMovesWithAToolOnly) {
-  EXPECT_EQ(refusal(Dialect::heidenhain, "G21 G90\nG0 X1 Y1\nM2\n"),
-            "plate.ngc:2: error: moves before a tool is called (T, M6); the control takes axis and "
-            "length of the tool called; that cannot be expressed for heidenhain");
+  EXPECT_EQ(
+      refusal(Dialect::heidenhain, "G21 G90\nG0 X1 Y1\nM2\n"),
+      "plate.ngc:2: error: moves before a tool is called; the control takes axis and length of "
+      "the tool called: write T... M6 before; that cannot be expressed for heidenhain");
 }
 
 TEST(DialectRules, DwellsBeforeTheFirstMoveAreVerified) {

@@ -58,12 +58,13 @@ TEST(Dialect, HeidenhainConversational) {
             "39 L M3\n"
             "40 L M8\n"
             "41 L Z+0 FMAX M91\n"
-            "42 L Z+5 FMAX\n"
-            "43 L M9\n"
-            "44 L Z-2 R0 FMAX M91\n"
-            "45 L M5\n"
-            "46 L M30\n"
-            "47 END PGM PLATE MM\n");
+            "42 L X+20.5 Y+20 FMAX\n"
+            "43 L Z+5 FMAX\n"
+            "44 L M9\n"
+            "45 L Z-2 R0 FMAX M91\n"
+            "46 L M5\n"
+            "47 L M30\n"
+            "48 END PGM PLATE MM\n");
 }
 
 TEST(Dialect, Fanuc) {
@@ -96,11 +97,12 @@ TEST(Dialect, Fanuc) {
             "N21 M3\n"
             "N22 M8\n"
             "N23 G90 G49 G53 G0 Z0.\n"
-            "N24 G43 H1 Z5.\n"
-            "N25 M9\n"
-            "N26 G90 G49 G53 G0 Z-2.\n"
-            "N27 M5\n"
-            "N28 M30\n"
+            "N24 X20.5 Y20.\n"
+            "N25 G43 H1 Z5.\n"
+            "N26 M9\n"
+            "N27 G90 G49 G53 G0 Z-2.\n"
+            "N28 M5\n"
+            "N29 M30\n"
             "%\n");
 }
 
@@ -128,11 +130,12 @@ TEST(Dialect, Siemens) {
             "N170 M3\n"
             "N180 M8\n"
             "N190 SUPA G0 Z0 D0\n"
-            "N200 D1 Z5\n"
-            "N210 M9\n"
-            "N220 SUPA G0 Z-2 D0\n"
-            "N230 M5\n"
-            "N240 M30\n");
+            "N200 X20.5 Y20\n"
+            "N210 D1 Z5\n"
+            "N220 M9\n"
+            "N230 SUPA G0 Z-2 D0\n"
+            "N240 M5\n"
+            "N250 M30\n");
 }
 
 // G55 of the trial is turned by 12.5 deg: 1 inch along X is 24.798 mm and 5.498 mm.
@@ -161,19 +164,23 @@ TEST(Dialect, ShiftsRotationsInchesAndIncrementsAreInTheNumbers) {
 TEST(Dialect, WhatItCannotExpressIsRefusedWithItsPlace) {
   const std::string start = "G21 G90\nT1 M6 G43 H1\nS1000 M3\nG0 X0 Y0 Z5\n";
   EXPECT_EQ(refusal(Dialect::heidenhain, start + "G55 G1 X1 F100\nM2\n"),
-            "plate.ngc:5: error: selects a work system other than G54; presets are the control's; "
-            "that cannot be expressed for heidenhain");
+            "plate.ngc:5: error: selects a work system other than G54; write a program for each, "
+            "with its --preset; that cannot be expressed for heidenhain");
   EXPECT_EQ(refusal(Dialect::siemens, start + "G61 G1 X1 F100\nM2\n"),
-            "plate.ngc:5: error: needs G61 as LinuxCNC defines it; that cannot be expressed for "
-            "siemens");
-  EXPECT_EQ(refusal(Dialect::siemens, start + "G10 L2 P1 X3\nM2\n"),
-            "plate.ngc:5:1: error: G10 cannot be expressed for siemens");
+            "plate.ngc:5: error: needs the exact path of LinuxCNC's G61; write G61.1 (stops at "
+            "each end) or G64; that cannot be expressed for siemens");
   EXPECT_EQ(
-      refusal(Dialect::heidenhain, start + "M7\nM2\n"),
-      "plate.ngc:5: error: switches mist (M7), which is the machine builder's; that cannot be "
-      "expressed for heidenhain");
-  EXPECT_EQ(refusal(Dialect::fanuc, start + "M48\nM2\n"),
-            "plate.ngc:5:1: error: M48 cannot be expressed for fanuc");
+      refusal(Dialect::siemens, start + "G10 L1 P1 Z3\nM2\n"),
+      "plate.ngc:5:1: error: G10 cannot be expressed for siemens; enter tools and their lengths at "
+      "the control");
+  EXPECT_EQ(refusal(Dialect::heidenhain, start + "M7\nM2\n"),
+            "plate.ngc:5: error: switches mist (M7), which is the machine builder's; write M8, or "
+            "take it "
+            "out; that cannot be expressed for heidenhain");
+  EXPECT_EQ(
+      refusal(Dialect::fanuc, start + "M52 P1\nM2\n"),
+      "plate.ngc:5:1: error: M52 cannot be expressed for fanuc; adaptive feed and feed stop are "
+      "inputs of LinuxCNC; take it out");
 }
 
 }  // namespace

@@ -25,6 +25,18 @@ TEST(LostPositions, RapidsBehindAStopGoAcrossBeforeTheyGoDown) {
                   .ends_with("M0\nM3\nX30. Y30.\nZ-4.\n"));
 }
 
+// Somebody may have jogged: Z goes down where the program has X and Y, and up where it is.
+TEST(LostPositions, AxesAreRestatedBeforeZGoesDownBehindAStop) {
+  const std::string up = kStart + "G0 X10 Y10\nZ50\nM0\n";
+  EXPECT_TRUE(body(Dialect::fanuc, up + "G0 X20\nZ5\nM2\n").ends_with("M0\nM3\nX20.\nY10.\nZ5.\n"));
+  EXPECT_TRUE(body(Dialect::siemens, up + "G0 Z5\nG1 Z-1 F100\nM2\n")
+                  .ends_with("M0\nM3\nX10 Y10\nZ5\nG1 Z-1 F100\n"));
+  EXPECT_TRUE(body(Dialect::heidenhain, up + "G0 Z50\nM2\n")
+                  .ends_with("L M0\nL M3\nL X+10 Y+10 FMAX\nL Z+50 FMAX\n"));
+  EXPECT_TRUE(body(Dialect::fanuc, kStart + "G0 X10 Y10\nZ5\nG1 Z-5 F100\nM0\nG0 Z50\nX0\nZ5\nM2\n")
+                  .ends_with("M0\nM3\nG0 Z50.\nX0.\nY10.\nZ5.\n"));
+}
+
 // After a tool change the control does not know where X and Y are: Z waits for them.
 TEST(LostPositions, AxesAreRestatedBeforeZGoesDownBehindAToolChange) {
   const std::string change = kStart + "G0 X10 Y10 Z5\nX20 Z20\nT2 M6\nG43 H2\nS800 M3\n";
@@ -61,9 +73,9 @@ TEST(LostPositions, RotaryAxesAreRestatedFirst) {
 TEST(LostPositions, ZBehindAToolChangeNeedsAxesThatAreNamed) {
   const std::string home = "G21 G90 G17 G54\nT1 M6\nG43 H1\nS1000 M3\nG0 X1\n";
   EXPECT_EQ(refusal(Dialect::fanuc, home + "Z5\nM2\n"),
-            "plate.ngc:6: error: moves Z while the position of Y is not known: the tool change may "
-            "have moved it, and no block names it; name Y in a rapid between M6 and this line, or "
-            "the start with --start");
+            "plate.ngc:6: error: moves Z while the position of Y is not known: the tool change or "
+            "stop may have moved it, and no block names it; name Y in a rapid between it and this "
+            "line, or the start with --start");
   EXPECT_EQ(refusal(Dialect::fanuc, home + "G53 G0 Z-3\nM2\n"), "taken");
   Trial trial = dialect_trial(Dialect::fanuc, home + "Z5\nM2\n");
   trial.request.start = "X=0,Y=7";

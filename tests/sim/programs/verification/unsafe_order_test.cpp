@@ -38,22 +38,22 @@ TEST(UnsafeOrder, AcrossBeforeUpBehindAStop) {
 TEST(UnsafeOrder, DownBeforeAcrossBehindAStop) {
   const std::string program = kStart + "M0\nG0 X30 Y30 Z-4\nM2\n";
   EXPECT_EQ(verified(program, "X30 Y30\nZ-4\n", "Z-4\nX30 Y30\n"),
-            "goes down before it moves the other axes");
+            "moves Z where the tool change or stop has left X, which the original knows");
 }
 
 TEST(UnsafeOrder, ZWhereAToolChangeHasLeftOtherAxes) {
   const std::string program = kStart + "X20 Z20\nT2 M6\nG43 H2\nS800 M3\nG0 Z-4\nX20 Y15\nM2\n";
   const std::string safe = "G0 X20 Y10\nD1 Z-4\nY15\n";
   EXPECT_EQ(verified(program, safe, "G0 D1 Z-4\nX20 Y15\n"),
-            "moves Z where the tool change has left X, which the original knows");
+            "moves Z where the tool change or stop has left X, which the original knows");
   EXPECT_EQ(verified(program, safe, "G0 X20\nD1 Z-4\nY15\n"),
-            "moves Z where the tool change has left Y, which the original knows");
+            "moves Z where the tool change or stop has left Y, which the original knows");
 }
 
 TEST(UnsafeOrder, ZBetweenTheAxesThatItNeedsBehindAToolChange) {
   const std::string program = kStart + "X20 Z20\nT2 M6\nG43 H2\nS800 M3\nG0 X30 Z5\nG0 Y15\nM2\n";
   EXPECT_EQ(verified(program, "G0 Y10\nX30\nD1 Z5\n", "G0 X30\nD1 Z5\n"),
-            "moves Z where the tool change has left Y, which the original knows");
+            "moves Z where the tool change or stop has left Y, which the original knows");
   EXPECT_EQ(verified(program, "G0 Y10\nX30\nD1 Z5\n", "G0 X30 Y10\nD1 Z5\n"), "taken");
 }
 
