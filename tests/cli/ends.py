@@ -136,7 +136,7 @@ class Ends(unittest.TestCase):
                            "--set", "machine.nc.check_stability=false",
                            "--set", "machine.nc.following_error_limit_mm=0.5", "--set", "case[0].servo=ideal")
         self.assertEqual(result.returncode, 1)
-        self.assertRegex(result.stderr, r"^case table stopped: axis [XYZ]: following error beyond 0\.5 mm at \d+\.\d{4} s\n$")
+        self.assertRegex(result.stderr, r"(?m)^case table stopped: axis [XYZ]: following error beyond 0\.5 mm at \d+\.\d{4} s\n$")
         self.assertTrue(os.path.exists(self.out))
 
     def test_friction_that_the_step_does_not_resolve_is_no_response(self):

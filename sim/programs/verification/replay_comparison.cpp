@@ -202,7 +202,9 @@ void ReplayComparison::check_retract(const Action& action) {
 void ReplayComparison::match_other(const OriginalAction& action) {
   const ActionKind kind = kind_of(action.move.kind);
   const bool has_frame = kind == ActionKind::tool || kind == ActionKind::end;
-  if ((has_frame || !has_motion_) && !limits_.is_linuxcnc) skip_retracts(nullptr);
+  if ((has_frame || is_behind_pallets_ || !has_motion_) && !limits_.is_linuxcnc) {
+    skip_retracts(nullptr);
+  }
   const Action& one = need(std::string(name_of(kind)));
   if (one.kind != kind) {
     fail(fmt::format("{} must come here, and {} comes", name_of(kind), name_of(one.kind)));
@@ -228,6 +230,7 @@ void ReplayComparison::match_other(const OriginalAction& action) {
   if (!is_dwell) at_ = one.end;
   const bool is_pallet = kind == ActionKind::stop && action.move.number == kPalletStop;
   if (kind == ActionKind::tool || is_pallet) unmoved_ = {};
+  is_behind_pallets_ = is_pallet;
   const bool is_stop = kind == ActionKind::stop && !limits_.is_linuxcnc;
   if (kind == ActionKind::tool || is_stop) is_lost_.fill(true);
   if (kind == ActionKind::tool) {
@@ -257,6 +260,7 @@ void ReplayComparison::match_motion(const OriginalAction& action) {
   correction_.set_tool(action.p_ST);
   if (!has_moved_ && !limits_.is_linuxcnc) skip_retracts(&action);
   has_moved_ = true;
+  is_behind_pallets_ = false;
   if (action.is_machine_position) return match_place(action);
   if (action.move.kind == MoveKind::rapid && !limits_.corrects_rapids) return match_rapid(action);
   match_path(action);

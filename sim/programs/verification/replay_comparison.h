@@ -107,6 +107,7 @@ class ReplayComparison {
   int auxiliary_line_ = 0;
   bool has_motion_ = false, is_retracted_ = false;  // the last motion of Z was a retract
   bool has_moved_since_stop_ = false, was_arc_ = false;
+  bool is_behind_pallets_ = false;  // Z may be retracted there
   bool has_moved_ = false, has_ended_ = false;
   double largest_ = 0.0;
   std::size_t blocks_ = 0;

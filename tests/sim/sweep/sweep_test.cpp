@@ -202,7 +202,7 @@ TEST(RefuseHopeless, NamesAKeyThatThereIsNot) {
   EXPECT_EQ(refusal("program.feed_overide=[0.5,1.0]"),
             begin +
                 "sweep.\"program.feed_overide\": program.feed_overide is not known; did you mean "
-                "'feed_override'?");
+                "'feed_override', which is given, too?");
   EXPECT_EQ(
       refusal("case.tabel.strategy.response_time_ms=[1,2]"),
       "--set sweep={case.tabel.strategy.response_time_ms=[1,2]}: error: "
@@ -219,7 +219,7 @@ TEST(RefuseHopeless, TellsAFaultOfAllOfManyPoints) {
   EXPECT_EQ(refusal("program.feed_overide={linear=[0.5,1.0],count=1000}"),
             "--set sweep={program.feed_overide={linear=[0.5,1.0],count=1000}}: error: "
             "sweep.\"program.feed_overide\": program.feed_overide is not known; did you mean "
-            "'feed_override'?");
+            "'feed_override', which is given, too?");
 }
 
 }  // namespace

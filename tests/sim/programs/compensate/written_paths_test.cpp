@@ -90,7 +90,9 @@ TEST(WrittenTurns, OfAnEndlessAxisAreCountedOverWorkSystems) {
   EXPECT_EQ(body(trial),
             "T1\n"
             "M6\n"
-            "G17 G40 G90 G94 G54\n"
+            "G17 G40 G64 G90 G94 G710 G54\n"
+            "TRANS\n"
+            "TRAFOOF\n"
             "G0 X1 Y1 B-30 C-40\n"
             "G55\n"
             "C=IC(60)\n"
