@@ -22,7 +22,6 @@ class Grid {
  public:
   explicit Grid(int decimals) : decimals_(decimals), scale_(std::pow(10.0, decimals)) {}
   double step_count(double x) const { return std::round(x * scale_); }
-  bool is_zero(double x) const { return step_count(x) == 0.0; }
   std::string text(double steps) const { return fixed_text(steps / scale_, decimals_); }
 
  private:
@@ -216,13 +215,9 @@ class Printer {
     return std::abs(arc.sweep) < std::numbers::pi;
   }
 
-  // F in force for this move, in 1/min under G93, per revolution under G95. A displaced block may
-  // move X, Y and Z where the path of the original stands.
+  // F in force for this move, in 1/min under G93, per revolution under G95.
   double feed_value(const Move& move) const {
-    const AxisWords moved = move.end_machine - machine_before_;
-    const double turned = moved.tail<3>().norm(), own = moved.head<3>().norm();
-    double length = move.s_end - move.s_begin;
-    if (length <= 0.0 && turned == 0.0 && !linear_.is_zero(own / mm)) length = own;
+    const double length = move.s_end - move.s_begin;
     const bool moves_xyz = move.kind == MoveKind::arc || length > 0.0;
     if (move.feed_mode == FeedMode::units_per_minute) {
       return move.feed / (moves_xyz ? mm_per_min : deg_per_min);
@@ -230,7 +225,7 @@ class Printer {
     if (move.feed_mode == FeedMode::units_per_revolution) {
       return move.value / (moves_xyz ? mm : deg);
     }
-    const double way = moves_xyz ? length : turned;
+    const double way = moves_xyz ? length : (move.end_machine - machine_before_).tail<3>().norm();
     return way > 0.0 ? move.feed * minute / way : 1.0;
   }
 
