@@ -283,7 +283,8 @@ TEST(Post, Faults) {
   EXPECT_EQ(fault_of_post(cl("GOTO/900,0,0\n"), machine(kTableTable)),
             "p.cls:1: error: axis X would move to 930 mm, outside its travel of -500 to 500");
   EXPECT_EQ(fault_of_post(cl("GOTO/0,0,0\nGOTO/0,0,0,0,0,-1\n"), machine(kTableTable)),
-            "p.cls:2: error: the tool axis is reversed (180 deg): no direction of rotation is the shorter one");
+            "p.cls:2: error: the tool axis is reversed (180 deg): no direction of rotation is the "
+            "shorter one");
   EXPECT_EQ(
       fault_of_post(cl("GOTO/0,0,0,0,-1,-1\n"), machine(kTableTable)),
       "p.cls:1: error: axis A would move to 135 deg, outside its travel of -114.592 to 114.592");
