@@ -36,8 +36,8 @@ Point rotated(const Point& v, double angle) {
 
 Element line(const Point& begin, const Point& end) { return {begin, end, false, {0.0, 0.0}, 0.0}; }
 
-// Where the tangent from a point outside touches a circle; the arc runs from there to the point, or
-// from the point there.
+// The tangent from an outside point touches the circle here; the arc runs from here to the point,
+// or from the point to here.
 Point tangent_point(const Point& centre, double radius, const Point& outside, double sign,
                     const Place& place) {
   const Point d = outside - centre;

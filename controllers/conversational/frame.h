@@ -1,4 +1,4 @@
-/// Where the coordinates of a program lie in those of the preset: cycles 7, 8, 10 and 11. Lengths
+/// Coordinate frame of the program relative to the preset: cycles 7, 8, 10 and 11. Lengths
 /// in mm, angles in degrees.
 #pragma once
 

@@ -140,7 +140,7 @@ void Translator::start_function(int m, const Place& place) {
   }
 }
 
-// What stops or ends comes after what else ends with the block, and after M99.
+// Stops and ends come last in their block, after M99.
 void Translator::end_functions(const Positioning& p) {
   constexpr std::array<int, 5> kLast = {0, 1, 2, 6, 30};
   for (const bool is_last : {false, true}) {

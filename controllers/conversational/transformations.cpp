@@ -1,4 +1,4 @@
-// Where the coordinates lie: cycles 7, 8, 10, 11, 19 and 247, TRANS DATUM, PLANE, M128.
+// Coordinate transformations: cycles 7, 8, 10, 11, 19 and 247, TRANS DATUM, PLANE, M128.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>

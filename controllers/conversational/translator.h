@@ -70,7 +70,7 @@ class Translator {
   /// The next line; nullopt behind the end of the program.
   /// @throws InputError at a block with an error; the lines of the blocks before it come first
   std::optional<GcodeLine> next();
-  /// What was read in a way that other controls might not share, since the last call.
+  /// Readings since the last call that other controls might not share.
   std::vector<Fault> take_warnings() { return std::exchange(warnings_, {}); }
   /// The file of the line handed out last.
   const std::string& file() const { return current_file_; }

@@ -32,7 +32,7 @@ FanucMachine::FanucMachine(const std::string& file, const ControlSetup& setup,
   length_ = {FanucLength::Mode::off, 1.0, 0, 0.0, false};
 }
 
-// What the control does not have cannot be in force.
+// A function that the control does not have cannot be active.
 void FanucMachine::take_absent_functions() {
   modes_.is_polar_off = !settings_.has_polar;
   modes_.is_scaling_off = !settings_.has_scaling;
