@@ -101,7 +101,8 @@ void run(std::string_view text) {
 namespace servomill::sim {
 
 // In place of that of sim/system/read_file.cpp: no file but those named above can be read.
-std::string read_file(const std::string& path, const Place& at, std::string_view what) {
+std::string read_file(const std::string& path, const Place& at, std::string_view what,
+                      std::uintmax_t /*most*/) {
   if (path == fuzz::kDocument) return std::string(fuzz::document);
   const auto found = fuzz::files().find(std::filesystem::path(path).filename().string());
   if (found != fuzz::files().end()) return found->second;
