@@ -212,6 +212,7 @@ CycleHole Interpreter::Machine::cycle_hole(bool goes_on) {
   const double from = in_unit(state_.position[state_.normal_axis], state_.unit);
   if (!kept.has_level) kept.level = from;
   kept.has_level = true;
+  require_known_level();
   CycleHole hole;
   hole.r = kept.r + (state_.is_incremental ? kept.level : 0.0);
   hole.bottom = kept.bottom + (state_.is_incremental ? hole.r : 0.0);
@@ -235,6 +236,17 @@ CycleHole Interpreter::Machine::cycle_hole(bool goes_on) {
   hole.backed_off = kBackedOff / state_.unit;
   hole.direction = state_.spindle_direction;
   return hole;
+}
+
+// The level that a row of cycles begins at counts for G98 and under G91.
+void Interpreter::Machine::require_known_level() {
+  if (!state_.is_height_unknown) return;
+  if (state_.is_incremental || !state_.retracts_to_r) {
+    fail(request().motion.column,
+         "the cycle begins at a Z that depends on the length of the tool, which is unknown; name Z "
+         "before, or pass a tool table with --tools");
+  }
+  state_.is_height_unknown = false;
 }
 
 // I J K of G87: two of them lead beside the hole, the third is where the bore ends.

@@ -21,6 +21,10 @@ constexpr double kExactBelow = 9e15;  // integers up to here are exact
 void add_number(double x, std::string& out) {
   const double scaled = std::round(x * kPerUnit);
   if (!(std::abs(scaled) < kExactBelow)) {
+    if (std::isnan(x)) {  // Z with a tool of unknown length
+      out += "null";
+      return;
+    }
     std::string text = fmt::format("{:.9f}", x);
     text.erase(text.find_last_not_of('0') + 1);
     if (text.back() == '.') text.pop_back();

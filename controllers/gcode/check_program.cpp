@@ -46,7 +46,8 @@ std::vector<Fault> syntax_faults(ProgramText& text, const ProgramSetup& setup) {
       }
       percent.saw_line();
       has_o_words = has_o_words || block.o_word.flow != Flow::none;
-      check_codes(block, text.file());
+      // a run says which codes another reader takes
+      if (setup.reader == Reader::linuxcnc) check_codes(block, text.file());
       if (ends_program(block) && !has_o_words) break;
     } catch (const InputError& error) {
       percent.saw_line();

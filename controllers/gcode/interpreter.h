@@ -39,7 +39,7 @@
 /// most 100000 moves (cycles with tiny pecks).
 ///
 /// O-words: subroutines, loops and conditions as LinuxCNC has them, its oddities included (the
-/// notes at FlowState in interpreter_machine.h); where a program is skipped, only comments, labels
+/// notes at FlowState in flow_state.h); where a program is skipped, only comments, labels
 /// and keywords are looked at.
 #pragma once
 

@@ -15,11 +15,13 @@
 
 #include "controllers/gcode/arc_geometry.h"
 #include "controllers/gcode/canned_cycles.h"
+#include "controllers/gcode/flow_state.h"
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/line_reader.h"
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/parameters.h"
 #include "controllers/gcode/program_text.h"
+#include "controllers/gcode/readers/block_reading.h"
 #include "controllers/gcode/request.h"
 #include "controllers/gcode/saved_state.h"
 #include "plant/vocabulary/units.h"
@@ -33,55 +35,6 @@ inline constexpr double kIntegerTol = 1e-4;  // as LinuxCNC, for words that must
 inline double in_parameter_unit(int axis, double value) { return value / (axis < 3 ? mm : deg); }
 inline double from_parameter_unit(int axis, double value) { return value * (axis < 3 ? mm : deg); }
 
-// ---- flow control
-
-/// A line to which a program can go: of a subroutine or a loop.
-struct LinePlace {
-  std::size_t text = 0;    // index into the texts of a program
-  ProgramText::Mark mark;  // before the line
-  bool operator==(const LinePlace& o) const {
-    return text == o.text && mark.offset == o.mark.offset;
-  }
-};
-
-struct Label {
-  Flow flow = Flow::none;
-  LinePlace place;
-  std::optional<long> repeats_left;  // of a `repeat` that is under way
-};
-
-inline constexpr int kArguments = 30;  // #1 ... #30
-inline constexpr int kMostCalls = 9;   // in each other, as LinuxCNC
-
-/// One call that is under way.
-struct Call {
-  std::string name;
-  Flow flow = Flow::call;  // or m98
-  LinePlace return_to;
-  int line = 0;  // of the call
-  std::array<double, kArguments> saved{};
-};
-
-/// Where a program goes on. The flags are LinuxCNC's, with what they leave standing: a `break` out
-/// of a `while` lets the next `do` run once only, a `continue` in a `do` turns the next `break` out
-/// of a `while` into a `continue`.
-struct FlowState {
-  std::map<std::string, Label> labels;
-  std::vector<Call> calls;
-  std::vector<long> turns_left{0};      // of M98 L, of the program and of each call; 0: none
-  std::optional<std::string> skip_to;   // label that ends the skipping
-  bool skips_to_sub = false;            // only `sub` or a bare O-word ends it
-  int skip_from = 0;                    // line where the skipping began
-  std::optional<std::string> defining;  // the subroutine whose definition is passed over
-  bool has_taken_branch = false;
-  bool breaks = false;
-  bool continues = false;
-  double value = 0.0;  // of the last return or endsub
-  bool has_value = false;
-  long jumps = 0;
-  long lines = 0;  // run since the first jump
-};
-
 class Interpreter::Machine {
  public:
   Machine(ProgramText text, ProgramSetup setup)
@@ -89,7 +42,9 @@ class Interpreter::Machine {
         tools_at_start_(setup_.tools),
         parameters_({[this](int number) { return system_number(number); },
                      [this](std::string_view name) { return system_name(name); }}),
-        reader_(setup_.block_delete, setup_.reader) {
+        reader_(setup_.block_delete, setup_.reader),
+        reading_({setup_.reader, setup_.decimal_point, setup_.feed}, setup_.additional_offsets) {
+    reader_.keep_pieces(setup_.reader != Reader::linuxcnc);
     texts_.push_back({std::move(text), {}, 0});
     load_stored_parameters();
     for (const auto& [name, value] : setup_.parameters) set_initial(name, value);
@@ -131,7 +86,8 @@ class Interpreter::Machine {
   struct Text {
     ProgramText lines;
     PercentRule percent;
-    int last_line = 0;  // the farthest that was run
+    int last_line = 0;       // the farthest that was run
+    bool has_title = false;  // comments before the first '%'
   };
 
   // ---- setup
@@ -151,7 +107,14 @@ class Interpreter::Machine {
   [[noreturn]] void fail_at_end();
   bool has_more_words();
   void run_end(ReaderRule rule);
-  bool tolerates(ReaderRule rule, int column);
+  bool tolerates(ReaderRule rule, int column, const std::string& detail = {});
+  template <typename Action>
+  void with_place_of_fault(const Action& action);
+  void read_as_control();
+  void read_pending_line();
+  void look_for_points();
+  void warn_of_missing_points();
+  int original_column(int column) const;
   void execute();
   void run_block();
   void clear_output() {
@@ -186,6 +149,8 @@ class Interpreter::Machine {
   void call_subprogram(const std::string& name, const OWord& o);
   void enter_call(const std::string& name, const OWord& o, const LinePlace& return_to);
   void find_subroutine(const std::string& name);
+  void call_block(const LocalCall& call);  // M97
+  std::optional<LinePlace> place_of_block(int number);
   void leave_call();
   void repeat(const std::string& name, const OWord& o);
   void while_line(const std::string& name, const OWord& o);
@@ -242,6 +207,8 @@ class Interpreter::Machine {
   void cutter_compensation();
   void tool_length();
   void set_table_offset(bool is_added);
+  bool is_unknown_length(bool is_added, int number, int column);
+  void note_height();
   ToolControl tool_control_of(int code) const;
   void work_system();
   void work_plane();
@@ -308,9 +275,7 @@ class Interpreter::Machine {
   void stop_compensation();
   void refuse_code(Group group) const;
   void refuse_codes_under_compensation();
-  void warn(int column, std::string message) {
-    warnings_.push_back({{file(), line(), column}, std::move(message)});
-  }
+  void warn(int column, std::string message);
   void compensate(MoveKind kind, const PlaneMove& path, const AxisWords& end, double length,
                   double feed);
   void turn_corner(MoveKind kind, const PlaneMove& path, const AxisWords& end, double feed);
@@ -322,6 +287,8 @@ class Interpreter::Machine {
 
   void straight();
   void arc();
+  ArcCentre checked_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end,
+                           const Eigen::Vector2d& centre, const ArcTolerance& tolerance);
   ArcCentre arc_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end, bool clockwise);
   int arc_turns(bool clockwise) const;
 
@@ -334,6 +301,7 @@ class Interpreter::Machine {
     return request_.has(letter) ? request_.word(letter).column : request_.motion.column;
   }
   CycleHole cycle_hole(bool goes_on);
+  void require_known_level();
   double cycle_offsets(const CycleHole& hole, bool goes_on);
   int cycle_repeats(const CycleHole& hole) const;
   void cycle_move(MoveKind kind, const AxisWords& end);
@@ -358,6 +326,7 @@ class Interpreter::Machine {
 
   // ---- parameters that the system sets
   double system_number(int number) const;
+  void require_height(Axis axis, std::string_view name) const;
   std::optional<double> system_name(std::string_view name) const;
 
   std::deque<Text> texts_;  // the program and the files of its subroutines
@@ -366,6 +335,14 @@ class Interpreter::Machine {
   ToolTable tools_at_start_;  // G10 changes those of `setup_`
   Parameters parameters_;
   LineReader reader_;
+  BlockReading reading_;
+  std::deque<std::string> pending_lines_;  // of the block read last, as a control reads it
+  std::string pending_line_;               // that runs
+  std::size_t nth_line_ = 0;               // of those of the block
+  bool is_rewritten_ = false;              // `line_` is one of them
+  bool has_points_ = false;                // a length has a decimal point
+  std::optional<Place> pointless_;         // of the first length without one
+  double longest_pointless_ = 0.0;         // in program units
   std::set<ReaderRule> tolerated_;
   std::string_view line_;  // as it was read last
   LinePlace here_;         // where it begins

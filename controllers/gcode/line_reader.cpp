@@ -24,8 +24,11 @@ class LexicalRules {
 
   TolerantLine result() {
     control_characters();
+    long_comment();
     skip_blanks();
     if (at_ < text().size() && text()[at_] == '%') return percent_title(), std::move(line_);
+    if (sender_command()) return std::move(line_);
+    checksum();
     slashes();
     program_number();
     while (at_ < text().size()) item();
@@ -63,6 +66,43 @@ class LexicalRules {
       if ((byte >= 0x20 && byte != 0x7f) || text()[i] == '\t' || is_end) continue;
       if (apply(ReaderRule::control_characters, i)) text()[i] = ' ';
     }
+  }
+
+  // Requests for a report, which move nothing; $H and settings do.
+  bool sender_command() {
+    const std::size_t end = text().find_first_of(" \t;\r", at_);
+    const std::string request = text().substr(at_, end - at_);
+    constexpr std::array kRequests = {"$$", "$G", "$I", "$N", "$#", "?"};
+    const bool is_request = std::any_of(kRequests.begin(), kRequests.end(),
+                                        [&](const char* one) { return request == one; });
+    if (!is_request || !apply(WordRule::sender_command, at_)) return false;
+    blank(at_, std::min(end, text().size()));
+    return true;
+  }
+
+  // N10 G0 X1 *45
+  void checksum() {
+    const std::size_t last = text().find_last_not_of(" \t\r");
+    if (last == std::string::npos || !is_digit(text()[last])) return;
+    const std::size_t star = text().find_last_not_of("0123456789", last);
+    const bool is_checksum = star != std::string::npos && star > 0 && text()[star] == '*' &&
+                             text()[star - 1] != '*' && text().find_first_of("[#(;") == text().npos;
+    if (is_checksum && apply(WordRule::checksum, star)) blank(star, last + 1);
+  }
+
+  // Cuts a comment that goes beyond the longest line; what it says has no effect.
+  void long_comment() {
+    if (text().size() <= kLongestLine) return;
+    const std::size_t open = text().find_last_of("(;", kLongestLine - 2);
+    if (open == std::string::npos) return;
+    const bool is_line_comment = text()[open] == ';';
+    const std::size_t close = text().find_last_not_of(" \t\r");
+    const bool is_closed =
+        close != std::string::npos && text()[close] == ')' && text().find(')', open) == close;
+    if (!is_line_comment && !is_closed) return;
+    if (!apply(WordRule::long_comment, kLongestLine)) return;
+    text().resize(kLongestLine);
+    if (!is_line_comment) text().back() = ')';
   }
 
   void percent_title() {
@@ -117,7 +157,12 @@ class LexicalRules {
       block_number();
     } else if (is_fan_code()) {
       fan_code();
+    } else if (is_code('G', "187")) {
+      smoothness();
+    } else if (is_dwell_ && upper(c) == 'U' && apply(WordRule::dwell_word, at_)) {
+      text()[at_++] = 'X';
     } else if (is_letter(c)) {
+      is_dwell_ = is_dwell_ || is_code('G', "4") || is_code('G', "04");
       while (is_letter(at(at_))) ++at_;
       if (upper(at(at_ - 1)) == 'N' && is_digit(at(at_))) return;  // ... 1N20: never after a word
     } else {
@@ -135,12 +180,24 @@ class LexicalRules {
     if (seen_ && apply(ReaderRule::block_number_anywhere, begin)) blank(begin, at_);
   }
 
-  bool is_fan_code() const {
-    const std::string_view rest = std::string_view(text()).substr(at_);
-    const bool is_code =
-        upper(rest[0]) == 'M' && (rest.substr(1, 3) == "106" || rest.substr(1, 3) == "107");
-    return is_code && !is_digit(at(at_ + 4)) && at(at_ + 4) != '.';
+  bool is_code(char letter, std::string_view digits) const {
+    const std::size_t end = at_ + 1 + digits.size();
+    return upper(at(at_)) == letter && text().compare(at_ + 1, digits.size(), digits) == 0 &&
+           !is_digit(at(end)) && at(end) != '.';
   }
+
+  // G187 P E of Haas; E is a word of nothing else.
+  void smoothness() {
+    const std::size_t begin = at_;
+    at_ += 4;
+    for (skip_blanks(); upper(at(at_)) == 'P' || upper(at(at_)) == 'E'; skip_blanks()) {
+      at_ = digits_end(at_ + 1);
+      if (at(at_) == '.') at_ = digits_end(at_ + 1);
+    }
+    if (apply(WordRule::smoothing, begin)) blank(begin, at_);
+  }
+
+  bool is_fan_code() const { return is_code('M', "106") || is_code('M', "107"); }
 
   // With its S or P word, which would set the speed of the spindle.
   void fan_code() {
@@ -201,7 +258,8 @@ class LexicalRules {
   TolerantLine line_;
   Reader reader_;
   std::size_t at_ = 0;
-  bool seen_ = false;  // anything but a block number
+  bool seen_ = false;      // anything but a block number
+  bool is_dwell_ = false;  // G4 in the line
 };
 
 // Codes that the parser takes and no table holds.
@@ -227,6 +285,14 @@ TolerantLine tolerant_line(std::string_view line, Reader reader) {
 }
 
 std::string other_language(std::string_view line, int column) {
+  const bool is_report = line.starts_with("$$") || line.starts_with("$G") ||
+                         line.starts_with("$I") || line.starts_with("$N") ||
+                         line.starts_with("$#") || line.starts_with('?');
+  if (line.starts_with('$') && !is_report) {
+    return fmt::format(
+        "'{}' is a command of a sender to grbl or TinyG, no block; take the line out",
+        line.front());
+  }
   for (const std::string_view word : {"BEGIN PGM", "TOOL CALL", "CYCL DEF", "BLK FORM"}) {
     if (contains_word(line, word)) {
       return fmt::format("'{}' is Heidenhain conversational; --reader heidenhain reads it", word);
@@ -242,8 +308,18 @@ std::string other_language(std::string_view line, int column) {
     return fmt::format("'{}' is a word of Siemens' language; programs in G-code are read here",
                        word);
   }
+  for (const std::string_view word : {"GOTO", "IF", "WHILE", "END", "THEN"}) {
+    const std::size_t first = line.find_first_not_of("/N0123456789 \t");
+    if (first == std::string_view::npos || line.find(word) != first) continue;
+    if (is_letter(line[std::min(first + word.size(), line.size() - 1)])) continue;
+    return fmt::format(
+        "'{}' is a statement of Fanuc's macro language; LinuxCNC's O-words are read "
+        "here",
+        word);
+  }
   const auto at = static_cast<std::size_t>(column - 1);
-  if (column > 0 && at + 1 < line.size() && upper(line[at]) == 'E' &&
+  const bool is_smoothness = line.find("G187") != line.npos || line.find("g187") != line.npos;
+  if (column > 0 && !is_smoothness && at + 1 < line.size() && upper(line[at]) == 'E' &&
       (is_digit(line[at + 1]) || line[at + 1] == '-' || line[at + 1] == '.')) {
     return "an E word feeds the extruder of a printer; programs for milling are read here";
   }
@@ -262,6 +338,11 @@ void LineReader::parse(std::string_view& line, const std::string& file, int numb
     const std::string language = other_language(line, column);
     if (!language.empty()) throw InputError({file, number, column}, language);
     tolerant_ = tolerant_line(line, reader_);
+    if (tolerant_.applied.empty() && line.starts_with("//")) {
+      throw InputError({file, number, column},
+                       "'//' before words: a comment for some controls, a block that the operator "
+                       "may skip for others; write ( ) or ;");
+    }
     if (tolerant_.applied.empty()) throw;
   }
   parser_.parse(tolerant_.text, file, number, block, extent);

@@ -7,15 +7,9 @@
 #include <vector>
 
 #include "controllers/gcode/parser.h"
-#include "controllers/gcode/reader.h"
+#include "controllers/gcode/reader_rules.h"
 
 namespace servomill::controllers {
-
-/// A rule that a line needed, and the first column that needed it.
-struct AppliedRule {
-  ReaderRule rule;
-  int column = 0;
-};
 
 /// A line that LinuxCNC's rules accept and that means the same. Every character keeps its column.
 struct TolerantLine {

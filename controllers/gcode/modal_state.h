@@ -70,6 +70,8 @@ struct ModalState {
   double sin_rotation = 0.0;
   int work_system = 1;
   int tool_offset_number = 0;
+  bool is_length_unknown = false;  // of the tool offset in force, which then counts as 0
+  bool is_height_unknown = false;  // work coordinate Z, since such an offset was switched on or off
 
   ToolControl tool_control = ToolControl::none;         // by G43.4 and G43.5
   Eigen::Vector3d tool_axis = Eigen::Vector3d::Zero();  // k_W of G43.5; 0: none given yet

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string_view>
 #include <utility>
@@ -15,6 +16,8 @@
 namespace servomill::controllers {
 namespace {
 
+constexpr double kSpiralLimit = 0.5 * mm, kSpiralShare = 0.05;  // between the radii of an arc
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTurnsTol = 1e-3;       // as LinuxCNC, for P of an arc
 constexpr double kSlowestInverse = 0.1;  // mm, inch or deg per minute; as LinuxCNC
 
@@ -121,6 +124,7 @@ void Interpreter::Machine::straight() {
   if (!is_rapid) warn_of_leaning_tool();
   const AxisWords begin = state_.programmed();
   AxisWords end = programmed_end();
+  note_height();
   const double length = (end - begin).head<3>().norm();
   double angle = (end - begin).tail<3>().norm();
   const bool has_tool_axis = state_.tool_control == ToolControl::tool_axis;
@@ -175,13 +179,32 @@ ArcCentre Interpreter::Machine::arc_centre(const Eigen::Vector2d& start, const E
     fail(chosen.column, fmt::format("{} needs R, {} or {}", name(), letters[0], letters[1]));
   }
   Eigen::Vector2d centre(request()[letters[0]] * state_.unit, request()[letters[1]] * state_.unit);
-  if (!state_.is_centre_absolute) return centre_format(start, end, start + centre, tolerance);
+  if (!state_.is_centre_absolute) return checked_centre(start, end, start + centre, tolerance);
   for (const char c : letters) {
     if (!request().has(c)) {
       fail(chosen.column, fmt::format("{} needs {}: with G90.1 the centre is absolute", name(), c));
     }
   }
-  return centre_format(start, end, centre, tolerance);
+  return checked_centre(start, end, centre, tolerance);
+}
+
+// Controls differ in how far the radii of an arc may be apart: the spiral between them is read as
+// long as no reading of it can be farther from another than that.
+ArcCentre Interpreter::Machine::checked_centre(const Eigen::Vector2d& start,
+                                               const Eigen::Vector2d& end,
+                                               const Eigen::Vector2d& centre,
+                                               const ArcTolerance& tolerance) {
+  ArcCentre found = centre_format(start, end, centre, tolerance);
+  if (found.fault.empty() || setup_.reader == Reader::linuxcnc) return found;
+  const double r_start = (start - centre).norm(), r_end = (end - centre).norm();
+  const double difference = std::abs(r_start - r_end);
+  const double least = std::min(r_start, r_end);
+  const bool is_near =
+      least > tolerance.radius && difference <= kSpiralLimit && difference <= kSpiralShare * least;
+  if (!is_near) return found;
+  const std::string detail = fmt::format("; here by {:.4f} mm", difference / mm);
+  if (tolerates(WordRule::arc_radii, request().motion.column, detail)) found.fault.clear();
+  return found;
 }
 
 void Interpreter::Machine::arc() {
@@ -204,6 +227,7 @@ void Interpreter::Machine::arc() {
   const int n = state_.normal_axis;
   const AxisWords begin = state_.programmed();
   const AxisWords end = programmed_end();
+  note_height();
   const Eigen::Vector2d a = state_.in_plane(begin), b = state_.in_plane(end);
   const ArcCentre found = arc_centre(a, b, clockwise);
   if (!found.fault.empty()) {
@@ -255,12 +279,16 @@ void Interpreter::Machine::describe(Move& move, MoveKind kind) const {
   if (state_.plane && move.tool_control == ToolControl::none) {
     move.tool_control = ToolControl::work_plane;
   }
+  // neither is a number that anything may be computed from
+  if (state_.is_height_unknown) move.end[2] = kUnknown;
+  if (state_.is_height_unknown || state_.is_length_unknown) move.end_machine[2] = kUnknown;
 }
 
 void Interpreter::Machine::describe_arc(Move& move, const AxisWords& centre, int turns) const {
   move.arc = {state_.normal_axis, centre.head<3>(), turns};
   if (state_.plane) move.plane = std::make_shared<const WorkPlane>(state_.plane_in_workpiece());
   move.centre_machine = state_.to_machine(centre).head<3>();
+  if (std::isnan(move.end_machine[2])) move.centre_machine.z() = kUnknown;
 }
 
 void Interpreter::Machine::move_to(MoveKind kind, const AxisWords& end, double length,

@@ -32,6 +32,11 @@ std::string significant_text(double x) {
   return fixed_text(x, std::clamp(kSignificant - 1 - magnitude, 0, 30));
 }
 
+std::string dwell_block(double seconds) {
+  const std::string text = significant_text(seconds);
+  return fmt::format("G4 P{}{}", text, text.find('.') == std::string::npos ? "." : "");
+}
+
 std::string comment_text(std::string_view text) {
   std::string out;
   for (const char c : text.substr(0, kLongestText)) {

@@ -13,6 +13,9 @@ std::string fixed_text(double x, int decimals);
 /// With twelve significant digits at most.
 std::string significant_text(double x);
 
+/// "G4 P2.": with a decimal point, without which other controls count milliseconds.
+std::string dwell_block(double seconds);
+
 /// What may stand between '(' and ')': one line of at most 200 characters, brackets in place of
 /// parentheses.
 std::string comment_text(std::string_view text);

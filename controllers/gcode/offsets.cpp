@@ -5,6 +5,12 @@
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
+namespace {
+
+constexpr std::string_view kUnknownHeight =
+    "Z depends on the length of the tool, which is unknown; pass a tool table with --tools";
+
+}  // namespace
 
 void Interpreter::Machine::non_modal() {
   if (state_.controls_tip()) refuse_while_tip_is_controlled();
@@ -66,6 +72,7 @@ void Interpreter::Machine::set_work_offset(int system) {
 // The offset that makes the present position read as the words say.
 void Interpreter::Machine::set_current_position(int system) {
   if (request().has('R')) fail_at('R', "R word with G10 L20; only G10 L2 sets a rotation");
+  if (state_.is_height_unknown && has_axis(2)) fail_at('Z', std::string(kUnknownHeight));
   ModalState other = state_;
   for (int i = 0; i < kAxisWords; ++i) {
     other.work_offset[i] =
@@ -101,11 +108,13 @@ void Interpreter::Machine::go_home(int first_parameter) {
   const AxisWords home = state_.target_to_work(target);
   const bool some = has_any_axis();
   const AxisWords via = programmed_end();  // without axis words: where it stands
+  note_height();
   move_to(MoveKind::rapid, via, (via - state_.position).head<3>().norm(), 0.0);
   AxisWords end = state_.position;
   for (int i = 0; i < kAxisWords; ++i) {
     if (!some || has_axis(i)) end[i] = home[i];
   }
+  if (!some || has_axis(2)) state_.is_height_unknown = state_.is_length_unknown;
   move_to(MoveKind::rapid, end, (end - state_.position).head<3>().norm(), 0.0);
 }
 
@@ -128,6 +137,7 @@ void Interpreter::Machine::shift_position(bool is_g52) {
     fail(request().of(Group::g_non_modal).column,
          fmt::format("{} needs an axis word", is_g52 ? "G52" : "G92"));
   }
+  if (state_.is_height_unknown && has_axis(2)) fail_at('Z', std::string(kUnknownHeight));
   for (int i = 0; i < kAxisWords; ++i) {
     if (!has_axis(i)) continue;
     const double sum = state_.position[i] + state_.shift[i];

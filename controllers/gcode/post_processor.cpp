@@ -242,7 +242,7 @@ class Post {
   void emit(const ClRecord& record) {
     // no length, and no tip control above all, before X and Y are there
     if (record.kind == MoveKind::dwell && is_safe() && is_retracted_) {
-      return program_line("G4 P" + significant_text(record.value));
+      return program_line(dwell_block(record.value));
     }
     if (record.kind == MoveKind::spindle) runs_.direction = record.direction;
     if (record.kind == MoveKind::coolant) runs_.coolant = record.number;

@@ -84,7 +84,7 @@ class Printer {
         return print_motion(move);
       case MoveKind::dwell:
         print_modes(move);
-        return line(fmt::format("G4 P{}", significant_text(move.value)));
+        return line(dwell_block(move.value));
       case MoveKind::tool:
         return line(fmt::format("T{} M6", move.number));
       case MoveKind::spindle:

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "controllers/gcode/decimal_point.h"
 #include "controllers/gcode/program_text.h"
 #include "controllers/gcode/reader.h"
 #include "controllers/gcode/tool_table.h"
@@ -25,8 +26,14 @@ struct ProgramSetup {
   std::array<double, 9> work_rotation{};                  // about Z, rad
   int work_system = 1;  // in force at the start; 1 is G54. `stored` does not set it
   ToolTable tools;
-  int tool = 0;                         // in the spindle at the start; 0: none
-  Reader reader = Reader::linuxcnc;     // whose rules the text follows
+  int tool = 0;                                      // in the spindle at the start; 0: none
+  Reader reader = Reader::linuxcnc;                  // whose rules the text follows
+  DecimalPoint decimal_point = DecimalPoint::unset;  // not for the reader linuxcnc
+  std::optional<double> feed;  // m/s, of moves before any F; not for the reader linuxcnc
+  /// Work offsets of G54.1 P1 ... and G154 P1 ..., by P; m, rad.
+  std::map<int, AxisWords> additional_offsets;
+  /// Lengths of tools may be unknown: machine coordinates of such moves are not to be used.
+  bool accepts_unknown_lengths = false;
   AxisWords start = AxisWords::Zero();  // machine coordinates before the first block; m, rad
   bool block_delete = false;            // leave out the lines that start with '/'
   /// The file of a subroutine that the program calls and does not define: `o<name> call` asks for

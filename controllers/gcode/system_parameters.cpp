@@ -55,8 +55,19 @@ double Interpreter::Machine::system_number(int number) const {
   if (axis >= 0 && state_.compensation.is_on && !is_printing_) {
     fail(0, fmt::format("#{} with cutter compensation on: it is not known yet; G40 first", number));
   }
-  if (axis >= 0 && axis < kAxisWords) return state_.position[axis] / unit_of(axis_at(axis));
+  if (axis >= 0 && axis < kAxisWords) {
+    require_height(axis_at(axis), fmt::format("{}", number));
+    return state_.position[axis] / unit_of(axis_at(axis));
+  }
   return 0.0;
+}
+
+// Z with a tool of unknown length.
+void Interpreter::Machine::require_height(Axis axis, std::string_view name) const {
+  if (axis != Axis::Z || (!state_.is_height_unknown && !state_.is_length_unknown)) return;
+  fail(0, fmt::format("#{}: Z depends on the length of the tool, which is unknown; pass a tool "
+                      "table with --tools",
+                      name));
 }
 
 double Interpreter::Machine::feed_in_force() const {
@@ -73,12 +84,16 @@ std::optional<double> Interpreter::Machine::system_name(std::string_view name) c
   if (name.size() < 2 || name[0] != '_') return std::nullopt;
   if (name.size() == 2) {
     if (const auto axis = axis_of(name[1])) {
+      require_height(*axis, name);
       return state_.position[index_of(*axis)] / unit_of(*axis);
     }
     if (name[1] >= 'u' && name[1] <= 'w') return 0.0;  // axes that there are not
   }
   if (name.size() == 6 && name.starts_with("_abs_")) {
-    if (const auto axis = axis_of(name[5])) return machine_now(0)[index_of(*axis)] / unit_of(*axis);
+    if (const auto axis = axis_of(name[5])) {
+      require_height(*axis, name);
+      return machine_now(0)[index_of(*axis)] / unit_of(*axis);
+    }
   }
   using Read = double (*)(const Machine&);
   // sorted by name. Source: LinuxCNC 2.9, "Predefined Named Parameters"

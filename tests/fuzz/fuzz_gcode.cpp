@@ -49,9 +49,24 @@ std::size_t faults_of(std::string_view text, const controllers::ProgramSetup& se
   return faults;
 }
 
+// What other controls accept, as they read it: no law but those of faults_of.
+void read_as_controls(std::string_view text) {
+  auto setup = setup_for(text);
+  for (const auto reader : {controllers::Reader::any, controllers::Reader::fanuc}) {
+    setup.reader = reader;
+    setup.decimal_point = reader == controllers::Reader::fanuc
+                              ? controllers::DecimalPoint::increments
+                              : controllers::DecimalPoint::unset;
+    setup.feed = 5e-3;
+    setup.additional_offsets[1] = setup.work_offset[1];
+    faults_of(text, setup);
+  }
+}
+
 }  // namespace
 
 void run(std::string_view text) {
+  read_as_controls(text);
   const auto setup = setup_for(text);
   const std::size_t faults = faults_of(text, setup);
   if (text.size() > kMostChecked) return;

@@ -1,14 +1,18 @@
 // What is read beyond LinuxCNC's rules: each rule with a program that needs it and one that does
 // not and means the same; nothing is read in silence, and nothing that two controls read
 // differently.
-#include "controllers/gcode/reader.h"
+#include "controllers/gcode/reader_rules.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
 
 #include "controllers/gcode/canon_json.h"
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/line_reader.h"
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
 namespace {
@@ -18,10 +22,13 @@ struct Read {
   std::vector<Fault> warnings;
 };
 
-Read read(const std::string& text, Reader reader) {
+Read read(const std::string& text, Reader reader, ProgramSetup setup = {}) {
   Read out;
-  ProgramSetup setup;
   setup.reader = reader;
+  const bool counts_increments = reader == Reader::fanuc || reader == Reader::haas;
+  if (counts_increments && setup.decimal_point == DecimalPoint::unset) {
+    setup.decimal_point = DecimalPoint::calculator;
+  }
   try {
     Interpreter interpreter(text, "p.nc", setup);
     while (const Move* move = interpreter.next()) out.moves += canon_json(*move) + "\n";
@@ -40,7 +47,35 @@ struct Example {
   ReaderRule rule;
   std::string tolerant, plain;  // with the same moves in the same lines
   std::string place;            // of the warning
+  ProgramSetup setup = {};
+  Reader reader = Reader::any;  // another one where `any` finds two readings
 };
+
+ProgramSetup with_tools() {
+  ProgramSetup setup;
+  setup.tools = ToolTable::parse("T1 P1 Z10 D2\nT2 P2 Z20 D4\n", "tools.tbl");
+  return setup;
+}
+
+ProgramSetup with_feed() {
+  ProgramSetup setup;
+  setup.feed = 100.0 * mm_per_min;
+  return setup;
+}
+
+ProgramSetup with_additional_offset() {
+  ProgramSetup setup;
+  setup.additional_offsets[3] = (AxisWords() << 10.0 * mm, 0, 0, 0, 0, 0).finished();
+  return setup;
+}
+
+ProgramSetup with_unknown_lengths() {
+  ProgramSetup setup;
+  setup.accepts_unknown_lengths = true;
+  return setup;
+}
+
+const std::string kCycle = "G0 Z5.\nG99 G81 X1. Z-2. R1. F100.\n";
 
 const std::vector<Example>& examples() {
   using enum ReaderRule;
@@ -64,6 +99,70 @@ const std::vector<Example>& examples() {
       {tool_without_table, "T5 M6\nG0 X1\nM2\n", "", "p.nc:1:1"},
       {fan_code, "M106 S255\nG0 X1\nM107\nM2\n", ";\nG0 X1\nM2\n", "p.nc:1:1"},
       {fan_code, "G0 X1 m106p1.5\nM2\n", "G0 X1\nM2\n", "p.nc:1:7"},
+      {WordRule::long_comment, "(" + std::string(300, 'x') + ")\nG0 X1.\nM2\n", ";\nG0 X1\nM2\n",
+       "p.nc:1:253"},
+      {WordRule::dwell_word, "G4 X2.5\nM2\n", "G4 P2.5\nM2\n", "p.nc:1:4"},
+      {WordRule::dwell_word, "G04 U1.5\nM2\n", "G4 P1.5\nM2\n", "p.nc:1:5"},
+      {WordRule::given_feed, "G1 X1.\nM2\n", "G1 X1 F100\nM2\n", "p.nc:1:1", with_feed()},
+      // radii of 5.04 and 4.96 mm
+      {WordRule::arc_radii, "G0 X0. Y0.\nG2 X10. Y0. I5.04 F100.\nM2\n", "", "p.nc:2:1"},
+      {WordRule::repeated_group, "G90 G17 G18 G17 G0 X1.\nM2\n", "G90 G17 G0 X1\nM2\n", "p.nc:1:9"},
+      {WordRule::home_with_motion, "G0 G28 X1.\nX2.\nM2\n", "G28 X1\nG0 X2\nM2\n", "p.nc:1:1"},
+      {WordRule::second_home_number, "G30 P2 X1.\nM2\n", "G30 X1\nM2\n", "p.nc:1:5"},
+      {WordRule::homing_cycle, "G0 X1. Y2.\nG28.2 X0. Y0.\nM2\n",
+       "G0 X1 Y2\nG53 G0 X0\nG53 G0 Y0\nM2\n", "p.nc:2:1"},
+      {WordRule::additional_work_offset, "G54.1 P3\nG0 X1. Y2.\nM2\n", "G0 X11 Y2\nM2\n",
+       "p.nc:1:1", with_additional_offset()},
+      {WordRule::additional_work_offset, "G154 P3 G0 X1.\nG54\nX1.\nM2\n", "G0 X11\nX1\nM2\n",
+       "p.nc:1:1", with_additional_offset()},
+      {WordRule::cycle_repeats, "G0 Z5.\nG91 G99 G81 X1. Z-2. R-1. K3 F100.\nM2\n",
+       "G0 Z5\nG91 G99 G81 X1 Z-2 R-1 L3 F100\nM2\n", "p.nc:2:27"},
+      {WordRule::cycle_without_hole, "G0 Z5.\nG99 G81 X1. Z-2. R1. L0 F100.\nX3.\nM2\n",
+       "G0 Z5\nG99 F100\nG81 X3 Z-2 R1\nM2\n", "p.nc:2:22"},
+      {WordRule::cycle_memory, kCycle + "G85 X3.\nM2\n",
+       "G0 Z5\nG99 G81 X1 Z-2 R1 F100\nG85 X3 Z-2 R1\nM2\n", "p.nc:3:1"},
+      {WordRule::cycle_without_dwell, "G0 Z5.\nG99 G82 X1. Z-2. R1. F100.\nM2\n",
+       "G0 Z5\nG99 G82 X1 Z-2 R1 P0 F100\nM2\n", "p.nc:2:5"},
+      {WordRule::fine_boring, "M3 S100\nG0 Z5.\nG99 G76 X1. Z-2. R1. Q0.1 P0 F100.\nX3.\nM2\n",
+       "M3 S100\nG0 Z5\nG99 G86 X1 Z-2 R1 P0 F100\nX3\nM2\n", "p.nc:3:5"},
+      {WordRule::tapping_spindle, "S100\nG0 Z5.\nG99 G84 X1. Z-2. R1. F100.\nM2\n",
+       "S100\nG0 Z5\nM3 G99 G84 X1 Z-2 R1 F100\nM2\n", "p.nc:3:5"},
+      {WordRule::words_with_g80, kCycle + "G80 X3.\nM2\n",
+       "G0 Z5\nG99 G81 X1 Z-2 R1 F100\nG0 X3\nM2\n", "p.nc:3:1"},
+      {WordRule::motion_behind_cycle, kCycle + "G80\nX3.\nM2\n",
+       "G0 Z5\nG99 G81 X1 Z-2 R1 F100\nG80\nG0 X3\nM2\n", "p.nc:4:1"},
+      {WordRule::modal_diameter_offset, "D1\nG41 G1 X10. F100.\nG40 X20.\nM2\n",
+       "G41 D1 G1 X10 F100\nG40 X20\nM2\n", "p.nc:1:1", with_tools()},
+      {WordRule::modal_length_offset, "G43 H1\nH2\nG0 Z1.\nM2\n", "G43 H1\nG43 H2\nG0 Z1\nM2\n",
+       "p.nc:2:1", with_tools()},
+      {WordRule::unknown_length, "G43 H1\nG0 Z1.\nM2\n", "", "p.nc:1:1", with_unknown_lengths()},
+      {WordRule::subprogram_repeats,
+       "M98 P20100\nM2\nO100\nG0 X1.\nM99\n",
+       "M98 P100 L2\nM2\nO100\nG0 X1\nM99\n",
+       "p.nc:1:5",
+       {},
+       Reader::fanuc},
+      {WordRule::call_with_words, "G0 X2. M98 P100\nM2\nO100\nX1.\nM99\n",
+       "G0 X2\nM98 P100\nM2\nO100\nX1\nM99\n", "p.nc:1:8"},
+      {WordRule::local_subprogram, "M97 P100\nM2\nN100 G0 X1.\nM99\n", "G0 X1\nM2\n", "p.nc:1:1"},
+      {WordRule::local_subprogram, "G91 G0\nM97 P100 L3\nM2\nN100 X1.\nM99\n",
+       "G91 G0\nX1\nX1\nX1\nM2\n", "p.nc:2:1"},
+      {WordRule::smoothing, "G5.1 Q1\nG05 P10000\nG187 P1 E0.01\nG0 X1.\nM2\n", "G0 X1\nM2\n",
+       "p.nc:1:1"},
+      {WordRule::machine_function, "M88\nM29 S100\nM19 P90\nG0 X1.\nM2\n", "S100\nM5\nG0 X1\nM2\n",
+       "p.nc:1:1"},
+      {WordRule::polar_coordinates, "G16\nG0 X10. Y90.\nG91 Y90.\nG90 G15\nM2\n",
+       "G0 X0 Y10\nX-10 Y0\nM2\n", "p.nc:1:1"},
+      {WordRule::scaling, "G51 X0. Y0. Z0. P2.\nG0 X1. Y2.\nG50\nX1.\nM2\n", "G0 X2 Y4\nX1\nM2\n",
+       "p.nc:1:1"},
+      {WordRule::mirror_image, "G51.1 X0.\nG1 X1. Y2. F100.\nG2 X2. Y3. I1. J0.\nG50.1 X0.\nM2\n",
+       "G1 X-1 Y2 F100\nG3 X-2 Y3 I-1 J0\nM2\n", "p.nc:1:1"},
+      {WordRule::unit_codes, "G70\nG0 X1.\nG71 X1.\nM2\n", "G20\nG0 X1\nG21 X1\nM2\n", "p.nc:1:1"},
+      {WordRule::sender_command, "$G ; modes\n?\nG0 X1.\nM2\n", "G0 X1\nM2\n", "p.nc:1:1"},
+      {WordRule::checksum, "N1 G0 X1. *45\nM2\n", "G0 X1\nM2\n", "p.nc:1:11"},
+      {percent_title, "(PART)\n%\nG0 X1.\n%\n", "%\nG0 X1\n%\n", "p.nc:2:1"},
+      {WordRule::home_with_motion, "G0 G92 X1.\nX2.\nM2\n", "G92 X1\nG0 X2\nM2\n", "p.nc:1:1"},
+      {WordRule::rotation, "G68 X0. Y0. R90.\nG0 X1. Y0.\nG69\nM2\n", "G0 X0 Y1\nM2\n", "p.nc:1:1"},
   };
   return all;
 }
@@ -76,18 +175,53 @@ std::string without_lines(std::string moves) {
   return moves;
 }
 
+// The programs are short: many hold no decimal point at all.
+std::vector<Fault> without_missing_points(std::vector<Fault> warnings) {
+  std::erase_if(warnings, [](const Fault& one) {
+    return one.message.starts_with("no length of the program has a decimal point");
+  });
+  return warnings;
+}
+
 TEST(ReaderRules, AreReadAsTheirPlainFormAndReportedOnce) {
   for (const Example& one : examples()) {
     SCOPED_TRACE(one.tolerant);
-    const Read tolerant = read(one.tolerant, Reader::any);
+    const Read tolerant = read(one.tolerant, one.reader, one.setup);
     EXPECT_EQ(tolerant.refusal, "");
-    ASSERT_EQ(tolerant.warnings.size(), 1u);
-    EXPECT_EQ(to_string(tolerant.warnings[0].place), one.place);
-    EXPECT_EQ(tolerant.warnings[0].message, sentence(one.rule));
+    const std::vector<Fault> warnings = without_missing_points(tolerant.warnings);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(to_string(warnings[0].place), one.place);
+    EXPECT_TRUE(warnings[0].message.starts_with(sentence(one.rule))) << warnings[0].message;
     if (one.plain.empty()) continue;
-    const Read plain = read(one.plain, Reader::linuxcnc);
+    const Read plain = read(one.plain, Reader::linuxcnc, one.setup);
     EXPECT_EQ(plain.refusal, "");
     EXPECT_EQ(without_lines(tolerant.moves), without_lines(plain.moves));
+  }
+}
+
+// What whoever rewrites programs gets to see is LinuxCNC's language.
+TEST(ReaderRules, AreGivenOutAsLinesForLinuxCnc) {
+  const std::set<ReaderRule> others = {
+      ReaderRule::tool_without_table, WordRule::arc_radii,        WordRule::unknown_length,
+      ReaderRule::percent_title,      WordRule::local_subprogram, ReaderRule::percent_at_end,
+      WordRule::subprogram_repeats,   WordRule::call_with_words};  // these are unrolled
+  for (const Example& one : examples()) {
+    if (others.contains(one.rule)) continue;
+    SCOPED_TRACE(one.tolerant);
+    ProgramSetup setup = one.setup;
+    setup.reader = one.reader;
+    if (one.reader == Reader::fanuc) setup.decimal_point = DecimalPoint::calculator;
+    Interpreter interpreter(one.tolerant, "p.nc", setup);
+    std::string lines;
+    while (const auto block = interpreter.next_block()) {
+      const bool is_call = block->block != nullptr && block->block->o_word.flow != Flow::none;
+      if (!is_call && !block->text.empty()) lines += std::string(block->text) + "\n";
+    }
+    const Read written = read(lines, Reader::linuxcnc, one.setup);
+    EXPECT_EQ(written.refusal, "") << lines;
+    EXPECT_EQ(without_lines(written.moves),
+              without_lines(read(one.tolerant, one.reader, one.setup).moves))
+        << lines;
   }
 }
 
@@ -96,7 +230,9 @@ TEST(ReaderRules, AreRefusedByLinuxCncAndByReadersWithoutThem) {
     SCOPED_TRACE(one.tolerant);
     for (std::size_t k = 0; k < kReaders.size(); ++k) {
       const auto reader = static_cast<Reader>(k);
-      EXPECT_EQ(refusal(one.tolerant, reader).empty(), has_rule(reader, one.rule)) << kReaders[k];
+      if (one.reader != Reader::any && reader == Reader::any) continue;
+      EXPECT_EQ(read(one.tolerant, reader, one.setup).refusal.empty(), has_rule(reader, one.rule))
+          << kReaders[k];
     }
     EXPECT_FALSE(has_rule(Reader::linuxcnc, one.rule));
   }
@@ -122,7 +258,7 @@ TEST(Reader, ProgramsForLinuxCncAreReadAlikeByAll) {
     if (static_cast<Reader>(k) == Reader::heidenhain) continue;  // another language
     const Read other = read(program, static_cast<Reader>(k));
     EXPECT_EQ(other.moves, moves) << kReaders[k];
-    EXPECT_TRUE(other.warnings.empty()) << kReaders[k];
+    EXPECT_TRUE(without_missing_points(other.warnings).empty()) << kReaders[k];
   }
 }
 
@@ -135,7 +271,8 @@ TEST(Reader, TwoReadingsAreRefused) {
   EXPECT_EQ(refusal("G0 (a (b) X10)\nM2\n"), "p.nc:1:7: error: comment within a comment");
   // a control with block skip off would move
   EXPECT_EQ(refusal("// G0 X1\nM2\n"),
-            "p.nc:1:2: error: unexpected '/'; a word starts with one of ABCDFGHIJKLMPQRSTXYZ@^");
+            "p.nc:1:2: error: '//' before words: a comment for some controls, a block that the "
+            "operator may skip for others; write ( ) or ;");
 }
 
 TEST(Reader, ATextThatEndsInASubroutineIsNoProgram) {
@@ -165,13 +302,35 @@ TEST(Reader, AnUnknownToolIsRefusedWhereItsDataCount) {
   EXPECT_EQ(refusal("T5 M6\nG43\nM2\n"),
             "p.nc:2: error: T5: length and diameter of tool 5 are unknown; pass a tool table with "
             "--tools");
-  EXPECT_EQ(refusal("T5 M6\nG41\nG1 X1 F100\nM2\n"),
-            "p.nc:2:1: error: G41: the diameter of tool 5 is unknown; pass a tool table with "
-            "--tools");
+  EXPECT_EQ(
+      refusal("T5 M6\nG41 D5\nG1 X1 F100\nM2\n"),
+      "p.nc:2:5: error: D5: length and diameter of tool 5 are unknown; pass a tool table with "
+      "--tools");
   EXPECT_EQ(refusal("T5 M6\nG0 X#5403\nM2\n"),
             "p.nc:2: error: #5403: length and diameter of tool 5 are unknown; pass a tool table "
             "with --tools");
   EXPECT_EQ(refusal("T5 M6\nG41.1 D6\nG1 X10 F100\nM2\n"), "");
+}
+
+// Work coordinates count from the part, machine coordinates from the tip of a tool of no known
+// length.
+TEST(Reader, WhatDependsOnAnUnknownLengthIsNull) {
+  const std::string moves = read("G0 X1. Z9.\nG43 H1\nX2.\nZ5.\nG53 G0 Z0.\nG49\nX3.\nZ7.\nM2\n",
+                                 Reader::any, with_unknown_lengths())
+                                .moves;
+  const auto rapid = [](int line, const std::string& end, const std::string& machine) {
+    return "{\"t\":\"rapid\",\"line\":" + std::to_string(line) + ",\"end\":" + end +
+           ",\"mend\":" + machine + "}\n";
+  };
+  EXPECT_EQ(moves, rapid(1, "[1,0,9,0,0,0]", "[1,0,9,0,0,0]") +
+                       rapid(3, "[2,0,null,0,0,0]", "[2,0,null,0,0,0]") +
+                       rapid(4, "[2,0,5,0,0,0]", "[2,0,null,0,0,0]") +
+                       rapid(5, "[2,0,null,0,0,0]", "[2,0,null,0,0,0]") +
+                       rapid(7, "[3,0,null,0,0,0]", "[3,0,null,0,0,0]") +
+                       rapid(8, "[3,0,7,0,0,0]", "[3,0,7,0,0,0]") + "{\"t\":\"end\",\"line\":9}\n");
+  EXPECT_EQ(read("G43 H1\nG0 X#5422\nM2\n", Reader::any, with_unknown_lengths()).refusal,
+            "p.nc:2: error: #5422: Z depends on the length of the tool, which is unknown; pass a "
+            "tool table with --tools");
 }
 
 TEST(Reader, ATableThatLacksTheNumberShowsASlip) {
@@ -201,7 +360,7 @@ TEST(Reader, OtherLanguagesAreRefusedByName) {
 TEST(TolerantLine, KeepsEveryColumn) {
   for (const Example& one : examples()) {
     const std::string line = one.tolerant.substr(0, one.tolerant.find('\n'));
-    EXPECT_EQ(tolerant_line(line, Reader::any).text.size(), line.size());
+    EXPECT_EQ(tolerant_line(line, Reader::any).text.size(), std::min(line.size(), kLongestLine));
     EXPECT_EQ(tolerant_line(line, Reader::linuxcnc).text, line);
   }
 }

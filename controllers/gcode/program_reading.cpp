@@ -1,0 +1,366 @@
+// Lines of a program, one after the other: what they are, and the block that runs.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "controllers/gcode/interpreter_machine.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr std::string_view kMisplacedPercent =
+    "'%' ends a program only if another '%' is its first line";
+constexpr std::string_view kPercentInside =
+    "Fanuc ends the program at this '%', other controls go on behind it; choose with --reader";
+constexpr std::string_view kNoEnd = "the program ends without M2, M30 or a closing '%'";
+
+}  // namespace
+
+bool Interpreter::Machine::read_block() {
+  block_.clear();
+  is_rewritten_ = false;
+  if (!pending_lines_.empty()) return with_place_of_fault([this] { read_pending_line(); }), true;
+  here_ = {text_, text().mark()};
+  const bool is_there = text().next(line_);
+  for (Fault& one : text().take_warnings()) warnings_.push_back(std::move(one));
+  if (!is_there) return end_of_text(), true;
+  if (text().is_generated()) return read_generated_line(), true;
+  if (is_blank(line_)) return true;
+  if (flow_.jumps > 0) ++flow_.lines;
+  with_place_of_fault([this] { flow_.skip_to ? read_skipped_line() : read_executed_line(); });
+  return true;
+}
+
+// Faults name the column in the line as written, and the calls that are under way.
+template <typename Action>
+void Interpreter::Machine::with_place_of_fault(const Action& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    if (flow_.calls.empty() && !is_rewritten_) throw;
+    Fault fault = error.faults().front();
+    if (is_rewritten_) fault.place.column = original_column(fault.place.column);
+    if (!flow_.calls.empty()) fault.message += call_stack();
+    throw InputError({fault});
+  }
+}
+
+// A line that another language's block became, as LinuxCNC reads it: faults are at that block, and
+// show the line.
+void Interpreter::Machine::read_generated_line() {
+  const std::size_t before = warnings_.size();
+  try {
+    reader_.parse(line_, file(), line(), block_);
+    texts_[text_].percent.saw_line();
+    execute();
+  } catch (const InputError& error) {
+    throw InputError({file(), line(), text().column()},
+                     fmt::format("read as \"{}\": {}", line_, error.faults().front().message));
+  }
+  for (std::size_t i = before; i < warnings_.size(); ++i) {
+    warnings_[i].place.column = text().column();
+  }
+}
+
+void Interpreter::Machine::read_executed_line() {
+  reader_.parse(line_, file(), line(), block_);
+  for (const AppliedRule& one : reader_.applied()) tolerates(one.rule, one.column);
+  if (block_.percent) return saw_percent();
+  const bool is_strict = setup_.reader == Reader::linuxcnc;
+  const bool is_comment = block_.words.empty() && block_.assignments.empty() &&
+                          block_.o_word.flow == Flow::none && !block_.deleted;
+  if (is_comment && !is_strict && texts_[text_].percent.saw_nothing()) {
+    texts_[text_].has_title = true;
+    return execute();
+  }
+  texts_[text_].percent.saw_line();
+  if (block_.deleted) return;
+  if (!is_strict && !has_points_) look_for_points();
+  is_strict || !reading_.concerns(block_, state_) ? execute() : read_as_control();
+}
+
+// What a control reads in another way than LinuxCNC runs as the lines that say it to LinuxCNC.
+void Interpreter::Machine::read_as_control() {
+  const bool is_other = reading_.read(line_, file(), block_, state_, [this](const Value& value) {
+    return evaluate(value, block_, parameters_, file());
+  });
+  for (const AppliedRule& one : reading_.applied()) tolerates(one.rule, one.column, one.detail);
+  nth_line_ = 0;
+  if (is_other) {
+    pending_lines_.assign(reading_.lines().begin(), reading_.lines().end());
+    return read_pending_line();
+  }
+  try {
+    execute();
+  } catch (const InputError&) {
+    reading_.roll_back();
+    throw;
+  }
+}
+
+// Nothing in a program without a single decimal point tells lengths in millimetres from lengths in
+// increments.
+void Interpreter::Machine::look_for_points() {
+  constexpr std::string_view kLengths = "XYZIJKR";
+  std::size_t nth = 0;
+  for (const Piece& piece : block_.pieces) {
+    if (piece.kind != PieceKind::word) continue;
+    const Word& word = block_.words[nth++];
+    if (kLengths.find(word.letter) == std::string_view::npos || word.value.number == 0.0) continue;
+    const auto begin = static_cast<std::size_t>(piece.begin);
+    const std::string_view written =
+        line_.substr(begin, static_cast<std::size_t>(piece.end) - begin);
+    has_points_ = has_points_ || !word.value.is_constant() || written.find('.') != written.npos;
+    if (!pointless_) pointless_ = Place{file(), line(), word.column};
+    longest_pointless_ = std::max(longest_pointless_, std::abs(word.value.number));
+  }
+}
+
+void Interpreter::Machine::warn_of_missing_points() {
+  if (setup_.reader != Reader::any || setup_.decimal_point != DecimalPoint::unset) return;
+  if (has_points_ || !pointless_) return;
+  // small numbers of a program that LinuxCNC takes as it stands are what they are there
+  constexpr double kIncrements = 1000.0;
+  if (tolerated_.empty() && longest_pointless_ < kIncrements) return;
+  warnings_.push_back(
+      {*pointless_,
+       "no length of the program has a decimal point: read in millimetres, inches or degrees "
+       "(LinuxCNC, grbl, Mach); Fanuc and Haas may read increments of 0.001 mm; choose with "
+       "--decimal-point or --reader"});
+}
+
+void Interpreter::Machine::read_pending_line() {
+  is_rewritten_ = true;
+  pending_line_ = std::move(pending_lines_.front());
+  pending_lines_.pop_front();
+  line_ = pending_line_;
+  try {
+    reader_.parse(line_, file(), line(), block_);
+    execute();
+  } catch (const InputError&) {
+    pending_lines_.clear();
+    reading_.roll_back();
+    throw;
+  }
+  if (!pending_lines_.empty()) {
+    ++nth_line_;
+  } else if (reading_.local_call()) {
+    call_block(*reading_.local_call());
+  }
+}
+
+int Interpreter::Machine::original_column(int column) const {
+  return reading_.original_column(nth_line_, column);
+}
+
+void Interpreter::Machine::warn(int column, std::string message) {
+  if (is_rewritten_) column = original_column(column);
+  warnings_.push_back({{file(), line(), column}, std::move(message)});
+}
+
+// Only the line with the right label ends the skipping; it is then read in full.
+void Interpreter::Machine::read_skipped_line() {
+  reader_.parse(line_, file(), line(), block_, Parser::Extent::flow_only);
+  if (block_.percent) {
+    if (!texts_[text_].percent.is_framed()) return block_.clear();
+    return saw_percent();
+  }
+  texts_[text_].percent.saw_line();
+  if (block_.deleted || !may_end_skipping(block_.o_word)) return block_.clear();
+  reader_.parse(line_, file(), line(), block_, Parser::Extent::flow_value);
+  execute();
+}
+
+bool Interpreter::Machine::may_end_skipping(const OWord& o) const {
+  switch (o.flow) {
+    case Flow::none:
+    case Flow::call:
+    case Flow::m98:
+    case Flow::m99:
+      return false;
+    case Flow::unknown:
+      return !flow_.defining;  // to be refused
+    case Flow::sub:
+    case Flow::program:
+      return flow_.defining || label_of(o) == *flow_.skip_to;
+    case Flow::endsub:
+    case Flow::return_:
+      return label_of(o) == *flow_.skip_to;
+    default:
+      return !flow_.defining && label_of(o) == *flow_.skip_to;
+  }
+}
+
+void Interpreter::Machine::saw_percent() {
+  const Percent meaning = texts_[text_].percent.saw_percent();
+  if (meaning == Percent::start && texts_[text_].has_title &&
+      !tolerates(ReaderRule::percent_title, 1)) {
+    fail(1, std::string(kMisplacedPercent));
+  }
+  if (meaning == Percent::misplaced) {
+    if (!has_rule(setup_.reader, ReaderRule::percent_at_end) || flow_.skip_to || text_ != 0) {
+      fail(1, std::string(kMisplacedPercent));
+    }
+    if (setup_.reader == Reader::any && has_more_words()) fail(1, std::string(kPercentInside));
+    return run_end(ReaderRule::percent_at_end);
+  }
+  if (meaning != Percent::end) return;
+  if (flow_.skip_to || text_ != 0) fail_at_end();
+  ended_ = true;
+  warn_of_missing_points();
+}
+
+// The text ends although the program does not.
+void Interpreter::Machine::end_of_text() {
+  const bool is_empty = texts_[0].percent.saw_nothing();
+  const bool is_main = !is_empty && !flow_.skip_to && flow_.calls.empty() && text_ == 0;
+  if (!is_main || !has_rule(setup_.reader, ReaderRule::end_of_text)) fail_at_end();
+  run_end(ReaderRule::end_of_text);
+}
+
+// M2 in place of a line, so that writers of programs see it.
+void Interpreter::Machine::run_end(ReaderRule rule) {
+  tolerates(rule, 0);
+  line_ = "M2";
+  reader_.parse(line_, file(), line(), block_);
+  execute();
+}
+
+bool Interpreter::Machine::has_more_words() {
+  const ProgramText::Mark here = text().mark();
+  bool found = false;
+  for (std::string_view next; !found && text().next(next);) {
+    found = next.find_first_not_of(" \t\r%") != std::string_view::npos;
+  }
+  text().go_to(here);
+  return found;
+}
+
+// Checks that the reader has the rule, and reports its first use.
+bool Interpreter::Machine::tolerates(ReaderRule rule, int column, const std::string& detail) {
+  if (!has_rule(setup_.reader, rule)) return false;
+  if (tolerated_.insert(rule).second) warn(column, sentence(rule) + detail);
+  return true;
+}
+
+void Interpreter::Machine::fail_at_end() {
+  ended_ = true;
+  std::string message(kNoEnd);
+  if (flow_.skips_to_sub) {
+    message = fmt::format("no subroutine O<{0}> up to here, which line {1} calls{2}",
+                          *flow_.skip_to, flow_.skip_from,
+                          text_ == flow_.calls.back().return_to.text
+                              ? fmt::format(", and no file {}.ngc", *flow_.skip_to)
+                              : "");
+    flow_.calls.pop_back();  // it has not begun
+  } else if (flow_.skip_to) {
+    const std::string label = flow_.skip_to->substr(flow_.skip_to->find('#') + 1);
+    message =
+        fmt::format("the program ends while it skips to O{} from line {}", label, flow_.skip_from);
+  }
+  fail(0, message + call_stack());
+}
+
+// "; in O<hole>, called in part.ngc:12" for every call that is under way.
+std::string Interpreter::Machine::call_stack() const {
+  std::string text;
+  for (auto call = flow_.calls.rbegin(); call != flow_.calls.rend(); ++call) {
+    const std::string& from = texts_[call->return_to.text].lines.file();
+    text += fmt::format("{} O<{}>, called in {}:{}", text.empty() ? "; in" : ", in", call->name,
+                        from, call->line);
+  }
+  return text;
+}
+
+void Interpreter::Machine::execute() {
+  before_ = state_;
+  const std::size_t moves_before = out_.size();
+  try {
+    block_.o_word.flow == Flow::none ? run_block() : run_flow();
+  } catch (const InputError&) {
+    state_ = before_;
+    parameters_.roll_back();
+    out_.erase(out_.begin() + static_cast<std::ptrdiff_t>(moves_before), out_.end());
+    throw;
+  }
+  parameters_.commit();
+}
+
+void Interpreter::Machine::run_block() {
+  const bool has_vectors = state_.tool_control == ToolControl::tool_axis;
+  resolve(block_, parameters_, state_.motion, has_vectors, file(), request_);
+  assign_parameters();
+  const std::uint64_t asked =
+      kAlways | request_.letters | std::uint64_t{request_.groups} << kLetters;
+  for (const Step& step : kSteps) {
+    if ((step.due & asked) != 0) (this->*step.run)();
+  }
+}
+
+std::optional<ExecutedBlock> Interpreter::Machine::next_block() {
+  clear_output();
+  if (ended_) return std::nullopt;
+  reader_.keep_pieces(true);
+  request_.clear();
+  new_numbers_.clear();
+  const std::size_t read_from = text_;
+  ExecutedBlock out;
+  out.call_depth = static_cast<int>(flow_.calls.size());
+  read_block();
+  out.text = line_;
+  out.moves = out_;
+  out.file = &texts_[read_from].lines.file();
+  const bool is_generated = texts_[read_from].lines.is_generated();  // many lines of one block
+  out.line = is_generated ? texts_[read_from].lines.number() : here_.mark.line + 1;
+  out.is_repeated = out.line + (is_generated ? 1 : 0) <= texts_[read_from].last_line;
+  texts_[read_from].last_line = std::max(texts_[read_from].last_line, out.line);
+  out.state = &state_;
+  if (block_.pieces.empty()) return out;
+  out.block = &block_;
+  const bool has_words = block_.o_word.flow == Flow::none && !block_.percent && !block_.deleted;
+  if (has_words) out.request = &request_;
+  out.assigned = new_numbers_;
+  return out;
+}
+
+// All right-hand sides are read before the first parameter changes.
+void Interpreter::Machine::assign_parameters() {
+  if (block_.assignments.empty()) return;
+  new_numbers_.clear();
+  for (Assignment& a : block_.assignments) {
+    const double value = evaluate(a.value, block_, parameters_, file());
+    int number = 0;
+    if (a.name < 0) {
+      const double index = evaluate(a.index, block_, parameters_, file());
+      number = parameter_number(index, {file(), block_.line, a.column});
+      if (parameter::is_read_only(number)) {
+        fail(a.column, fmt::format("parameter #{} is read-only", number));
+      }
+    }
+    new_numbers_.emplace_back(number, value);
+  }
+  for (std::size_t i = 0; i < new_numbers_.size(); ++i) {
+    const Assignment& a = block_.assignments[i];
+    if (a.name < 0) {
+      parameters_.set(new_numbers_[i].first, new_numbers_[i].second);
+      continue;
+    }
+    const std::string& name = block_.names[static_cast<std::size_t>(a.name)];
+    if (system_name(name)) fail(a.column, fmt::format("parameter #<{}> is read-only", name));
+    parameters_.set(name, new_numbers_[i].second);
+  }
+}
+
+int Interpreter::Machine::integer(char letter, double tolerance) const {
+  const double value = request_[letter];
+  const double nearest = std::round(value);
+  if (!(std::abs(value - nearest) <= tolerance) || std::abs(nearest) > 1e9) {
+    fail_at(letter, fmt::format("{}{}; must be an integer", letter, value));
+  }
+  return static_cast<int>(nearest);
+}
+
+}  // namespace servomill::controllers

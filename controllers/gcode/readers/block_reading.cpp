@@ -1,0 +1,227 @@
+#include "controllers/gcode/readers/block_reading.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "controllers/gcode/modal_groups.h"
+#include "controllers/gcode/readers/reading_step.h"
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr std::uint32_t bits(std::string_view letters) {
+  std::uint32_t out = 0;
+  for (const char letter : letters) out |= word_bit(letter);
+  return out;
+}
+constexpr std::uint32_t kOffsets = bits("DH"), kAxisWordBits = bits("XYZABC@^"),
+                        kPlaces = kAxisWordBits | bits("IJKR");
+
+// Codes of LinuxCNC that another control reads differently, or with other words.
+bool is_special(char letter, int tenths) {
+  constexpr std::array kG = {40, 100, 280, 281, 300, 301, 410, 420, 430, 530, 690, 921, 980, 990};
+  constexpr std::array kM = {500, 510, 520, 530, 980};
+  return letter == 'G' ? std::find(kG.begin(), kG.end(), tenths) != kG.end()
+                       : std::find(kM.begin(), kM.end(), tenths) != kM.end();
+}
+
+// Codes of a block, as far as they tell that no rule concerns it.
+struct PlainCodes {
+  bool are_plain = true;
+  int motion = -1;  // tenths
+  std::uint32_t groups = 0;
+
+  void add(const Word& word) {
+    const int tenths = word.value.is_constant() ? tenths_of(word.value.number) : -1;
+    const Code* code = find_code(word.letter, tenths);
+    if (code == nullptr || !code->supported || is_special(word.letter, tenths)) {
+      are_plain = false;
+      return;
+    }
+    const std::uint32_t group = 1U << static_cast<unsigned>(code->group);
+    if (word.letter == 'G' && (groups & group) != 0) are_plain = false;
+    groups |= group;
+    // G92 beside a motion code
+    const auto both = 1U << static_cast<unsigned>(Group::g_motion) |
+                      1U << static_cast<unsigned>(Group::g_non_modal);
+    if ((groups & both) == both) are_plain = false;
+    if (code->group == Group::g_motion) motion = tenths;
+  }
+};
+
+bool concerns_call(const Block& block) {
+  constexpr double kFiveDigits = 1e4;
+  return std::any_of(block.words.begin(), block.words.end(), [](const Word& word) {
+    return word.letter == 'P' && word.value.is_constant() && word.value.number >= kFiveDigits;
+  });
+}
+
+}  // namespace
+
+BlockReading::BlockReading(const ReadingOptions& options,
+                           std::map<int, AxisWords> additional_offsets)
+    : options_(options) {
+  memory_.additional_offsets = std::move(additional_offsets);
+}
+
+bool BlockReading::concerns(const Block& block, const ModalState& state) const {
+  if (block.words.empty() || block.deleted) return false;
+  if (block.o_word.flow != Flow::none)
+    return block.o_word.flow == Flow::m98 && concerns_call(block);
+  const bool reads_all = options_.reader == Reader::fanuc || options_.reader == Reader::haas ||
+                         options_.decimal_point != DecimalPoint::unset;
+  if (reads_all || memory_.has_any_mode()) return true;
+  PlainCodes codes;
+  std::uint32_t letters = 0;
+  for (const Word& word : block.words) {
+    if (word.letter == 'G' || word.letter == 'M') {
+      codes.add(word);
+    } else {
+      letters |= word_bit(word.letter);
+    }
+  }
+  const int motion = codes.motion >= 0 ? codes.motion : state.motion;
+  if (!codes.are_plain || (letters & kOffsets) != 0 || is_canned_cycle(motion)) return true;
+  if ((letters & kPlaces) == 0) return codes.motion == 800;
+  const bool lacks_feed = motion > 0 && state.feed_linear == 0.0;
+  return motion == 800 || lacks_feed || (letters & word_bit('S')) != 0;
+}
+
+bool BlockReading::read(std::string_view line, const std::string& file, const Block& block,
+                        const ModalState& state, const Evaluate& evaluate) {
+  before_ = memory_;
+  applied_.clear();
+  lines_.clear();
+  local_call_.reset();
+  words_.emplace(line, block, evaluate);
+  ReadingStep step(*this, *words_, state, file, block);
+  try {
+    step.run();
+  } catch (const InputError&) {
+    roll_back();
+    throw;
+  }
+  if (!words_->is_changed() && step.before.empty() && step.behind.empty()) return false;
+  lines_ = std::move(step.before);
+  edited_line_ = lines_.size();
+  lines_.push_back(words_->text());
+  lines_.insert(lines_.end(), step.behind.begin(), step.behind.end());
+  cause_column_ = applied_.empty() ? 0 : applied_.front().column;
+  return true;
+}
+
+int BlockReading::original_column(std::size_t nth_line, int column) const {
+  if (nth_line != edited_line_ || !words_) return cause_column_;
+  return words_->original_column(column);
+}
+
+// ------------------------------------------------------------------------------------ one block
+
+void ReadingStep::run() {
+  if (block_.o_word.flow == Flow::m98) return subprograms();
+  unit_codes();
+  decimal_points();
+  repeated_groups();
+  refused_codes();
+  machine_functions();
+  smoothing();
+  call_behind_words();
+  local_call();
+  dwell();
+  frame_codes();
+  inputs();
+  presets();
+  machine_coordinates();
+  homing_cycle();
+  length_offset();
+  diameter_offset();
+  if (has_unknown_code()) return;  // which is then what is wrong with the block
+  cycles();
+  home();
+  motion_in_force();
+  feed();
+  laser_power();
+  frames();
+}
+
+bool ReadingStep::apply(ReaderRule rule, int column, std::string detail) {
+  if (!has_rule(options.reader, rule)) return false;
+  reading_.applied_.push_back({rule, column, std::move(detail)});
+  return true;
+}
+
+void ReadingStep::need(ReaderRule rule, int column) {
+  if (apply(rule, column)) return;
+  const ReaderRuleEntry& entry = reader_rules()[static_cast<std::size_t>(rule)];
+  fail(column, fmt::format("{}: the reader {} does not read it ({}: {})", entry.found,
+                           kReaders[static_cast<std::size_t>(options.reader)], entry.controls,
+                           entry.reading));
+}
+
+int ReadingStep::choose(WordDifference difference, int column) const {
+  const std::optional<int> chosen = reading_of(difference, options.reader);
+  if (!chosen) fail(column, both_readings(difference));
+  return *chosen;
+}
+
+void ReadingStep::fail(int column, std::string message) const {
+  throw InputError({file_, block_.line, column}, std::move(message));
+}
+
+int ReadingStep::motion_code() const {
+  int out = -1;
+  for (const BlockWord& word : words.all()) {
+    if (word.letter != 'G' || word.is_erased) continue;
+    const int tenths = tenths_of(word.value);
+    const Code* code = find_code('G', tenths);
+    const bool is_motion = code != nullptr && code->group == Group::g_motion;
+    if (is_motion && (out < 0 || tenths != 800)) out = tenths;
+  }
+  return out;
+}
+
+int ReadingStep::motion_in_block() const {
+  const int code = motion_code();
+  if (code >= 0) return code;
+  return memory.pending_motion >= 0 ? memory.pending_motion : state.motion;
+}
+
+bool ReadingStep::has_unknown_code() const {
+  return std::any_of(words.all().begin(), words.all().end(), [](const BlockWord& word) {
+    const bool is_code = (word.letter == 'G' || word.letter == 'M') && !word.is_erased;
+    return is_code && find_code(word.letter, tenths_of(word.value)) == nullptr;
+  });
+}
+
+bool ReadingStep::has_axis_taker() const {
+  for (const BlockWord& word : words.all()) {
+    if (word.letter != 'G' || word.is_erased) continue;
+    const Code* code = find_code('G', tenths_of(word.value));
+    if (code != nullptr && code->uses_axes && code->group != Group::g_motion) return true;
+  }
+  return false;
+}
+
+int ReadingStep::normal_axis() const {
+  constexpr std::array<std::pair<int, int>, 3> kPlanes = {{{170, 2}, {180, 1}, {190, 0}}};
+  for (const auto& [tenths, axis] : kPlanes) {
+    if (words.has_code('G', tenths)) return axis;
+  }
+  return state.normal_axis;
+}
+
+bool ReadingStep::is_incremental() const {
+  if (words.has_code('G', 900)) return false;
+  return words.has_code('G', 910) || state.is_incremental;
+}
+
+double ReadingStep::unit() const {
+  if (words.has_code('G', 200)) return inch;
+  return words.has_code('G', 210) ? mm : state.unit;
+}
+
+}  // namespace servomill::controllers

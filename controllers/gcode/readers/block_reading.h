@@ -1,0 +1,98 @@
+/// Blocks as a control reads them: what LinuxCNC refuses, or would read in another way, becomes a
+/// block, or several, that say the same to LinuxCNC. So the interpreter knows one language only,
+/// and whoever writes the program again writes it in full.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "controllers/gcode/block.h"
+#include "controllers/gcode/decimal_point.h"
+#include "controllers/gcode/modal_state.h"
+#include "controllers/gcode/reader_rules.h"
+#include "controllers/gcode/readers/block_words.h"
+#include "controllers/gcode/readers/differences.h"
+#include "controllers/gcode/readers/plane_frame.h"
+
+namespace servomill::controllers {
+
+/// What the user says of the control.
+struct ReadingOptions {
+  Reader reader = Reader::any;
+  DecimalPoint decimal_point = DecimalPoint::unset;
+  std::optional<double> feed;  // m/s, of moves before any F
+};
+
+/// Words of canned cycles that a control keeps until G80, in program units.
+struct KeptCycle {
+  std::array<std::optional<double>, 4> values;  // of R, the normal axis, P (s) and Q
+  bool is_incremental = false;                  // the mode that they were given in
+};
+
+/// Modes of a control that LinuxCNC does not have.
+struct ReadingMemory {
+  int pending_motion = -1;        // tenths of a motion code that LinuxCNC's state lacks; -1: none
+  bool is_pending_known = false;  // why was said
+  int motion_before_cycle = -1;   // G0 ... G3, group 01, while a cycle is in force
+  bool is_in_cycle = false;
+  KeptCycle cycle;
+  bool has_retract_mode = false;                         // G98 or G99 was read
+  std::optional<double> diameter_offset, length_offset;  // D, H before the block that uses them
+  PlaneFrame frame;
+  PolarMode polar;
+  std::map<int, AxisWords> additional_offsets;  // of G54.1, by P
+  int power_changes = 0;                        // feeds that change S without an M code
+  bool has_any_mode() const {
+    return pending_motion >= 0 || is_in_cycle || frame.is_active() || polar.is_on;
+  }
+};
+
+/// M97 P L of the block.
+struct LocalCall {
+  int block_number = 0;
+  int repeats = 1;
+  int column = 0;
+};
+
+class BlockReading {
+ public:
+  using Evaluate = BlockWords::Evaluate;
+
+  BlockReading(const ReadingOptions& options, std::map<int, AxisWords> additional_offsets);
+
+  /// Returns false for the many blocks that no rule of a control concerns.
+  bool concerns(const Block& block, const ModalState& state) const;
+
+  /// Reads a block. `lines`, `applied` and `local_call` are about this block.
+  /// @param line  that the block, with its pieces, was parsed from
+  /// @return true if `lines` take its place
+  /// @throws InputError for what two controls read differently, and for what none can be simulated
+  bool read(std::string_view line, const std::string& file, const Block& block,
+            const ModalState& state, const Evaluate& evaluate);
+
+  const std::vector<std::string>& lines() const { return lines_; }
+  const std::vector<AppliedRule>& applied() const { return applied_; }
+  const std::optional<LocalCall>& local_call() const { return local_call_; }
+  /// Column in the line as written.
+  int original_column(std::size_t nth_line, int column) const;
+  /// Forgets what the block read last has changed, because it failed.
+  void roll_back() { memory_ = before_; }
+
+ private:
+  friend class ReadingStep;
+
+  ReadingOptions options_;
+  ReadingMemory memory_, before_;
+  std::vector<std::string> lines_;
+  std::size_t edited_line_ = 0;  // of `lines_`; the others are all the work of a rule
+  int cause_column_ = 0;         // of those
+  std::optional<BlockWords> words_;
+  std::vector<AppliedRule> applied_;
+  std::optional<LocalCall> local_call_;
+};
+
+}  // namespace servomill::controllers

@@ -1,0 +1,171 @@
+// Canned cycles in the forms of Fanuc and Haas.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "controllers/gcode/readers/reading_step.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr int kFineBoring = 760, kBoring = 860, kBackBoring = 870;
+
+bool is_cycle_of_controls(int tenths) { return tenths == kFineBoring || is_canned_cycle(tenths); }
+// What LinuxCNC runs in place of it.
+int strict_code(int tenths) { return tenths == kFineBoring ? kBoring : tenths; }
+bool has_dwell(int tenths) {
+  return tenths == 820 || tenths == kBoring || tenths == 880 || tenths == 890;
+}
+bool is_tapping(int tenths) { return tenths == 740 || tenths == 840; }
+bool is_pecking(int tenths) { return tenths == 730 || tenths == 830; }
+
+enum Kept : std::size_t { kR, kBottom, kP, kQ };
+
+}  // namespace
+
+char ReadingStep::normal_letter() const { return "XYZ"[normal_axis()]; }
+
+void ReadingStep::cycles() {
+  if (words.has_code('G', 980) || words.has_code('G', 990)) memory.has_retract_mode = true;
+  const int explicit_code = motion_code();
+  const bool continues =
+      explicit_code < 0 && memory.is_in_cycle && words.has_axis() && !has_axis_taker();
+  const int code = explicit_code >= 0           ? explicit_code
+                   : memory.pending_motion >= 0 ? memory.pending_motion
+                                                : state.motion;
+  if (explicit_code >= 0 ? !is_cycle_of_controls(code)
+                         : !continues || !is_cycle_of_controls(code)) {
+    return;
+  }
+  if (explicit_code >= 0) begin_cycle(code);
+  if (code == kFineBoring) fine_boring();
+  const int strict = strict_code(code);
+  cycle_words(strict);
+  cycle_dwell(strict);
+  cycle_repeats(code);
+  if (!words.has_axis()) return;
+  retract_mode();
+  tapping(strict);
+}
+
+void ReadingStep::begin_cycle(int code) {
+  if (!memory.is_in_cycle) {
+    memory.motion_before_cycle = memory.pending_motion >= 0 && memory.pending_motion <= 30
+                                     ? memory.pending_motion
+                                 : state.motion <= 30 ? state.motion
+                                                      : -1;
+  }
+  memory.is_in_cycle = true;
+  memory.pending_motion = -1;
+  const BlockWord& word = *words.code('G', code);
+  if (code == kBackBoring && words.has('Q')) {
+    fail(word.column,
+         "G87 with Q: back boring by an oriented spindle is not simulated; use G87 I J "
+         "K of LinuxCNC");
+  }
+  if (is_pecking(code) && (words.has('I') || words.has('J'))) {
+    fail(word.column, fmt::format("{} with I, J, K (Haas): pecks that become shorter are not "
+                                  "simulated; use Q",
+                                  code_name('G', code)));
+  }
+}
+
+// The shift by Q, or by I and J, moves the tool off the wall by some tenths of a millimetre; its
+// direction is a parameter of the control.
+void ReadingStep::fine_boring() {
+  BlockWord* code = words.code('G', kFineBoring);
+  if (code == nullptr) return;
+  if (!words.has('R') && !memory.cycle.values[kR]) {
+    fail(code->column,
+         "G76 without R: a thread of a lathe (LinuxCNC), or fine boring (Fanuc, "
+         "Haas), which needs R");
+  }
+  need(WordRule::fine_boring, code->column);
+  code->value = 86.0;
+  code->is_changed = true;
+  for (const char letter : {'Q', 'I', 'J'}) words.erase(letter);
+}
+
+// Words that the block lacks and another cycle gave; words that it gives are kept.
+void ReadingStep::cycle_words(int code) {
+  KeptCycle& kept = memory.cycle;
+  const std::array letters = {'R', normal_letter(), 'P', 'Q'};
+  const bool is_fresh = state.motion != code;
+  const bool is_same_mode = kept.is_incremental == is_incremental();
+  int column = words.all().front().column;
+  if (const BlockWord* word = words.code('G', code)) column = word->column;
+  for (const std::size_t k : {kR, kBottom, kP, kQ}) {
+    const bool uses = k < kP || (k == kP ? has_dwell(code) : is_pecking(code));
+    if (!uses || !is_fresh || words.has(letters[k]) || !kept.values[k]) continue;
+    if (k < kP && !is_same_mode) continue;
+    if (memory.pending_motion < 0) need(WordRule::cycle_memory, column);
+    words.add(letters[k], *kept.values[k], column);
+  }
+  for (const std::size_t k : {kR, kBottom, kQ}) {
+    if (words.has(letters[k])) kept.values[k] = words[letters[k]];
+  }
+  kept.is_incremental = is_incremental();
+}
+
+// In seconds.
+void ReadingStep::cycle_dwell(int code) {
+  const bool can_dwell = has_dwell(code) || is_tapping(code);
+  if (const BlockWord* P = words.find('P')) {
+    if (P->is_literal && !P->has_point && P->value != 0.0 && !P->is_changed) {
+      const bool is_in_seconds = choose(WordDifference::cycle_dwell_unit, P->column) == 0;
+      words.set('P', P->value * (is_in_seconds ? 1.0 : 1e-3));
+    }
+    memory.cycle.values[kP] = words['P'];
+    if (!can_dwell && words['P'] == 0.0) words.erase('P');
+    return;
+  }
+  if (!has_dwell(code) || state.motion == code || memory.cycle.values[kP]) return;
+  const BlockWord* word = words.code('G', code);
+  const int column = word != nullptr ? word->column : words.all().front().column;
+  need(WordRule::cycle_without_dwell, column);
+  words.add('P', 0.0, column);
+}
+
+// K of Fanuc is L of LinuxCNC; with 0 the words are kept only.
+void ReadingStep::cycle_repeats(int code) {
+  const bool is_back_boring = code == kBackBoring;
+  if (const BlockWord* K = is_back_boring ? nullptr : words.find('K')) {
+    const int column = K->column;
+    if (words.has('L')) fail(column, "K and L in one block: both repeat the cycle");
+    need(WordRule::cycle_repeats, column);
+    words.add('L', words['K'], column);
+    words.erase('K');
+  }
+  if (!words.has('L') || words['L'] != 0.0) return;
+  need(WordRule::cycle_without_hole, words.column('L'));
+  for (const char letter : {'X', 'Y', 'Z', 'R', 'P', 'Q', 'L'}) words.erase(letter);
+  if (BlockWord* word = words.code('G', strict_code(code))) words.erase(*word);
+  memory.pending_motion = strict_code(code);
+}
+
+// Where no G98 or G99 was read, and the tool is above R.
+void ReadingStep::retract_mode() {
+  if (memory.has_retract_mode || !words.has('R')) return;
+  const int n = normal_axis();
+  const double level =
+      state.cycle.has_level ? state.cycle.level : state.programmed()[n] / state.unit;
+  const double R = words['R'] + (is_incremental() ? level : 0.0);
+  constexpr double kSameLevel = 1e-9;
+  if (level <= R + kSameLevel) return;
+  const int column = words.column('R');
+  memory.has_retract_mode = true;
+  if (choose(WordDifference::retract_level, column) == 1) words.add('G', 98.0, column);
+}
+
+void ReadingStep::tapping(int code) {
+  if (!is_tapping(code) || state.spindle_direction != 0) return;
+  if (words.has_code('M', 30) || words.has_code('M', 40) || words.has_code('M', 50)) return;
+  const BlockWord* word = words.code('G', code);
+  const int column = word != nullptr ? word->column : words.all().front().column;
+  need(WordRule::tapping_spindle, column);
+  words.add('M', code == 840 ? 3.0 : 4.0, column);
+}
+
+}  // namespace servomill::controllers

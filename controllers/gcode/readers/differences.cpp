@@ -1,0 +1,149 @@
+#include "controllers/gcode/readers/differences.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+
+namespace servomill::controllers {
+namespace {
+
+constexpr std::uint8_t bit(Reader reader) {
+  return static_cast<std::uint8_t>(1U << static_cast<unsigned>(reader));
+}
+constexpr std::uint8_t kLinuxCnc = bit(Reader::linuxcnc), kFanuc = bit(Reader::fanuc),
+                       kHaas = bit(Reader::haas), kMach = bit(Reader::mach),
+                       kGrbl = bit(Reader::grbl);
+
+using enum WordDifference;
+
+constexpr auto kDifferences = std::to_array<WordDifferenceEntry>({
+    {dwell_unit,
+     "G4 P without a decimal point",
+     {{{"seconds", "LinuxCNC, grbl", kLinuxCnc | kGrbl},
+       {"milliseconds", "Fanuc, Haas", kFanuc | kHaas}}},
+     "",
+     "LinuxCNC 2.9, G4; Fanuc B-63944EN, dwell (G04). Mach has a setting for it"},
+    {dwell_increments,
+     "G4 X or U without a decimal point",
+     {{{"milliseconds", "Fanuc with increments", 0},
+       {"seconds", "Fanuc with calculator-type decimal points", 0}}},
+     "--decimal-point",
+     "Fanuc B-63944EN, dwell (G04), parameter 3401#0 (DPI)"},
+    {cycle_dwell_unit,
+     "P of a canned cycle without a decimal point",
+     {{{"seconds", "LinuxCNC, Mach", kLinuxCnc | kMach},
+       {"milliseconds", "Fanuc, Haas", kFanuc | kHaas}}},
+     "",
+     "LinuxCNC 2.9, G82; Fanuc B-63944EN, G82"},
+    {length_offset_zero,
+     "G43 H0",
+     {{{"the length of the tool in the spindle", "LinuxCNC", kLinuxCnc},
+       {"no length", "Fanuc, Haas, Mach", kFanuc | kHaas | kMach}}},
+     "",
+     "LinuxCNC 2.9, G43; Fanuc B-63944EN, tool length compensation: H0 is zero"},
+    {stored_home,
+     "G28.1",
+     {{{"stores the position for G28", "LinuxCNC, grbl, TinyG", kLinuxCnc | kGrbl},
+       {"homes axes", "Mach", kMach}}},
+     "",
+     "LinuxCNC 2.9, G28.1; Mach3 Mill G code reference, G28.1"},
+    {retract_level,
+     "a canned cycle from above R before any G98 or G99",
+     {{{"goes back to R", "LinuxCNC", kLinuxCnc},
+       {"goes back to the initial level", "Fanuc, Haas", kFanuc | kHaas}}},
+     "",
+     "LinuxCNC 2.9 (rs274 begins with G99); Fanuc B-63944EN, G98 is in force at power-on"},
+    {subprogram_digits,
+     "M98 P with more than four digits",
+     {{{"the number of a subprogram", "LinuxCNC, Haas", kLinuxCnc | kHaas},
+       {"repetitions, then four digits of the number", "Fanuc", kFanuc}}},
+     "",
+     "LinuxCNC 2.9, M98; Fanuc B-63944EN, subprogram call (M98)"},
+    {lone_machine_coordinates,
+     "G53 without axis words",
+     {{{"no effect", "Fanuc, Haas", kFanuc | kHaas},
+       {"machine coordinates until the next work offset", "controls with a modal G53", 0}}},
+     "",
+     "Fanuc B-63944EN, G53 is one-shot; a modal G53 from memory"},
+    {preset_words,
+     "G92.1 with axis words",
+     {{{"the G92 offset of all axes goes", "LinuxCNC", kLinuxCnc},
+       {"that of the axes named goes", "Fanuc", kFanuc}}},
+     "",
+     "LinuxCNC 2.9, G92.1; Fanuc B-63944EN, workpiece coordinate system preset"},
+    {missing_diameter_offset,
+     "G41 or G42 before any D",
+     {{{"the diameter of the tool in the spindle", "LinuxCNC, Mach", kLinuxCnc | kMach},
+       {"no compensation", "Fanuc, Haas", kFanuc | kHaas}}},
+     "",
+     "LinuxCNC 2.9, G41; Fanuc B-63944EN, cutter compensation: D0 at power-on"},
+    {tool_table_input,
+     "G10 L10 or L11",
+     {{{"sets a tool from the position", "LinuxCNC", kLinuxCnc},
+       {"sets a length offset to R", "Fanuc, Haas", kFanuc | kHaas}}},
+     "",
+     "LinuxCNC 2.9, G10; Fanuc B-63944EN, G10 L10 ... L13"},
+    {work_offset_input,
+     "G10 L20",
+     {{{"sets the offset so that the position reads as the words", "LinuxCNC, grbl",
+        kLinuxCnc | kGrbl},
+       {"sets an additional work offset (G54.1, G154)", "Fanuc, Haas", kFanuc | kHaas}}},
+     "",
+     "LinuxCNC 2.9, G10; Fanuc B-63944EN, G10 L20"},
+    {override_codes,
+     "M50 ... M53",
+     {{{"switches for overrides", "LinuxCNC", kLinuxCnc},
+       {"pallet change and outputs of the builder", "Haas, Fanuc", kHaas | kFanuc}}},
+     "",
+     "LinuxCNC 2.9, M50; Haas Mill operator's manual, M50 ... M58"},
+    {start_motion,
+     "axis words before any of G0, G1, G2, G3",
+     {{{"a rapid", "grbl, Haas", kGrbl | kHaas},
+       {"a rapid or a feed, as the control is set", "Fanuc, Mach", 0}}},
+     "",
+     "grbl 1.1, gcode.c; Fanuc B-63944EN, parameter 3402#0 (G01); Haas from memory"},
+    {decimal_point,
+     "a length or an angle without a decimal point",
+     {{{"in millimetres, inches or degrees", "calculator-type decimal points", 0},
+       {"in least input increments", "Fanuc and Haas with increments", 0}}},
+     "--decimal-point",
+     "Fanuc B-63944EN, decimal point programming, parameter 3401#0 (DPI); Haas setting 162"},
+    {scale_factor,
+     "P of G51 without a decimal point",
+     {{{"a factor", "Haas, Mach", kHaas | kMach}, {"thousandths", "Fanuc", kFanuc}}},
+     "",
+     "Fanuc B-63944EN, scaling: P in units of 0.001; Haas Mill operator's manual, G51"},
+});
+
+constexpr bool is_in_order() {
+  for (std::size_t i = 0; i < kDifferences.size(); ++i) {
+    if (static_cast<std::size_t>(kDifferences[i].difference) != i) return false;
+  }
+  return kDifferences.size() == static_cast<std::size_t>(WordDifference::count);
+}
+static_assert(is_in_order());
+
+const WordDifferenceEntry& entry(WordDifference difference) {
+  return kDifferences[static_cast<std::size_t>(difference)];
+}
+
+}  // namespace
+
+std::span<const WordDifferenceEntry> word_differences() { return kDifferences; }
+
+std::optional<int> reading_of(WordDifference difference, Reader reader) {
+  const auto& readings = entry(difference).readings;
+  for (int k = 0; k < 2; ++k) {
+    if ((readings[static_cast<std::size_t>(k)].readers & bit(reader)) != 0) return k;
+  }
+  return std::nullopt;
+}
+
+std::string both_readings(WordDifference difference) {
+  const WordDifferenceEntry& one = entry(difference);
+  return fmt::format("{}: {} ({}), or {} ({}); choose with {}", one.found, one.readings[0].text,
+                     one.readings[0].controls, one.readings[1].text, one.readings[1].controls,
+                     one.option.empty() ? "--reader" : one.option);
+}
+
+}  // namespace servomill::controllers

@@ -1,0 +1,123 @@
+// G28, G30, G53, G92.1 and G10: places of the machine and offsets.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "controllers/gcode/readers/reading_step.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers {
+
+// G0 G28 Z0: the axis words belong to G28.
+void ReadingStep::home() {
+  const BlockWord* G30 = words.code('G', 300);
+  const BlockWord* code = words.has_code('G', 280) ? words.code('G', 280)
+                          : G30 != nullptr         ? G30
+                                                   : words.code('G', 920);
+  if (words.has_code('G', 281)) {
+    if (choose(WordDifference::stored_home, words.code('G', 281)->column) == 0) return;
+    fail(words.code('G', 281)->column,
+         "G28.1: the search for the switches is not simulated; G53 names a place of the machine");
+  }
+  if (code == nullptr) return;
+  if (G30 != nullptr && words.has('P')) {
+    if (words['P'] != 2.0) {
+      fail(words.column('P'),
+           fmt::format("G30 P{}: the place is not in the program; use G53", words['P']));
+    }
+    need(WordRule::second_home_number, words.column('P'));
+    words.erase('P');
+  }
+  const int motion = motion_code();
+  if (motion < 0 || motion == 800) return;
+  need(WordRule::home_with_motion, words.code('G', motion)->column);
+  if (motion <= 30) leave_cycle();
+  words.erase(*words.code('G', motion));
+  memory.pending_motion = motion;
+  memory.is_pending_known = true;
+}
+
+// G28.2 X0 Y0: one axis after the other, Z first, to machine zero.
+void ReadingStep::homing_cycle() {
+  BlockWord* code = words.code('G', 282);
+  if (code == nullptr) return;
+  need(WordRule::homing_cycle, code->column);
+  for (const char axis : {'Z', 'X', 'Y', 'A', 'B', 'C'}) {
+    if (!words.has(axis)) continue;
+    behind.push_back(fmt::format("G90 G53 G0 {}0", axis));
+    words.erase(axis);
+  }
+  if (behind.empty()) fail(code->column, "G28.2 needs an axis word");
+  if (is_incremental()) behind.emplace_back("G91");
+  words.erase(*words.code('G', 282));
+  if (memory.pending_motion < 0 && state.motion <= 30) memory.pending_motion = state.motion;
+  memory.is_pending_known = true;
+}
+
+void ReadingStep::machine_coordinates() {
+  BlockWord* code = words.code('G', 530);
+  if (code == nullptr || words.has_axis()) return;
+  choose(WordDifference::lone_machine_coordinates, code->column);
+  words.erase(*code);
+}
+
+// G92.1 X0: of Fanuc the shift of the axes named goes, of LinuxCNC all of it.
+void ReadingStep::presets() {
+  BlockWord* code = words.code('G', 921);
+  if (code == nullptr || !words.has_axis()) return;
+  bool covers_all = true;
+  for (int i = 0; i < kAxisWords; ++i) {
+    const char axis = letter(kAllAxes[static_cast<std::size_t>(i)]);
+    if (words.has(axis) && words[axis] != 0.0) {
+      fail(words.column(axis), fmt::format("G92.1 {}{}; must be 0", axis, words[axis]));
+    }
+    covers_all = covers_all && (words.has(axis) || state.shift[i] == 0.0);
+  }
+  if (!covers_all && choose(WordDifference::preset_words, code->column) == 1) {
+    code->value = 52.0;
+    code->is_changed = true;
+    return;
+  }
+  for (const Axis axis : kAllAxes) words.erase(letter(axis));
+}
+
+// G10 L10 P H-number R: a length offset; G10 L20 P: an offset of G54.1.
+void ReadingStep::inputs() {
+  const BlockWord* code = words.code('G', 100);
+  if (code == nullptr || !words.has('L')) return;
+  const int L = static_cast<int>(std::lround(words['L']));
+  if (L == 10 || L == 11) {
+    if (choose(WordDifference::tool_table_input, words.column('L')) == 0) return;
+    if (L == 11 || is_incremental() || !words.has('R')) {
+      fail(words.column('L'),
+           "G10 L11 and G10 L10 under G91 add to an offset that is not known; "
+           "use G10 L10 under G90");
+    }
+    words.set('L', 1.0);
+    words.add('Z', words['R'], words.column('R'));
+    return words.erase('R');
+  }
+  if (L == 12 || L == 13) {
+    fail(words.column('L'), fmt::format("G10 L{}: whether R is a radius or a diameter is a "
+                                        "parameter of the control; use a tool table",
+                                        L));
+  }
+  if (L != 20 || choose(WordDifference::work_offset_input, words.column('L')) == 0) return;
+  if (!words.has('P') || is_incremental()) {
+    fail(words.column('L'), "G10 L20 of Fanuc needs P, and G90");
+  }
+  AxisWords& offset = memory.additional_offsets
+                          .try_emplace(static_cast<int>(std::lround(words['P'])), AxisWords::Zero())
+                          .first->second;
+  for (int i = 0; i < kAxisWords; ++i) {
+    const Axis axis = kAllAxes[static_cast<std::size_t>(i)];
+    if (!words.has(letter(axis))) continue;
+    offset[i] = words[letter(axis)] * (is_linear(axis) ? unit() : deg);
+    words.erase(letter(axis));
+  }
+  need(WordRule::additional_work_offset, code->column);
+  for (const char letter : {'P', 'L'}) words.erase(letter);
+  words.erase(*words.code('G', 100));
+}
+
+}  // namespace servomill::controllers

@@ -1,0 +1,85 @@
+// The motion code in force, and the feed.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "controllers/gcode/number_text.h"
+#include "controllers/gcode/readers/reading_step.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers {
+
+void ReadingStep::leave_cycle() {
+  memory.is_in_cycle = false;
+  memory.cycle = {};
+  memory.motion_before_cycle = memory.pending_motion = -1;
+  memory.is_pending_known = false;
+}
+
+// Groups 01 (G0 ... G3) and 09 (cycles) are apart on Fanuc, one group in LinuxCNC.
+void ReadingStep::motion_in_force() {
+  const int code = motion_code();
+  if (code >= 0 && code <= 30) return leave_cycle();
+  if (code > 30 && code != 800) return;
+  const bool has_words = words.has_axis() && !has_axis_taker();
+  if (code == 800) return cancel_cycle(has_words);
+  const bool is_known_to_linuxcnc = memory.pending_motion < 0 && state.motion != 800;
+  if (!has_words || is_known_to_linuxcnc) return;
+  const int column = words.all().front().column;
+  int motion = memory.pending_motion;
+  if (motion < 0) {
+    choose(WordDifference::start_motion, column);
+    motion = 0;
+  } else if (state.motion == 800 && motion <= 30) {
+    if (!memory.is_pending_known) need(WordRule::motion_behind_cycle, column);
+    refuse_arc_behind_cycle(motion, column);
+  }
+  words.add('G', motion / 10.0, column);
+  memory.pending_motion = -1;
+  if (motion <= 30) leave_cycle();
+}
+
+// G80, alone or with axis words.
+void ReadingStep::cancel_cycle(bool has_words) {
+  const int motion = memory.is_in_cycle           ? memory.motion_before_cycle
+                     : memory.pending_motion >= 0 ? memory.pending_motion
+                     : state.motion <= 30         ? state.motion
+                                                  : -1;
+  leave_cycle();
+  if (!has_words) {
+    memory.pending_motion = motion;
+    return;
+  }
+  BlockWord& code = *words.code('G', 800);
+  need(WordRule::words_with_g80, code.column);
+  if (motion < 0) choose(WordDifference::start_motion, code.column);
+  refuse_arc_behind_cycle(motion, code.column);
+  code.value = std::max(motion, 0) / 10.0;
+  code.is_changed = true;
+}
+
+void ReadingStep::refuse_arc_behind_cycle(int motion, int column) const {
+  if (motion <= 10) return;
+  fail(column, fmt::format("axis words behind G80 while {} is in force; write the code",
+                           code_name('G', motion)));
+}
+
+void ReadingStep::feed() {
+  const int motion = motion_in_block();
+  const bool moves = words.has_axis() || words.has('I') || words.has('J') || words.has('K');
+  const bool needs = motion > 0 && motion != 800 && moves && !has_axis_taker();
+  const bool is_other_mode = words.has_code('G', 930) || words.has_code('G', 950) ||
+                             state.feed_mode != FeedMode::units_per_minute;
+  if (!needs || words.has('F') || is_other_mode || state.feed_linear != 0.0) return;
+  const BlockWord* code = words.code('G', motion);
+  const int column = code != nullptr ? code->column : words.all().front().column;
+  if (!options.feed) {
+    fail(column, fmt::format("{} before any F: Mach goes on with the feed that it had last, other "
+                             "controls refuse it; write F, or give the feed with --feed",
+                             code_name('G', motion)));
+  }
+  if (!apply(WordRule::given_feed, column)) return;
+  words.add('F', *options.feed * minute / state.unit, column);
+}
+
+}  // namespace servomill::controllers

@@ -1,0 +1,113 @@
+/// One block on its way through the rules of a control. Private to block_reading.cpp and the files
+/// of the rules.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "controllers/gcode/modal_groups.h"
+#include "controllers/gcode/readers/block_reading.h"
+
+namespace servomill::controllers {
+
+class ReadingStep {
+ public:
+  ReadingStep(BlockReading& reading, BlockWords& block_words, const ModalState& modal_state,
+              const std::string& file, const Block& block)
+      : words(block_words),
+        state(modal_state),
+        memory(reading.memory_),
+        options(reading.options_),
+        file_(file),
+        block_(block),
+        reading_(reading) {}
+
+  /// All rules, one after the other.
+  void run();
+
+  BlockWords& words;
+  const ModalState& state;
+  ReadingMemory& memory;
+  const ReadingOptions& options;
+  std::vector<std::string> before, behind;  // lines around that of `words`
+
+ private:
+  // words_reading.cpp
+  void decimal_points();
+  void unit_codes();
+  void repeated_groups();
+  void machine_functions();
+  void smoothing();
+  void refused_codes();
+  void dwell();
+  // home_reading.cpp
+  void home();
+  void homing_cycle();
+  void machine_coordinates();
+  void presets();
+  void inputs();
+  // tool_reading.cpp
+  void length_offset();
+  void diameter_offset();
+  void laser_power();
+  // subprogram_reading.cpp
+  void subprograms();
+  void call_behind_words();
+  void local_call();
+  // motion_reading.cpp
+  void motion_in_force();
+  void cancel_cycle(bool has_words);
+  void leave_cycle();
+  void refuse_arc_behind_cycle(int motion, int column) const;
+  void feed();
+  // cycle_reading.cpp
+  void cycles();
+  void begin_cycle(int code);
+  void cycle_words(int code);
+  void cycle_dwell(int code);
+  void cycle_repeats(int code);
+  void fine_boring();
+  void retract_mode();
+  void tapping(int code);
+  char normal_letter() const;
+  // frame_reading.cpp
+  void frame_codes();
+  void frames();
+  void polar_mode();
+  void scaling();
+  void mirror();
+  void rotation();
+  void additional_offset();
+  void refuse_frame_change(const BlockWord& code) const;
+  void polar_words();
+  void frame_words();
+  void frame_centre();
+
+  /// Notes a rule that the block needs. False if the reader lacks it.
+  bool apply(ReaderRule rule, int column, std::string detail = {});
+  /// The same; a reader that lacks the rule refuses the word.
+  void need(ReaderRule rule, int column);
+  /// Which of two readings counts.
+  /// @throws InputError if the reader has neither
+  int choose(WordDifference difference, int column) const;
+  [[noreturn]] void fail(int column, std::string message) const;
+
+  /// Ten times the motion code of the block, or -1.
+  int motion_code() const;
+  /// ... or that in force.
+  int motion_in_block() const;
+  /// G4, G10, G28, G92, ...: takes axis words, or none are of a motion.
+  bool has_axis_taker() const;
+  bool has_unknown_code() const;
+  int normal_axis() const;
+  bool is_incremental() const;
+  double unit() const;
+
+  const std::string& file_;
+  const Block& block_;
+  BlockReading& reading_;
+};
+
+}  // namespace servomill::controllers

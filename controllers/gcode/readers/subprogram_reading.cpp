@@ -1,0 +1,60 @@
+// M98 and M97 as Fanuc and Haas have them.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "controllers/gcode/readers/reading_step.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr int kNumberDigits = 4;
+constexpr double kNumbers = 1e4;
+
+}  // namespace
+
+// M98 P00021001: twice subprogram 1001.
+void ReadingStep::subprograms() {
+  const BlockWord* P = words.find('P');
+  if (P == nullptr || !P->is_literal || P->digits <= kNumberDigits) return;
+  if (choose(WordDifference::subprogram_digits, P->column) == 0) return;
+  need(WordRule::subprogram_repeats, P->column);
+  const double repeats = std::floor(P->value / kNumbers);
+  const double number = P->value - repeats * kNumbers;
+  if (repeats == 0.0) return;
+  if (words.has('L')) fail(words.column('L'), "L beside repetitions in P");
+  words.set('P', number);
+  words.add('L', repeats, P->column);
+}
+
+// G0 X1 M98 P1000: the move, then the call.
+void ReadingStep::call_behind_words() {
+  BlockWord* code = words.code('M', 980);
+  if (code == nullptr) return;
+  if (!words.has('P')) fail(code->column, "M98 needs a P word, the number of a subprogram");
+  need(WordRule::call_with_words, code->column);
+  std::string call = fmt::format("M98 P{}", words['P']);
+  if (words.has('L')) call += fmt::format(" L{}", words['L']);
+  behind.push_back(std::move(call));
+  words.erase(*code);
+  words.erase('P');
+  words.erase('L');
+}
+
+void ReadingStep::local_call() {
+  BlockWord* code = words.code('M', 970);
+  if (code == nullptr) return;
+  need(WordRule::local_subprogram, code->column);
+  if (!words.has('P')) fail(code->column, "M97 needs a P word, the number of a block");
+  LocalCall call;
+  call.block_number = static_cast<int>(std::lround(words['P']));
+  call.repeats = words.has('L') ? static_cast<int>(std::lround(words['L'])) : 1;
+  call.column = code->column;
+  if (call.repeats < 1) fail(words.column('L'), "L must be at least 1");
+  reading_.local_call_ = call;
+  words.erase(*code);
+  words.erase('P');
+  words.erase('L');
+}
+
+}  // namespace servomill::controllers
