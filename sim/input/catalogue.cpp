@@ -4,6 +4,7 @@
 
 #include "controllers/conversational/conversational.h"
 #include "controllers/gcode/reader.h"
+#include "controllers/gcode/readers/differences.h"
 #include "sim/config/document.h"
 #include "sim/evaluation/comparison.h"
 #include "strategies/registry.h"
@@ -52,6 +53,11 @@ std::string describe_reader_rules() {
         "conversational: {}: {}\n  controls: {}\n  --reader: any, heidenhain\n"
         "  source: {}\n",
         reading.found, reading.reading, reading.controls, reading.source);
+  }
+  out += "\nread differently, and refused unless --reader or another option chooses:\n";
+  for (const controllers::WordDifferenceEntry& one : controllers::word_differences()) {
+    out +=
+        fmt::format("{}\n  source: {}\n", controllers::both_readings(one.difference), one.source);
   }
   return out;
 }

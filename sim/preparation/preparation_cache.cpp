@@ -155,7 +155,8 @@ void add(MemoKey& key, const plant::ErrorModel& errors) {
 
 void add(MemoKey& key, const controllers::ProgramSetup& setup) {
   const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, reader,
-               start, block_delete, subroutine_file, most_jumps, machine] = setup;
+               decimal_point, feed, additional_offsets, accepts_unknown_lengths, start,
+               block_delete, subroutine_file, most_jumps, machine] = setup;
   key.add(stored.size());
   for (const auto& [number, value] : stored) {
     key.add(number);
@@ -172,6 +173,14 @@ void add(MemoKey& key, const controllers::ProgramSetup& setup) {
   add(key, tools);
   key.add(tool);
   key.add(static_cast<int>(reader));
+  key.add(static_cast<int>(decimal_point));
+  key.add(feed.value_or(0.0));
+  key.add(additional_offsets.size());
+  for (const auto& [number, offset] : additional_offsets) {
+    key.add(number);
+    key.add(offset);
+  }
+  key.add(accepts_unknown_lengths);
   key.add(start);
   key.add(block_delete);
   key.add(most_jumps);  // texts of subroutines are of the program

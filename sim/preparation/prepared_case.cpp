@@ -68,11 +68,12 @@ MoveList through_text(const std::vector<Move>& rewritten, const Scenario& scenar
     if (axis) options.axes += letter(*axis);
   }
   text = controllers::print_program(rewritten, options, header_of(scenario, spec)).text;
+  controllers::ProgramSetup setup = controllers::conversational::gcode_setup(
+      controllers::ProgramText::of_text(scenario.program.text, scenario.program.file),
+      setup_of(scenario, spec));
+  setup.reader = controllers::Reader::linuxcnc;  // for which it is written
   controllers::Interpreter interpreter(
-      text, fmt::format("{} as rewritten for case {}", scenario.program.file, spec.name),
-      controllers::conversational::gcode_setup(
-          controllers::ProgramText::of_text(scenario.program.text, scenario.program.file),
-          setup_of(scenario, spec)));
+      text, fmt::format("{} as rewritten for case {}", scenario.program.file, spec.name), setup);
   MoveList read;
   auto original = rewritten.begin();
   const auto next_motion = [&] {

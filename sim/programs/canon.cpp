@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <span>
 
 #include "controllers/gcode/canon_json.h"
 #include "controllers/gcode/cl_data.h"
@@ -17,6 +18,7 @@
 #include "sim/input/subroutine_files.h"
 #include "sim/model/scenario.h"
 #include "sim/preparation/prepared_case.h"
+#include "sim/programs/compensate/work_knowledge.h"
 #include "sim/run/run.h"
 #include "sim/sweep/sweep.h"
 #include "sim/system/read_file.h"
@@ -68,12 +70,29 @@ bool holds_cutter_locations(std::string_view path) {
   return path.ends_with(".cls") || path.ends_with(".apt") || path.ends_with(".csv");
 }
 
-controllers::Reader reader_of(const std::string& name) {
-  const auto reader = controllers::reader_named(name);
-  if (reader) return *reader;
-  throw InputError({"--reader " + name},
-                   fmt::format("must be one of {}{}", fmt::join(controllers::kReaders, ", "),
-                               did_you_mean(name, controllers::kReaders)));
+// Index of a name among those of an option.
+std::size_t chosen(const std::string& option, const std::string& name,
+                   std::span<const std::string_view> names) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  throw InputError({option + " " + name}, fmt::format("must be one of {}{}", fmt::join(names, ", "),
+                                                      did_you_mean(name, names)));
+}
+
+// "P3:X=10,Y=5"
+void add_additional_offset(const std::string& text, controllers::ProgramSetup& setup) {
+  const std::string option = "--additional-offset";
+  const std::size_t colon = text.find(':');
+  const double P = text.starts_with('P') && colon != std::string::npos
+                       ? number_of(text.substr(1, colon - 1))
+                       : std::nan("");
+  if (!(P >= 1.0) || P != std::floor(P) || P > 300.0) {
+    throw InputError({option + " " + text},
+                     "must be P and a number, then positions in mm, such as "
+                     "P3:X=10,Y=-5.5,Z=0");
+  }
+  setup.additional_offsets[static_cast<int>(P)] =
+      axis_values(option, std::string_view(text).substr(colon + 1), nullptr, false).words;
 }
 
 }  // namespace
@@ -102,7 +121,12 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
     }
     setup.parameters[parameter.substr(0, equals)] = value;
   }
-  setup.reader = reader_of(inputs.reader);
+  setup.reader =
+      static_cast<controllers::Reader>(chosen("--reader", inputs.reader, controllers::kReaders));
+  setup.decimal_point = static_cast<controllers::DecimalPoint>(
+      chosen("--decimal-point", inputs.decimal_point, controllers::kDecimalPoints));
+  setup.feed = inputs.feed;
+  for (const std::string& text : inputs.additional_offsets) add_additional_offset(text, setup);
   setup.block_delete = inputs.block_delete;
   setup.most_jumps = inputs.most_jumps;
   for (const std::string& folder : inputs.subroutine_folders) {
@@ -115,8 +139,10 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
 
 std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& inputs,
                          const std::function<void(std::string_view)>& write) {
+  controllers::ProgramSetup setup = program_setup(inputs, program_file);
+  setup.accepts_unknown_lengths = true;
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(program_file),
-                                       program_setup(inputs, program_file));
+                                       std::move(setup));
   std::string lines;
   const auto flush = [&] {
     write(lines);

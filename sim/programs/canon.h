@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,9 @@ struct ProgramInputs {
   std::string parameter_file = {};                   // LinuxCNC's "var" file, or empty
   std::vector<std::string> subroutine_folders = {};  // beside that of the program
   std::string reader = "any";                        // one of controllers::kReaders
+  std::string decimal_point = "unset";               // one of controllers::kDecimalPoints
+  std::optional<double> feed = {};                   // m/s, of moves before any F
+  std::vector<std::string> additional_offsets = {};  // "P3:X=10,Y=5", of G54.1 P3; mm
   bool block_delete = false;                         // leave out lines that start with '/'
   long most_jumps = 1'000'000;                       // loops turned and subroutines called
 };

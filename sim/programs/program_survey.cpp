@@ -180,6 +180,10 @@ ReaderVerdict verdict(std::size_t reader, const ProgramSetup& setup, const std::
   ReaderVerdict out{controllers::kReaders[reader], {}};
   ProgramSetup own = setup;
   own.reader = static_cast<controllers::Reader>(reader);
+  // the control is set to one of them, and reads the program either way
+  if (own.decimal_point == controllers::DecimalPoint::unset) {
+    own.decimal_point = controllers::DecimalPoint::calculator;
+  }
   try {
     controllers::Interpreter interpreter(ProgramText::of_file(file), std::move(own));
     while (interpreter.next() != nullptr) throw_if_interrupted();

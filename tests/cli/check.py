@@ -101,7 +101,7 @@ M30
     def test_says_everything_of_a_program_on_a_machine(self):
         feed = 5.0 + 2.0 * (0.01 / 30.0) ** 0.5
         rapid = 4.0 * (3e-3 / 60.0) ** (1.0 / 3.0)
-        program = "G21 G90\nT1 M6 G43\nG0 X10 Y20\nZ3\nZ0\nG1 X60 F600\nG0 Z3\nG4 P2\nM2\n"
+        program = "G21 G90\nT1 M6 G43\nG0 X10 Y20\nZ3\nZ0\nG1 X60 F600\nG0 Z3\nG4 P2.\nM2\n"
         arguments = ["--tools", "tool.tbl", "--machine", "router.toml", "--work-offset", "X=100,Y=0,Z=-200"]
         self.assertSays(program, f"""
   units          mm, G21 (line 1)

@@ -1,5 +1,8 @@
 #include "tools/servomill/program_options.h"
 
+#include "sim/model/design.h"
+#include "tools/servomill/axis_options.h"
+
 namespace servomill::tools {
 
 void add_program_options(Options& options) {
@@ -17,12 +20,17 @@ void add_program_options(Options& options) {
   options.add()(
       "subs", texts("FOLDER"),
       "where files of subroutines are, NAME.ngc for O<NAME> CALL, NAME.H for CALL PGM; the "
-      "folder of the "
-      "program comes first");
+      "folder of the program comes first");
   options.add()("reader", text("NAME"),
                 "whose rules the program follows: any (default: beyond LinuxCNC's what other "
                 "controls accept, with a warning), linuxcnc (strict), fanuc, haas, mach, grbl, "
                 "heidenhain (conversational; any takes it from BEGIN PGM or a file *.h)");
+  options.add()("decimal-point", text("NAME"),
+                "lengths without a decimal point: calculator (X1000 = 1000 mm) or increments "
+                "(X1000 = 1 mm); readers fanuc and haas ask for it");
+  options.add()("feed", text("\"300 mm/min\""), "feed of G1, G2 and G3 before any F");
+  options.add()("additional-offset", texts("P3:X=10,Y=5,Z=0"),
+                "where the work system of G54.1 P3 or G154 P3 lies, mm");
   options.add()("block-delete", "leaves out the lines that start with '/'");
   options.add()("max-jumps", po::value<long>()->value_name("N"),
                 "loops turned and subroutines called before a program counts as endless "
@@ -46,6 +54,12 @@ sim::ProgramInputs program_inputs(const Options& options) {
   inputs.parameter_file = text("parameter-file");
   inputs.subroutine_folders = options.list("subs");
   if (options.has("reader")) inputs.reader = text("reader");
+  if (options.has("decimal-point")) inputs.decimal_point = text("decimal-point");
+  if (options.has("feed")) {
+    inputs.feed = *quantity_option(options, "feed", sim::kVelocity, "mm/min");
+    if (!(*inputs.feed > 0.0)) throw InputError({"--feed"}, "must be > 0");
+  }
+  inputs.additional_offsets = options.list("additional-offset");
   inputs.block_delete = options.has("block-delete");
   if (options.has("max-jumps")) inputs.most_jumps = options.get<long>("max-jumps");
   if (inputs.most_jumps < 1) throw InputError({"--max-jumps"}, "must be >= 1");

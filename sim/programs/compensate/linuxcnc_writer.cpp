@@ -290,7 +290,7 @@ std::vector<std::string> LinuxCncWriter::assumptions() const {
 
 void LinuxCncWriter::put_cycle_step(const Move& one, const Block& block) {
   if (one.kind == MoveKind::dwell) {
-    put(fmt::format("G4 P{}", controllers::significant_text(one.value)));
+    put(controllers::dwell_block(one.value));
   } else if (one.kind == MoveKind::spindle) {
     put(one.direction > 0 ? "M3" : one.direction < 0 ? "M4" : "M5");
   } else if (one.kind == MoveKind::stop && block.request->code(Group::m_stop) < 0) {  // of G88

@@ -55,7 +55,7 @@ TEST(Compensate, KeepsEverythingThatIsNotMotion) {
       "G0 X10 Y20 Z5 M8 (to the begin)\n"
       "N40 G1 Z-1 F200 ; plunge\n"
       "(a comment between)\n"
-      "G4 P1\n"
+      "G4 P1.\n"
       "M5\n"
       "M2\n");
   EXPECT_EQ(without_header(trial.run().program),
@@ -66,7 +66,7 @@ TEST(Compensate, KeepsEverythingThatIsNotMotion) {
             "G0 X10.00777 Y19.95198 Z4.96186 M8 (to the begin)\n"
             "N40 G1 Z-1.03814 X10.00801 Y19.95232 F200 ; plunge\n"
             "(a comment between)\n"
-            "G4 P1\n"
+            "G4 P1.\n"
             "M5\n"
             "M2\n");
 }
@@ -209,13 +209,19 @@ TEST(Compensate, WarnsOfWhatItTakesForGranted) {
             "this program has been corrected before; it is corrected again");
 }
 
+Trial for_linuxcnc(const std::string& program) {
+  Trial trial(program);
+  trial.request.inputs.reader = "linuxcnc";
+  return trial;
+}
+
 TEST(Compensate, RefusesWhatUnrollingOrCorrectingWouldChange) {
   EXPECT_EQ(refusal(Trial("o1 sub\nM73\nG91\no1 endsub\no1 call\nM2\n")),
             "part.ngc:2:1: error: M73 in a subroutine: what it saves belongs to the call, and "
             "subroutines are unrolled");
-  EXPECT_EQ(refusal(Trial("G0 X0 Y0 Z0\nG28.1\nM2\n")),
+  EXPECT_EQ(refusal(for_linuxcnc("G0 X0 Y0 Z0\nG28.1\nM2\n")),
             "part.ngc:2:1: error: G28.1 would store the corrected place as that of the machine");
-  EXPECT_EQ(refusal(Trial("G0 X0 Y0 Z0\nG10 L20 P2 X0\nM2\n")),
+  EXPECT_EQ(refusal(for_linuxcnc("G0 X0 Y0 Z0\nG10 L20 P2 X0\nM2\n")),
             "part.ngc:2:1: error: G10 L20 P2 of a work system that is not in force cannot be "
             "corrected");
 }

@@ -302,7 +302,7 @@ TEST(DialectRules, ArcsShorterThanTheDigitsAreLines) {
 }
 
 TEST(DialectRules, NumbersStayWithinTheFormatsOfTheControl) {
-  EXPECT_EQ(refusal(Dialect::heidenhain, kStart + "G4 P4000\nM2\n"),
+  EXPECT_EQ(refusal(Dialect::heidenhain, kStart + "G4 P4000.\nM2\n"),
             "plate.ngc:5: error: dwells for 4000 s, more than 3600 s; that cannot be expressed for "
             "heidenhain");
   EXPECT_EQ(refusal(Dialect::heidenhain, kStart + "G0 X200000 Y0\nM2\n"),
@@ -501,7 +501,8 @@ TEST(DialectRules, PalletsAreExchangedByTheOperator) {
 }
 
 TEST(DialectRules, OverridesStayTheOperators) {
-  const Trial trial = dialect_trial(Dialect::fanuc, kStart + "M49\nG0 X1 Y1 Z5\nM48\nM50 P0\nM2\n");
+  const Trial trial =
+      linuxcnc_trial(Dialect::fanuc, kStart + "M49\nG0 X1 Y1 Z5\nM48\nM50 P0\nM2\n");
   EXPECT_TRUE(body(trial).ends_with("G0 X1. Y1.\nG43 H1 Z5.\n")) << body(trial);
   EXPECT_NE(
       trial.run().program.find("(WARNING: M48 ... M51 ARE LEFT OUT: THE OVERRIDE SWITCHES STAY "
@@ -511,9 +512,9 @@ TEST(DialectRules, OverridesStayTheOperators) {
 
 // G10 L2 of the program and #5221 are the same.
 TEST(DialectRules, WorkSystemsThatTheProgramMovesAreInTheNumbers) {
-  const std::string moved =
-      body(Dialect::fanuc,
-           kStart + "G0 X1 Y1\nZ5\nG10 L2 P1 X210 Y250 Z-90\nX0\nG10 L20 P1 X0\nX1\nM2\n");
+  const std::string moved = body(linuxcnc_trial(
+      Dialect::fanuc,
+      kStart + "G0 X1 Y1\nZ5\nG10 L2 P1 X210 Y250 Z-90\nX0\nG10 L20 P1 X0\nX1\nM2\n"));
   EXPECT_TRUE(moved.ends_with("G43 H1 Z5.\nX10.\nX11.\n")) << moved;
   EXPECT_EQ(
       refusal(Dialect::fanuc, kStart + "G10 L1 P1 Z50\nM2\n"),
@@ -593,8 +594,8 @@ TEST(DialectRules, OffsetsThatTheProgramChangesAreInTheNumbers) {
 }
 
 TEST(DialectRules, CyclesFromAnUnknownHeightAreRefused) {
-  EXPECT_EQ(refusal(Dialect::fanuc, kStart + "G0 X1 Y1\nG81 Z-1 R1 F100\nM2\n"),
-            "plate.ngc:6:1: error: a canned cycle from a Z that is not known, to which it goes "
+  EXPECT_EQ(refusal(Dialect::fanuc, kStart + "G0 X1 Y1\nG98 G81 Z-1 R1 F100\nM2\n"),
+            "plate.ngc:6:5: error: a canned cycle from a Z that is not known, to which it goes "
             "back; name Z in a rapid before");
 }
 

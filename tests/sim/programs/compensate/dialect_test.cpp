@@ -178,7 +178,7 @@ TEST(Dialect, WhatItCannotExpressIsRefusedWithItsPlace) {
             "take it "
             "out; that cannot be expressed for heidenhain");
   EXPECT_EQ(
-      refusal(Dialect::fanuc, start + "M52 P1\nM2\n"),
+      refusal(linuxcnc_trial(Dialect::fanuc, start + "M52 P1\nM2\n")),
       "plate.ngc:5:1: error: M52 cannot be expressed for fanuc; adaptive feed and feed stop are "
       "inputs of LinuxCNC; take it out");
 }

@@ -18,6 +18,13 @@ inline Trial dialect_trial(Dialect dialect, const std::string& program) {
   return trial;
 }
 
+/// Words that other controls read differently are LinuxCNC's.
+inline Trial linuxcnc_trial(Dialect dialect, const std::string& program) {
+  Trial trial = dialect_trial(dialect, program);
+  trial.request.inputs.reader = "linuxcnc";
+  return trial;
+}
+
 inline std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> out;
   for (std::size_t from = 0; from < text.size();) {

@@ -48,7 +48,7 @@ TEST(LostPositions, AxesAreRestatedBeforeZGoesDownBehindAToolChange) {
                   .ends_with("L M3\nL X+20 Y+10 R0 FMAX\nL Z-4 FMAX\nL Y+15 FMAX\n"));
   EXPECT_TRUE(body(Dialect::fanuc, change + "G0 X30 Z5\nG1 X40 F100\nM2\n")
                   .ends_with("S800 M3\nG0 Y10.\nX30.\nG43 H2 Z5.\nG1 X40. F100.\n"));
-  EXPECT_TRUE(body(Dialect::fanuc, change + "M0\nG53 G0 Z-3\nG81 X15 Z-1 R3 F100\nM2\n")
+  EXPECT_TRUE(body(Dialect::fanuc, change + "M0\nG53 G0 Z-3\nG99 G81 X15 Z-1 R3 F100\nM2\n")
                   .ends_with("X15.\nY10.\nG43 H2 Z3.\nG1 Z-1. F100.\nG0 Z3.\n"));
 }
 

@@ -36,14 +36,14 @@ TEST(WrittenPathMode, OfACycleIsExactPath) {
 }
 
 TEST(WrittenPathMode, BehindACycleIsThatOfTheProgram) {
-  const std::string G64 = for_linuxcnc("G20\nG64 P0.001 Q0.002\nG81 X3 Z-.1 R.1 F8\nG80\nM2\n");
+  const std::string G64 = for_linuxcnc("G20\nG64 P0.001 Q0.002\nG99 G81 X3 Z-.1 R.1 F8\nG80\nM2\n");
   EXPECT_NE(G64.find("G64 P0.001 Q0.002\nG80\n"), std::string::npos) << G64;
-  const std::string G61 = for_linuxcnc("G61\nG81 X30 Z-2 R2 F200\nG80\nM2\n");
+  const std::string G61 = for_linuxcnc("G61\nG99 G81 X30 Z-2 R2 F200\nG80\nM2\n");
   EXPECT_EQ(G61.find("G61\n"), G61.rfind("G61\n")) << G61;
 }
 
 TEST(WrittenPathMode, ThatNobodyHasNamedIsAssumedBehindACycle) {
-  Trial trial(kStart + "G81 X30 Z-2 R2 F200\nG80\nM2\n", "plate.ngc");
+  Trial trial(kStart + "G99 G81 X30 Z-2 R2 F200\nG80\nM2\n", "plate.ngc");
   const Compensated done = trial.run();
   EXPECT_NE(done.program.find("\nG64\nG80\n"), std::string::npos) << done.program;
   const std::string assumed =
@@ -54,7 +54,7 @@ TEST(WrittenPathMode, ThatNobodyHasNamedIsAssumedBehindACycle) {
 }
 
 TEST(WrittenPathMode, BesideACycleIsRefused) {
-  Trial trial(kStart + "G64 G81 X30 Z-2 R2 F200\nM2\n", "plate.ngc");
+  Trial trial(kStart + "G64 G99 G81 X30 Z-2 R2 F200\nM2\n", "plate.ngc");
   EXPECT_EQ(refusal(trial),
             "plate.ngc:6:1: error: G64 beside a canned cycle, which runs under G61: write it in a "
             "block of its own");
