@@ -83,6 +83,22 @@ void Interpreter::Machine::set_initial(const std::string& name, double value) {
   parameters_.set(number, value);
 }
 
+ReadingOptions Interpreter::Machine::reading_options() {
+  ReadingOptions out{setup_.reader, setup_.decimal_point, setup_.feed};
+  out.accepts_unknown_dwells = setup_.accepts_unknown_dwells;
+  out.is_trial = setup_.is_trial;
+  if (setup_.reader != Reader::any) return out;
+  setup_at_start_ = setup_;
+  out.possible_readers = [this] { return possible_readers(); };
+  return out;
+}
+
+const PossibleReaders* Interpreter::Machine::possible_readers() {
+  if (texts_.front().lines.is_generated()) return nullptr;
+  if (!possible_readers_) possible_readers_.emplace(texts_.front().lines, *setup_at_start_);
+  return &*possible_readers_;
+}
+
 void Interpreter::Machine::store_setup_offset(int system) {
   const auto k = static_cast<std::size_t>(system - 1);
   const AxisWords& offset = setup_.work_offset[k];

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <deque>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,12 +23,14 @@
 #include "controllers/gcode/parameters.h"
 #include "controllers/gcode/program_text.h"
 #include "controllers/gcode/readers/block_reading.h"
+#include "controllers/gcode/readers/possible_readers.h"
 #include "controllers/gcode/request.h"
 #include "controllers/gcode/saved_state.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
 
+inline constexpr double kUnknownDwell = std::numeric_limits<double>::quiet_NaN();  // s
 inline constexpr double kIntegerTol = 1e-4;  // as LinuxCNC, for words that must be integers
 
 /// An axis word as it stands in a parameter, in mm or degrees, and back.
@@ -43,7 +46,7 @@ class Interpreter::Machine {
         parameters_({[this](int number) { return system_number(number); },
                      [this](std::string_view name) { return system_name(name); }}),
         reader_(setup_.block_delete, setup_.reader),
-        reading_({setup_.reader, setup_.decimal_point, setup_.feed}, setup_.additional_offsets) {
+        reading_(reading_options(), setup_.additional_offsets) {
     reader_.keep_pieces(setup_.reader != Reader::linuxcnc);
     texts_.push_back({std::move(text), {}, 0});
     load_stored_parameters();
@@ -91,6 +94,8 @@ class Interpreter::Machine {
   };
 
   // ---- setup
+  ReadingOptions reading_options();
+  const PossibleReaders* possible_readers();
   void set_initial(const std::string& name, double value);
   void store_setup_offset(int system);
   void load_stored_parameters();
@@ -112,11 +117,11 @@ class Interpreter::Machine {
   void with_place_of_fault(const Action& action);
   void read_as_control();
   void read_pending_line();
-  void look_for_points();
-  void warn_of_missing_points();
+  void look_for_missing_points();
   int original_column(int column) const;
   void execute();
   void run_block();
+  void run_flow_of_reader();
   void clear_output() {
     out_.clear();
     given_ = 0;
@@ -176,6 +181,7 @@ class Interpreter::Machine {
     return false;
   }
   int integer(char letter, double tolerance = kIntegerTol) const;
+  bool has_unknown_dwell() const { return is_rewritten_ && reading_.has_unknown_dwell(); }
 
   // ---- steps of a block, in the order of execution
   // Due if the block has the letter or a code of the group: the lowest bits are letters, the next
@@ -335,15 +341,16 @@ class Interpreter::Machine {
   ToolTable tools_at_start_;  // G10 changes those of `setup_`
   Parameters parameters_;
   LineReader reader_;
+  std::optional<ProgramSetup> setup_at_start_;  // of the reader `any`
+  std::optional<PossibleReaders> possible_readers_;
   BlockReading reading_;
   std::deque<std::string> pending_lines_;  // of the block read last, as a control reads it
   std::string pending_line_;               // that runs
   std::size_t nth_line_ = 0;               // of those of the block
   bool is_rewritten_ = false;              // `line_` is one of them
-  bool has_points_ = false;                // a length has a decimal point
-  std::optional<Place> pointless_;         // of the first length without one
-  double longest_pointless_ = 0.0;         // in program units
+  bool has_warned_of_points_ = false;
   std::set<ReaderRule> tolerated_;
+  std::set<std::string> noted_;
   std::string_view line_;  // as it was read last
   LinePlace here_;         // where it begins
   FlowState flow_;

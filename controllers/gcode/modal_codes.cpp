@@ -19,7 +19,7 @@ void Interpreter::Machine::dwell() {
   if (motion_code == 20 || motion_code == 30) {
     fail(column, "G4 and an arc in one block: both use the P word");
   }
-  emit(MoveKind::dwell).value = P;
+  emit(MoveKind::dwell).value = has_unknown_dwell() ? kUnknownDwell : P;
 }
 
 void Interpreter::Machine::plane() {
@@ -164,7 +164,6 @@ void Interpreter::Machine::stop() {
   }
   emit(MoveKind::end);
   ended_ = true;
-  warn_of_missing_points();
 }
 
 }  // namespace servomill::controllers

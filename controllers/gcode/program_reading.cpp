@@ -78,7 +78,10 @@ void Interpreter::Machine::read_executed_line() {
   }
   texts_[text_].percent.saw_line();
   if (block_.deleted) return;
-  if (!is_strict && !has_points_) look_for_points();
+  if (!has_warned_of_points_ && setup_.reader == Reader::any &&
+      setup_.decimal_point == DecimalPoint::unset) {
+    look_for_missing_points();
+  }
   is_strict || !reading_.concerns(block_, state_) ? execute() : read_as_control();
 }
 
@@ -88,6 +91,9 @@ void Interpreter::Machine::read_as_control() {
     return evaluate(value, block_, parameters_, file());
   });
   for (const AppliedRule& one : reading_.applied()) tolerates(one.rule, one.column, one.detail);
+  for (const ReadingNote& one : reading_.notes()) {
+    if (noted_.insert(one.text).second) warn(one.column, one.text);
+  }
   nth_line_ = 0;
   if (is_other) {
     pending_lines_.assign(reading_.lines().begin(), reading_.lines().end());
@@ -101,35 +107,25 @@ void Interpreter::Machine::read_as_control() {
   }
 }
 
-// Nothing in a program without a single decimal point tells lengths in millimetres from lengths in
-// increments.
-void Interpreter::Machine::look_for_points() {
+// X10: 10 mm, or 10 increments.
+void Interpreter::Machine::look_for_missing_points() {
   constexpr std::string_view kLengths = "XYZIJKR";
   std::size_t nth = 0;
   for (const Piece& piece : block_.pieces) {
     if (piece.kind != PieceKind::word) continue;
     const Word& word = block_.words[nth++];
-    if (kLengths.find(word.letter) == std::string_view::npos || word.value.number == 0.0) continue;
+    if (kLengths.find(word.letter) == std::string_view::npos) continue;
+    if (!word.value.is_constant() || word.value.number == 0.0) continue;
     const auto begin = static_cast<std::size_t>(piece.begin);
     const std::string_view written =
         line_.substr(begin, static_cast<std::size_t>(piece.end) - begin);
-    has_points_ = has_points_ || !word.value.is_constant() || written.find('.') != written.npos;
-    if (!pointless_) pointless_ = Place{file(), line(), word.column};
-    longest_pointless_ = std::max(longest_pointless_, std::abs(word.value.number));
+    if (written.find('.') != written.npos) continue;
+    warn(word.column,
+         "a length without a decimal point: read in millimetres or inches (LinuxCNC, grbl, Mach); "
+         "Fanuc and Haas may read increments of 0.001 mm; choose with --decimal-point or --reader");
+    has_warned_of_points_ = true;
+    return;
   }
-}
-
-void Interpreter::Machine::warn_of_missing_points() {
-  if (setup_.reader != Reader::any || setup_.decimal_point != DecimalPoint::unset) return;
-  if (has_points_ || !pointless_) return;
-  // small numbers of a program that LinuxCNC takes as it stands are what they are there
-  constexpr double kIncrements = 1000.0;
-  if (tolerated_.empty() && longest_pointless_ < kIncrements) return;
-  warnings_.push_back(
-      {*pointless_,
-       "no length of the program has a decimal point: read in millimetres, inches or degrees "
-       "(LinuxCNC, grbl, Mach); Fanuc and Haas may read increments of 0.001 mm; choose with "
-       "--decimal-point or --reader"});
 }
 
 void Interpreter::Machine::read_pending_line() {
@@ -210,7 +206,6 @@ void Interpreter::Machine::saw_percent() {
   if (meaning != Percent::end) return;
   if (flow_.skip_to || text_ != 0) fail_at_end();
   ended_ = true;
-  warn_of_missing_points();
 }
 
 // The text ends although the program does not.
@@ -279,7 +274,7 @@ void Interpreter::Machine::execute() {
   before_ = state_;
   const std::size_t moves_before = out_.size();
   try {
-    block_.o_word.flow == Flow::none ? run_block() : run_flow();
+    block_.o_word.flow == Flow::none ? run_block() : run_flow_of_reader();
   } catch (const InputError&) {
     state_ = before_;
     parameters_.roll_back();
@@ -289,14 +284,35 @@ void Interpreter::Machine::execute() {
   parameters_.commit();
 }
 
+void Interpreter::Machine::run_flow_of_reader() {
+  const Flow flow = block_.o_word.flow;
+  const bool is_of_all = flow == Flow::program || flow == Flow::m98 || flow == Flow::m99;
+  const bool has_o_words = setup_.reader == Reader::any || setup_.reader == Reader::linuxcnc;
+  if (!is_of_all && !has_o_words) {
+    fail(block_.o_word.column, fmt::format("O-words with keywords: {} does not have them",
+                                           kReaders[static_cast<std::size_t>(setup_.reader)]));
+  }
+  try {
+    run_flow();
+  } catch (const InputError&) {
+    if (setup_.is_trial) throw Undetermined();
+    throw;
+  }
+}
+
 void Interpreter::Machine::run_block() {
   const bool has_vectors = state_.tool_control == ToolControl::tool_axis;
   resolve(block_, parameters_, state_.motion, has_vectors, file(), request_);
   assign_parameters();
   const std::uint64_t asked =
       kAlways | request_.letters | std::uint64_t{request_.groups} << kLetters;
-  for (const Step& step : kSteps) {
-    if ((step.due & asked) != 0) (this->*step.run)();
+  try {
+    for (const Step& step : kSteps) {
+      if ((step.due & asked) != 0) (this->*step.run)();
+    }
+  } catch (const InputError&) {
+    if (setup_.is_trial) throw Undetermined();
+    throw;
   }
 }
 

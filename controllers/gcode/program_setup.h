@@ -34,6 +34,11 @@ struct ProgramSetup {
   std::map<int, AxisWords> additional_offsets;
   /// Lengths of tools may be unknown: machine coordinates of such moves are not to be used.
   bool accepts_unknown_lengths = false;
+  /// Dwells may be unknown (NaN), where controls read P in different units.
+  bool accepts_unknown_dwells = false;
+  /// Finds out whether the reader would read the program, not how: what stops servomill and not
+  /// the control is thrown as `Undetermined`.
+  bool is_trial = false;
   AxisWords start = AxisWords::Zero();  // machine coordinates before the first block; m, rad
   bool block_delete = false;            // leave out the lines that start with '/'
   /// The file of a subroutine that the program calls and does not define: `o<name> call` asks for

@@ -51,6 +51,10 @@ ProgramText ProgramText::of_file(const std::string& path) {
   return out;
 }
 
+ProgramText ProgramText::again() const {
+  return reader_ ? of_file(file_) : of_text(buffer_, file_);
+}
+
 ProgramText ProgramText::of_source(std::unique_ptr<LineSource> source, std::string file) {
   ProgramText out;
   out.file_ = std::move(file);

@@ -43,6 +43,9 @@ class ProgramText {
   static ProgramText of_text(std::string text, std::string file);
   /// @throws InputError if the file cannot be read
   static ProgramText of_file(const std::string& path);
+  /// The same text or file again, from its first line.
+  /// @pre !is_generated()
+  ProgramText again() const;
   /// Lines that come one by one, and do not come again: no mark leads back to them.
   static ProgramText of_source(std::unique_ptr<LineSource> source, std::string file);
 

@@ -105,7 +105,7 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "Fanuc B-63944EN, tool length compensation: H is modal"},
     {WordRule::unknown_length, "G43 without a tool table",
      "the length is unknown, and with it machine coordinates",
-     "every control has a table of its own", kAll,
+     "every control has a table of its own", kFanuc | kHaas | kMach,
      "LinuxCNC refuses it; the table of another control is not in the program"},
     {WordRule::subprogram_repeats, "M98 P with repetitions before four digits of the number",
      "read as M98 P L", "Fanuc", kFanuc, "Fanuc B-63944EN, subprogram call (M98)"},
@@ -135,6 +135,16 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "grbl, TinyG", kGrbl, "grbl 1.1, commands"},
     {WordRule::checksum, "a checksum behind '*'", "without effect", "hosts of grbl, RepRap", kGrbl,
      "from memory"},
+    {WordRule::rapid_at_start, "axis words before any of G0, G1, G2, G3 and before any F",
+     "read as a rapid: a feed without F is an alarm", "Fanuc, Haas, grbl", kFanuc | kHaas | kGrbl,
+     "grbl 1.1, gcode.c (begins with G0); Fanuc B-63944EN, parameter 3402#0 (G01), alarm 011; Haas "
+     "from memory"},
+    {WordRule::centre_off_plane, "a zero I, J or K that is not of the plane of the arc",
+     "without effect", "every control but LinuxCNC", kAll,
+     "grbl 1.1, gcode.c; others from memory: a shift by 0"},
+    {WordRule::circular_pocket, "G12 and G13 with I",
+     "read as a full circle of radius I about the position, from its +X side", "Mach", kMach,
+     "Using Mach3Mill, G12 and G13 (circular pocket); from memory"},
 });
 
 constexpr bool is_in_order() {

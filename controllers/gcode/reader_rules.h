@@ -42,7 +42,10 @@ struct WordRule {
   static constexpr ReaderRule unit_codes{42};
   static constexpr ReaderRule sender_command{43};
   static constexpr ReaderRule checksum{44};
-  static constexpr std::uint8_t count = 45;
+  static constexpr ReaderRule rapid_at_start{45};
+  static constexpr ReaderRule centre_off_plane{46};
+  static constexpr ReaderRule circular_pocket{47};
+  static constexpr std::uint8_t count = 48;
 };
 static_assert(static_cast<int>(ReaderRule::count) == 13);
 

@@ -322,6 +322,10 @@ MachineSettings read_machine(Reader& table, ErrorModels* errors) {
   Reader nc = table.table("nc");
   machine.nc.periods = read_periods(nc);
   machine.nc.filter = read_filter(nc, machine.nc.periods);
+  machine.nc.program_reader =
+      static_cast<controllers::Reader>(nc.choice_or("reader", 0, controllers::kReaders));
+  machine.nc.decimal_point = static_cast<controllers::DecimalPoint>(
+      nc.choice_or("decimal_point", 0, controllers::kDecimalPoints));
   machine.nc.path_tolerance = nc.real_or("path_tolerance_um", 10 * um, kLength, {above(0.0)});
   machine.nc.rotary_tolerance =
       nc.real_or("rotary_tolerance_urad", 100 * urad, kAngle, {above(0.0)});

@@ -159,8 +159,13 @@ class ScenarioReader {
       table.fault("file", "must name the program");
     }
     refuse_unwritable(program.file, program.text);
-    program.reader =
-        static_cast<controllers::Reader>(table.choice_or("reader", 0, controllers::kReaders));
+    const NcSettings& nc = out_.machine.nc;
+    program.reader = static_cast<controllers::Reader>(table.choice_or(
+        "reader", static_cast<std::size_t>(nc.program_reader), controllers::kReaders));
+    program.decimal_point = static_cast<controllers::DecimalPoint>(table.choice_or(
+        "decimal_point", static_cast<std::size_t>(nc.decimal_point), controllers::kDecimalPoints));
+    if (table.has("first_feed"))
+      program.first_feed = table.real("first_feed", kVelocity, {above(0.0)});
     program.feed_override = table.real_or("feed_override", 1.0, kNumber, {above(0.0)});
     if (table.has("parameters")) {
       Reader parameters = table.table("parameters");

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "controllers/gcode/decimal_point.h"
+#include "controllers/gcode/reader.h"
 #include "controllers/servo/backlash_compensation.h"
 #include "controllers/servo/cascade.h"
 #include "controllers/servo/current_loop.h"
@@ -64,6 +66,8 @@ struct NcSettings {
   Joints v_max = Joints::Zero(), a_max = Joints::Zero(), j_max = Joints::Zero();  // SI per joint
   Joints rapid = Joints::Zero();                                                  // m/s, rad/s
   Joints lower = Joints::Zero(), upper = Joints::Zero();                          // m, rad; travel
+  controllers::Reader program_reader = controllers::Reader::any;  // of programs that name none
+  controllers::DecimalPoint decimal_point = controllers::DecimalPoint::unset;
   double path_tolerance = 10e-6;   // m, for G64 without P
   double rotary_tolerance = 1e-4;  // rad
   double block_time = 0.0;         // s, least time of a block; 0: none

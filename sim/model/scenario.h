@@ -34,6 +34,8 @@ struct ProgramSpec {
   std::map<std::string, std::string> subroutines;  // texts of NAME.ngc beside the program, by NAME
   std::map<std::string, double> parameters;        // "#101" -> value
   controllers::Reader reader = controllers::Reader::any;
+  controllers::DecimalPoint decimal_point = controllers::DecimalPoint::unset;
+  std::optional<double> first_feed;  // m/s, of moves before any F
   double feed_override = 1.0;
   AxisWords work_offset = AxisWords::Zero();  // G54, m, rad, machine coordinates
   AxisWords start = AxisWords::Zero();        // m, rad, in work coordinates

@@ -155,8 +155,9 @@ void add(MemoKey& key, const plant::ErrorModel& errors) {
 
 void add(MemoKey& key, const controllers::ProgramSetup& setup) {
   const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, reader,
-               decimal_point, feed, additional_offsets, accepts_unknown_lengths, start,
-               block_delete, subroutine_file, most_jumps, machine] = setup;
+               decimal_point, feed, additional_offsets, accepts_unknown_lengths,
+               accepts_unknown_dwells, is_trial, start, block_delete, subroutine_file, most_jumps,
+               machine] = setup;
   key.add(stored.size());
   for (const auto& [number, value] : stored) {
     key.add(number);
@@ -181,6 +182,8 @@ void add(MemoKey& key, const controllers::ProgramSetup& setup) {
     key.add(offset);
   }
   key.add(accepts_unknown_lengths);
+  key.add(accepts_unknown_dwells);
+  key.add(is_trial);
   key.add(start);
   key.add(block_delete);
   key.add(most_jumps);  // texts of subroutines are of the program

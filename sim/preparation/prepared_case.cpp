@@ -39,6 +39,8 @@ controllers::ProgramSetup setup_of(const Scenario& scenario, const CaseSpec& spe
   setup.work_offset[0] = scenario.program.work_offset + spec.work_offset;
   setup.tools = scenario.program.tools;
   setup.reader = scenario.program.reader;
+  setup.decimal_point = scenario.program.decimal_point;
+  setup.feed = scenario.program.first_feed;
   setup.start = machine_start(scenario, spec);
   setup.machine = tool_centre_point(scenario.machine_of(spec));
   setup.subroutine_file = [texts = scenario.program.subroutines, file = scenario.program.file](

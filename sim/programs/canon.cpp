@@ -97,9 +97,24 @@ void add_additional_offset(const std::string& text, controllers::ProgramSetup& s
 
 }  // namespace
 
+void choose_reader(const ProgramInputs& inputs, const NcSettings& nc,
+                   controllers::ProgramSetup& setup) {
+  using controllers::DecimalPoint;
+  using controllers::Reader;
+  setup.reader = nc.program_reader;
+  setup.decimal_point = nc.decimal_point;
+  if (inputs.reader) {
+    setup.reader = static_cast<Reader>(chosen("--reader", *inputs.reader, controllers::kReaders));
+  }
+  if (!inputs.decimal_point) return;
+  setup.decimal_point = static_cast<DecimalPoint>(
+      chosen("--decimal-point", *inputs.decimal_point, controllers::kDecimalPoints));
+}
+
 controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
                                         const std::string& program_file) {
   controllers::ProgramSetup setup;
+  NcSettings nc;
   if (!inputs.tool_table.empty()) {
     setup.tools = controllers::ToolTable::parse(read_file(inputs.tool_table, {}, "tool table"),
                                                 inputs.tool_table);
@@ -110,7 +125,9 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
     setup.work_system = controllers::work_system_of(setup.stored);
   }
   if (!inputs.machine.empty()) {
-    setup.machine = tool_centre_point(read_machine_description(inputs.machine).machine);
+    const MachineSettings machine = read_machine_description(inputs.machine).machine;
+    setup.machine = tool_centre_point(machine);
+    nc = machine.nc;
   }
   for (const std::string& parameter : inputs.parameters) {
     const std::size_t equals = parameter.find('=');
@@ -121,10 +138,7 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
     }
     setup.parameters[parameter.substr(0, equals)] = value;
   }
-  setup.reader =
-      static_cast<controllers::Reader>(chosen("--reader", inputs.reader, controllers::kReaders));
-  setup.decimal_point = static_cast<controllers::DecimalPoint>(
-      chosen("--decimal-point", inputs.decimal_point, controllers::kDecimalPoints));
+  choose_reader(inputs, nc, setup);
   setup.feed = inputs.feed;
   for (const std::string& text : inputs.additional_offsets) add_additional_offset(text, setup);
   setup.block_delete = inputs.block_delete;
@@ -140,7 +154,7 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
 std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& inputs,
                          const std::function<void(std::string_view)>& write) {
   controllers::ProgramSetup setup = program_setup(inputs, program_file);
-  setup.accepts_unknown_lengths = true;
+  setup.accepts_unknown_lengths = setup.accepts_unknown_dwells = true;
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(program_file),
                                        std::move(setup));
   std::string lines;
@@ -180,6 +194,7 @@ std::vector<Fault> check_file(const std::string& path, const std::vector<std::st
     }
     controllers::ProgramSetup setup = program_setup(inputs, path);
     if (setup.tools.empty()) setup.tools.take_any_number();  // the control has a table of its own
+    setup.accepts_unknown_dwells = true;
     return controllers::check_program(controllers::ProgramText::of_file(path), std::move(setup),
                                       warnings);
   } catch (const InputError& error) {

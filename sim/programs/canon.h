@@ -9,6 +9,7 @@
 
 #include "controllers/gcode/program_setup.h"
 #include "plant/vocabulary/input_error.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim {
 
@@ -19,13 +20,20 @@ struct ProgramInputs {
   std::string machine = {};                          // file of the machine that runs it, or empty
   std::string parameter_file = {};                   // LinuxCNC's "var" file, or empty
   std::vector<std::string> subroutine_folders = {};  // beside that of the program
-  std::string reader = "any";                        // one of controllers::kReaders
-  std::string decimal_point = "unset";               // one of controllers::kDecimalPoints
+  /// One of controllers::kReaders; none: that of the machine file, or any.
+  std::optional<std::string> reader = {};
+  /// One of controllers::kDecimalPoints; none: that of the machine file, or unset.
+  std::optional<std::string> decimal_point = {};
   std::optional<double> feed = {};                   // m/s, of moves before any F
   std::vector<std::string> additional_offsets = {};  // "P3:X=10,Y=5", of G54.1 P3; mm
   bool block_delete = false;                         // leave out lines that start with '/'
   long most_jumps = 1'000'000;                       // loops turned and subroutines called
 };
+
+/// Takes the reader that the inputs name, else that of the machine file.
+/// @throws InputError
+void choose_reader(const ProgramInputs& inputs, const NcSettings& nc,
+                   controllers::ProgramSetup& setup);
 
 /// What the control knows before the program runs.
 /// @throws InputError

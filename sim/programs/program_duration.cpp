@@ -82,7 +82,10 @@ void ProgramDuration::add(const Move& move, const MoveKnowledge& known) {
 void ProgramDuration::add(const Move& move) {
   if (move.kind == MoveKind::tool) ++tool_changes_;
   if (move.kind == MoveKind::stop) ++stops_;
-  if (why_unknown_.empty() && move.kind != MoveKind::message) moves_.push_back(move);
+  const bool is_unknown = move.kind == MoveKind::dwell && std::isnan(move.value);
+  if (is_unknown) ++unknown_dwells_;
+  if (is_unknown || move.kind == MoveKind::message) return;
+  if (why_unknown_.empty()) moves_.push_back(move);
 }
 
 void ProgramDuration::finish() { plan(); }

@@ -25,6 +25,7 @@ class ProgramDuration {
   double duration() const { return duration_; }                    ///< s
   const std::vector<int>& left_out() const { return left_out_; }   ///< lines
   const std::string& why_unknown() const { return why_unknown_; }  ///< empty: it is known
+  int unknown_dwells() const { return unknown_dwells_; }
   int tool_changes() const { return tool_changes_; }
   int stops() const { return stops_; }  ///< M0, M1, M60
 
@@ -41,7 +42,7 @@ class ProgramDuration {
   double duration_ = 0.0;
   std::vector<int> left_out_;
   std::string why_unknown_;
-  int tool_changes_ = 0, stops_ = 0;
+  int tool_changes_ = 0, stops_ = 0, unknown_dwells_ = 0;
   MoveKind last_ = MoveKind::dwell;
 };
 

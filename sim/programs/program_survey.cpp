@@ -86,8 +86,9 @@ class Surveyor {
   void finish() {
     if (!duration_) return;
     duration_->finish();
-    out_.cycle_time = CycleTime{inputs_.machine->name, duration_->duration(),
-                                duration_->why_unknown(), duration_->left_out()};
+    out_.cycle_time =
+        CycleTime{inputs_.machine->name, duration_->duration(), duration_->why_unknown(),
+                  duration_->left_out(), duration_->unknown_dwells()};
   }
 
  private:
@@ -202,6 +203,7 @@ ProgramSurvey survey_program(const SurveyRequest& request) {
   out.has_tool_table = !inputs.setup.tools.empty();
   inputs.setup.start[index_of(Axis::Z)] = kSomeHeight;
   inputs.setup.tools.take_any_number();
+  inputs.setup.accepts_unknown_dwells = true;
   survey_moves(inputs, out);
   // every control has a tool table of its own: without one here, no number stops a reader
   ProgramSetup setup = program_setup(request.inputs, request.program_file);

@@ -49,6 +49,7 @@ struct CycleTime {
   double duration = 0.0;      // s
   std::string why_unknown;    // empty: it is known
   std::vector<int> left_out;  // lines of moves from positions that are not known
+  int unknown_dwells = 0;     // in a unit that controls do not agree on
 };
 
 struct ProgramSurvey {

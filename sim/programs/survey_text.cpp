@@ -171,6 +171,10 @@ void add_cycle_time(const ProgramSurvey& survey, Text& text) {
                                   counted(time.left_out.size(), "move"),
                                   lines_text(time.left_out)));
   }
+  if (time.unknown_dwells > 0) {
+    without.push_back(counted(static_cast<std::size_t>(time.unknown_dwells), "dwell") +
+                      " in an unknown unit");
+  }
   if (survey.tool_changes > 0) {
     without.push_back(counted(static_cast<std::size_t>(survey.tool_changes), "tool change"));
   }
@@ -291,9 +295,11 @@ std::string cycle_time_json(const ProgramSurvey& survey) {
   if (!survey.cycle_time) return "null";
   const CycleTime& time = *survey.cycle_time;
   const bool is_known = time.why_unknown.empty();
-  return fmt::format(R"({{"machine": {}, "s": {}, "why_unknown": {}, "left_out_lines": [{}]}})",
-                     quoted(time.machine), is_known ? fmt::format("{:.9g}", time.duration) : "null",
-                     is_known ? "null" : quoted(time.why_unknown), fmt::join(time.left_out, ", "));
+  return fmt::format(
+      R"({{"machine": {}, "s": {}, "why_unknown": {}, "left_out_lines": [{}], "unknown_dwells": {}}})",
+      quoted(time.machine), is_known ? fmt::format("{:.9g}", time.duration) : "null",
+      is_known ? "null" : quoted(time.why_unknown), fmt::join(time.left_out, ", "),
+      time.unknown_dwells);
 }
 
 std::string readers_json(const ProgramSurvey& survey) {

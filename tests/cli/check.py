@@ -93,7 +93,8 @@ M30
                  Y unknown from line 5 on: needs --work-offset
                  Z unknown from line 6 on: needs --work-offset and the tool lengths
   cycle time     unknown: needs --machine
-  read by        linuxcnc, fanuc, haas, mach, grbl (with T1 in its tool table)
+  read by        linuxcnc, fanuc, haas, mach (with T1 in its tool table)
+  not read by    grbl: part.ngc:3:1: G43: grbl does not have it
 """)
 
     # F600: 0.01 m/s, reached with jerk 30 m/s^3 alone in 2 sqrt(0.01 / 30) s. G1 takes 50 mm / 0.01 m/s
@@ -115,7 +116,8 @@ M30
                  Z -150.000 ... -147.000 mm
   cycle time     {2.0 + feed + 2.0 * rapid:.1f} s on router
                  without 2 moves from unknown positions (lines 3, 4), 1 tool change
-  read by        {CONTROLS}
+  read by        linuxcnc, fanuc, haas, mach
+  not read by    grbl: part.ngc:2:7: G43: grbl does not have it
 """, *arguments)
         time = self.json(program, *arguments)["cycle_time"]
         self.assertAlmostEqual(time["s"], 2.0 + feed + 2.0 * rapid, delta=1e-3)
@@ -241,7 +243,7 @@ name = "cycle_time"
         self.assertIn("  extent G54     X 1.000 ... 2.000 mm\n", done.stdout)
 
     def test_quiet_says_nothing_of_a_right_program(self):
-        done = self.check("G0 X1\nM2\n", "--quiet")
+        done = self.check("G0 X1.\nM2\n", "--quiet")
         self.assertEqual((done.stdout, done.stderr), ("", ""))
 
     def test_json_of_a_whole_program(self):

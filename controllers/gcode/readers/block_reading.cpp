@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "controllers/gcode/modal_groups.h"
+#include "controllers/gcode/readers/possible_readers.h"
 #include "controllers/gcode/readers/reading_step.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
@@ -19,7 +20,7 @@ constexpr std::uint32_t bits(std::string_view letters) {
   return out;
 }
 constexpr std::uint32_t kOffsets = bits("DH"), kAxisWordBits = bits("XYZABC@^"),
-                        kPlaces = kAxisWordBits | bits("IJKR");
+                        kPlaces = kAxisWordBits | bits("IJKR"), kCentres = bits("IJK");
 
 // Codes of LinuxCNC that another control reads differently, or with other words.
 bool is_special(char letter, int tenths) {
@@ -72,8 +73,8 @@ bool BlockReading::concerns(const Block& block, const ModalState& state) const {
   if (block.words.empty() || block.deleted) return false;
   if (block.o_word.flow != Flow::none)
     return block.o_word.flow == Flow::m98 && concerns_call(block);
-  const bool reads_all = options_.reader == Reader::fanuc || options_.reader == Reader::haas ||
-                         options_.decimal_point != DecimalPoint::unset;
+  const bool reads_all =
+      options_.reader != Reader::any || options_.decimal_point != DecimalPoint::unset;
   if (reads_all || memory_.has_any_mode()) return true;
   PlainCodes codes;
   std::uint32_t letters = 0;
@@ -87,6 +88,7 @@ bool BlockReading::concerns(const Block& block, const ModalState& state) const {
   const int motion = codes.motion >= 0 ? codes.motion : state.motion;
   if (!codes.are_plain || (letters & kOffsets) != 0 || is_canned_cycle(motion)) return true;
   if ((letters & kPlaces) == 0) return codes.motion == 800;
+  if ((motion == 20 || motion == 30) && (letters & kCentres) == kCentres) return true;
   const bool lacks_feed = motion > 0 && state.feed_linear == 0.0;
   return motion == 800 || lacks_feed || (letters & word_bit('S')) != 0;
 }
@@ -95,6 +97,8 @@ bool BlockReading::read(std::string_view line, const std::string& file, const Bl
                         const ModalState& state, const Evaluate& evaluate) {
   before_ = memory_;
   applied_.clear();
+  notes_.clear();
+  has_unknown_dwell_ = false;
   lines_.clear();
   local_call_.reset();
   words_.emplace(line, block, evaluate);
@@ -123,10 +127,12 @@ int BlockReading::original_column(std::size_t nth_line, int column) const {
 
 void ReadingStep::run() {
   if (block_.o_word.flow == Flow::m98) return subprograms();
+  foreign_codes();
   unit_codes();
   decimal_points();
   repeated_groups();
   refused_codes();
+  circular_pocket();
   machine_functions();
   smoothing();
   call_behind_words();
@@ -143,9 +149,28 @@ void ReadingStep::run() {
   cycles();
   home();
   motion_in_force();
+  arc_centre();
   feed();
   laser_power();
   frames();
+}
+
+// Words that the control of the reader does not have.
+void ReadingStep::foreign_codes() {
+  if (options.reader == Reader::any) return;
+  for (const BlockWord& word : words.all()) {
+    if (word.letter != 'G' && word.letter != 'M') continue;
+    const int tenths = tenths_of(word.value);
+    if (!lacks(options.reader, word.letter, tenths)) continue;
+    refuse(word.column, fmt::format("{}: {} does not have it", code_name(word.letter, tenths),
+                                    kReaders[static_cast<std::size_t>(options.reader)]));
+  }
+  const bool is_of_linuxcnc = words.has_code('G', 640) && (words.has('P') || words.has('Q'));
+  if (is_of_linuxcnc && options.reader != Reader::mach) {
+    refuse(words.code('G', 640)->column,
+           fmt::format("G64 with P or Q: {} does not have it",
+                       kReaders[static_cast<std::size_t>(options.reader)]));
+  }
 }
 
 bool ReadingStep::apply(ReaderRule rule, int column, std::string detail) {
@@ -157,18 +182,39 @@ bool ReadingStep::apply(ReaderRule rule, int column, std::string detail) {
 void ReadingStep::need(ReaderRule rule, int column) {
   if (apply(rule, column)) return;
   const ReaderRuleEntry& entry = reader_rules()[static_cast<std::size_t>(rule)];
-  fail(column, fmt::format("{}: the reader {} does not read it ({}: {})", entry.found,
-                           kReaders[static_cast<std::size_t>(options.reader)], entry.controls,
-                           entry.reading));
+  refuse(column, fmt::format("{}: the reader {} does not read it ({}: {})", entry.found,
+                             kReaders[static_cast<std::size_t>(options.reader)], entry.controls,
+                             entry.reading));
 }
 
-int ReadingStep::choose(WordDifference difference, int column) const {
-  const std::optional<int> chosen = reading_of(difference, options.reader);
+int ReadingStep::choose(WordDifference difference, int column) {
+  const std::optional<int> chosen = chosen_reading(difference, column);
   if (!chosen) fail(column, both_readings(difference));
   return *chosen;
 }
 
+std::optional<int> ReadingStep::chosen_reading(WordDifference difference, int column) {
+  const std::optional<int> own = reading_of(difference, options.reader);
+  if (own) return own;
+  if (options.is_trial) throw Undetermined();
+  const PossibleReaders* possible = options.possible_readers ? options.possible_readers() : nullptr;
+  const std::optional<int> deduced =
+      possible != nullptr ? possible->reading_of(difference) : std::nullopt;
+  if (!deduced) return std::nullopt;
+  const WordDifferenceEntry& entry = word_differences()[static_cast<std::size_t>(difference)];
+  const WordReading& reading = entry.readings[static_cast<std::size_t>(*deduced)];
+  reading_.notes_.push_back(
+      {column, fmt::format("{}: read as {} ({}), since {}", entry.found, reading.text,
+                           reading.controls, possible->who_stops())});
+  return deduced;
+}
+
 void ReadingStep::fail(int column, std::string message) const {
+  if (options.is_trial) throw Undetermined();
+  refuse(column, std::move(message));
+}
+
+void ReadingStep::refuse(int column, std::string message) const {
   throw InputError({file_, block_.line, column}, std::move(message));
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -20,11 +21,23 @@
 
 namespace servomill::controllers {
 
+class PossibleReaders;
+
 /// What the user says of the control.
 struct ReadingOptions {
   Reader reader = Reader::any;
   DecimalPoint decimal_point = DecimalPoint::unset;
   std::optional<double> feed;  // m/s, of moves before any F
+  bool accepts_unknown_dwells = false;
+  bool is_trial = false;  // as of ProgramSetup
+  /// The controls that would read the whole program; nullptr if nobody can tell.
+  std::function<const PossibleReaders*()> possible_readers = {};
+};
+
+/// Told once in a program.
+struct ReadingNote {
+  int column = 0;
+  std::string text;
 };
 
 /// Words of canned cycles that a control keeps until G80, in program units.
@@ -76,6 +89,9 @@ class BlockReading {
 
   const std::vector<std::string>& lines() const { return lines_; }
   const std::vector<AppliedRule>& applied() const { return applied_; }
+  const std::vector<ReadingNote>& notes() const { return notes_; }
+  /// P of the block, of a dwell or a canned cycle, is in an unknown unit.
+  bool has_unknown_dwell() const { return has_unknown_dwell_; }
   const std::optional<LocalCall>& local_call() const { return local_call_; }
   /// Column in the line as written.
   int original_column(std::size_t nth_line, int column) const;
@@ -92,6 +108,8 @@ class BlockReading {
   int cause_column_ = 0;         // of those
   std::optional<BlockWords> words_;
   std::vector<AppliedRule> applied_;
+  std::vector<ReadingNote> notes_;
+  bool has_unknown_dwell_ = false;
   std::optional<LocalCall> local_call_;
 };
 

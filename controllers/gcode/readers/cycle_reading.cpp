@@ -114,8 +114,7 @@ void ReadingStep::cycle_dwell(int code) {
   const bool can_dwell = has_dwell(code) || is_tapping(code);
   if (const BlockWord* P = words.find('P')) {
     if (P->is_literal && !P->has_point && P->value != 0.0 && !P->is_changed) {
-      const bool is_in_seconds = choose(WordDifference::cycle_dwell_unit, P->column) == 0;
-      words.set('P', P->value * (is_in_seconds ? 1.0 : 1e-3));
+      words.set('P', dwell_of(WordDifference::cycle_dwell_unit, *P));
     }
     memory.cycle.values[kP] = words['P'];
     if (!can_dwell && words['P'] == 0.0) words.erase('P');

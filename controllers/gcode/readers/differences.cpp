@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 
 namespace servomill::controllers {
@@ -113,6 +114,36 @@ constexpr auto kDifferences = std::to_array<WordDifferenceEntry>({
      {{{"a factor", "Haas, Mach", kHaas | kMach}, {"thousandths", "Fanuc", kFanuc}}},
      "",
      "Fanuc B-63944EN, scaling: P in units of 0.001; Haas Mill operator's manual, G51"},
+    {circular_pocket,
+     "G12 or G13",
+     {{{"a full circle from the +X side", "Mach", kMach},
+       {"a circle with a way into the wall of its own", "Haas", kHaas}}},
+     "",
+     "Using Mach3Mill, G12 and G13; Haas Mill operator's manual, G12 and G13; both from memory"},
+});
+
+// Codes of LinuxCNC, by ten times their numbers, and readers whose control lacks them.
+struct ForeignCodes {
+  char letter;
+  int from, to;
+  std::uint8_t without;
+};
+// LinuxCNC 2.9, G codes and M codes; grbl 1.1, gcode.c (all that it has); Fanuc B-63944EN, list of
+// G codes; Haas Mill operator's manual, lists of G and M codes; "Using Mach3Mill", table of G codes
+constexpr auto kForeign = std::to_array<ForeignCodes>({
+    {'G', 410, 429, kGrbl},
+    {'G', 430, 430, kGrbl},
+    {'G', 591, 593, kFanuc | kHaas | kGrbl},
+    {'G', 640, 640, kGrbl},
+    {'G', 730, 730, kGrbl},
+    {'G', 810, 890, kGrbl},
+    {'G', 901, 901, kFanuc | kHaas | kGrbl},
+    {'G', 911, 911, kFanuc | kHaas},
+    {'G', 922, 923, kFanuc | kHaas | kGrbl},
+    {'G', 980, 990, kGrbl},
+    {'M', 620, 630, kFanuc | kMach | kGrbl},
+    {'M', 700, 730, kFanuc | kMach | kGrbl},
+    {'M', 980, 990, kGrbl},
 });
 
 constexpr bool is_in_order() {
@@ -137,6 +168,13 @@ std::optional<int> reading_of(WordDifference difference, Reader reader) {
     if ((readings[static_cast<std::size_t>(k)].readers & bit(reader)) != 0) return k;
   }
   return std::nullopt;
+}
+
+bool lacks(Reader reader, char letter, int tenths) {
+  return std::any_of(kForeign.begin(), kForeign.end(), [&](const ForeignCodes& one) {
+    return one.letter == letter && one.from <= tenths && tenths <= one.to &&
+           (one.without & bit(reader)) != 0;
+  });
 }
 
 std::string both_readings(WordDifference difference) {

@@ -30,6 +30,7 @@ enum class WordDifference : std::uint8_t {
   start_motion,
   decimal_point,
   scale_factor,
+  circular_pocket,
   count
 };
 
@@ -53,6 +54,12 @@ std::span<const WordDifferenceEntry> word_differences();
 
 /// Which of the two readings a reader has, or nullopt.
 std::optional<int> reading_of(WordDifference difference, Reader reader);
+
+/// True for a code of LinuxCNC that the control of the reader is known not to have.
+bool lacks(Reader reader, char letter, int tenths);
+
+/// Ends a trial that cannot tell whether the control would read the program.
+struct Undetermined {};
 
 /// "G4 P without a decimal point: seconds (LinuxCNC, grbl), milliseconds (Fanuc, Haas); choose with
 /// --reader"

@@ -28,7 +28,7 @@ void ReadingStep::motion_in_force() {
   const int column = words.all().front().column;
   int motion = memory.pending_motion;
   if (motion < 0) {
-    choose(WordDifference::start_motion, column);
+    rapid_at_start(column);
     motion = 0;
   } else if (state.motion == 800 && motion <= 30) {
     if (!memory.is_pending_known) need(WordRule::motion_behind_cycle, column);
@@ -37,6 +37,51 @@ void ReadingStep::motion_in_force() {
   words.add('G', motion / 10.0, column);
   memory.pending_motion = -1;
   if (motion <= 30) leave_cycle();
+}
+
+// A feed without F stops a control; what runs is a rapid.
+void ReadingStep::rapid_at_start(int column) {
+  const bool can_feed = words.has('F') || state.feed_linear != 0.0 || options.feed.has_value();
+  if (can_feed || !apply(WordRule::rapid_at_start, column)) {
+    choose(WordDifference::start_motion, column);
+  }
+}
+
+// FreeCAD writes K0 into arcs of the XY plane.
+void ReadingStep::arc_centre() {
+  const int motion = motion_in_block();
+  if (motion != 20 && motion != 30) return;
+  BlockWord* centre = words.find("IJK"[normal_axis()]);
+  if (centre == nullptr || centre->value != 0.0 || !centre->is_literal) return;
+  need(WordRule::centre_off_plane, centre->column);
+  words.erase(*centre);
+}
+
+// Mach leaves the centre along +X, and comes back to it.
+void ReadingStep::circular_pocket() {
+  constexpr int kClockwise = 120, kCounterclockwise = 130;
+  const int code = words.has_code('G', kClockwise)          ? kClockwise
+                   : words.has_code('G', kCounterclockwise) ? kCounterclockwise
+                                                            : -1;
+  if (code < 0) return;
+  BlockWord& word = *words.code('G', code);
+  if (choose(WordDifference::circular_pocket, word.column) == 1) {
+    fail(word.column,
+         "G12 and G13 of Haas: the way into the wall is the control's; program it with G2 or G3");
+  }
+  need(WordRule::circular_pocket, word.column);
+  if (!words.has('I') || words['I'] <= 0.0 || words.has_axis() || normal_axis() != 2) {
+    fail(word.column, fmt::format("{} needs I > 0, G17, and no axis words", code_name('G', code)));
+  }
+  const std::string I = word_text('I', words['I']).substr(1);
+  if (memory.pending_motion < 0 && state.motion <= 30) memory.pending_motion = state.motion;
+  memory.is_pending_known = true;
+  behind.push_back("G91 G1 X" + I);
+  behind.push_back(fmt::format("{} I-{}", code == kClockwise ? "G2" : "G3", I));
+  behind.push_back("G1 X-" + I);
+  if (!is_incremental()) behind.emplace_back("G90");
+  words.erase(word);
+  words.erase('I');
 }
 
 // G80, alone or with axis words.

@@ -34,6 +34,7 @@ class ReadingStep {
   std::vector<std::string> before, behind;  // lines around that of `words`
 
  private:
+  void foreign_codes();
   // words_reading.cpp
   void decimal_points();
   void unit_codes();
@@ -58,6 +59,9 @@ class ReadingStep {
   void local_call();
   // motion_reading.cpp
   void motion_in_force();
+  void rapid_at_start(int column);
+  void arc_centre();
+  void circular_pocket();
   void cancel_cycle(bool has_words);
   void leave_cycle();
   void refuse_arc_behind_cycle(int motion, int column) const;
@@ -89,10 +93,17 @@ class ReadingStep {
   bool apply(ReaderRule rule, int column, std::string detail = {});
   /// The same; a reader that lacks the rule refuses the word.
   void need(ReaderRule rule, int column);
-  /// Which of two readings counts.
-  /// @throws InputError if the reader has neither
-  int choose(WordDifference difference, int column) const;
+  /// Which of two readings counts: that of the reader, or of all controls that would read the
+  /// program.
+  /// @throws InputError if that is neither
+  int choose(WordDifference difference, int column);
+  std::optional<int> chosen_reading(WordDifference difference, int column);
+  /// P without a decimal point, in seconds; of an unknown unit 0 and noted.
+  double dwell_of(WordDifference difference, const BlockWord& P);
+  /// What servomill does not read.
   [[noreturn]] void fail(int column, std::string message) const;
+  /// What the control does not read.
+  [[noreturn]] void refuse(int column, std::string message) const;
 
   /// Ten times the motion code of the block, or -1.
   int motion_code() const;

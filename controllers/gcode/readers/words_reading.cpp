@@ -37,12 +37,6 @@ struct Refused {
   std::string_view why;
 };
 constexpr auto kRefused = std::to_array<Refused>({
-    {'G', 120,
-     "a circular pocket, whose way into the wall each control makes in its own way; "
-     "program it with G2 or G3"},
-    {'G', 130,
-     "a circular pocket, whose way into the wall each control makes in its own way; "
-     "program it with G2 or G3"},
     {'G', 283, "sets machine coordinates without a move (TinyG); use G92"},
     {'G', 310, "a move up to what a probe touches, which is not simulated"},
     {'G', 650, "calls a macro of the control, whose text is not in the program"},
@@ -157,14 +151,23 @@ void ReadingStep::smoothing() {
   }
 }
 
+double ReadingStep::dwell_of(WordDifference difference, const BlockWord& P) {
+  const std::optional<int> reading = chosen_reading(difference, P.column);
+  if (reading) return P.value * (*reading == 0 ? 1.0 : 1e-3);
+  if (!options.accepts_unknown_dwells) fail(P.column, both_readings(difference));
+  reading_.notes_.push_back(
+      {P.column, both_readings(difference) + "; how long it dwells is left unknown"});
+  reading_.has_unknown_dwell_ = true;
+  return 0.0;
+}
+
 // G4 P, X and U (which the lines give as X), in seconds.
 void ReadingStep::dwell() {
   const BlockWord* code = words.code('G', 40);
   if (code == nullptr) return;
   if (const BlockWord* P = words.find('P')) {
     if (P->has_point || P->value == 0.0) return;
-    const bool is_in_seconds = choose(WordDifference::dwell_unit, P->column) == 0;
-    return words.set('P', P->value * (is_in_seconds ? 1.0 : 1e-3));
+    return words.set('P', dwell_of(WordDifference::dwell_unit, *P));
   }
   const BlockWord* X = words.find('X');
   if (X == nullptr || !apply(WordRule::dwell_word, X->column)) return;

@@ -256,7 +256,7 @@ struct Preparation {
         models(request.error_file.empty() ? described.errors
                                           : read_error_file(request.error_file, layout)),
         correction(described.machine.chain, model_of(models, request, model), request.axes),
-        known(read_work_knowledge(request, layout)),
+        known(read_work_knowledge(request, described.machine)),
         options(walk_options(request, described.machine, known.setup)) {
     const NcSettings& nc = described.machine.nc;
     known.depends_on_place = depends_on_place(correction, nc.lower, nc.upper);

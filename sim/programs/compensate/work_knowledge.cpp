@@ -118,9 +118,12 @@ void add_tool_length(const std::string& text, controllers::ToolTable& tools) {
   tools.replace(tool);
 }
 
-WorkKnowledge read_work_knowledge(const CompensateRequest& request, const JointLayout& layout) {
+WorkKnowledge read_work_knowledge(const CompensateRequest& request,
+                                  const MachineSettings& machine) {
+  const JointLayout& layout = machine.chain.layout;
   WorkKnowledge known;
   known.setup = program_setup(request.inputs, request.program_file);
+  choose_reader(request.inputs, machine.nc, known.setup);
   if (!request.inputs.parameter_file.empty()) {
     for (int system = 1; system <= controllers::kWorkSystems; ++system) {
       known.work_systems.insert(system);

@@ -10,6 +10,7 @@
 
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/program_setup.h"
+#include "sim/model/machine.h"
 #include "sim/programs/compensate/correction.h"
 
 namespace servomill::sim {
@@ -47,7 +48,7 @@ struct WorkKnowledge {
   bool depends_on_place = true;  // the errors are not the same everywhere
 };
 
-WorkKnowledge read_work_knowledge(const CompensateRequest& request, const JointLayout& layout);
+WorkKnowledge read_work_knowledge(const CompensateRequest& request, const MachineSettings& machine);
 
 /// Moves in a work system of unknown place would be corrected for another place. G10 makes a system
 /// known.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -86,9 +87,13 @@ const std::vector<Example>& examples() {
        "p.nc:1:5",
        {"G10 L20 P1 X5\nG0 X1\nM2\n", "G0 X1\nM2\n"}},
       {override_codes, "M50 P0\nG0 X1.\nM2\n", "p.nc:1:1", {}},
-      {start_motion, "X1.\nM2\n", "p.nc:1:1", {"G0 X1\nM2\n", ""}},
+      {start_motion, "F100.\nX1.\nM2\n", "p.nc:2:1", {"F100\nG0 X1\nM2\n", ""}},
       {decimal_point, "G0 X1000\nM2\n", "p.nc:1:4", {}},
       {scale_factor, "G51 P2\nG0 X1.\nM2\n", "p.nc:1:5", {"G0 X2\nM2\n", "G0 X0.002\nM2\n"}},
+      {circular_pocket,
+       "G12 I4. F300.\nM2\n",
+       "p.nc:1:1",
+       {"F300\nG1 X4\nG2 I-4\nG1 X0\nM2\n", ""}},
   };
   return all;
 }
@@ -153,19 +158,80 @@ TEST(DecimalPoint, IncrementsAreThousandths) {
             moves_of("G0 X1000\nG4 P2\nM2\n", strict));
 }
 
-TEST(DecimalPoint, AProgramWithoutAnyIsReported) {
-  ProgramSetup setup;
+std::vector<std::string> warnings_of(const std::string& text, ProgramSetup setup = {}) {
   setup.reader = Reader::any;
-  Interpreter interpreter("G0 X0\nG0 X1000\nM2\n", "p.nc", setup);
+  Interpreter interpreter(text, "p.nc", std::move(setup));
   interpreter.rest();
-  ASSERT_EQ(interpreter.warnings().size(), 1u);
-  EXPECT_EQ(to_string(interpreter.warnings()[0]),
-            "p.nc:2:4: error: no length of the program has a decimal point: read in millimetres, "
-            "inches or degrees (LinuxCNC, grbl, Mach); Fanuc and Haas may read increments of 0.001 "
-            "mm; choose with --decimal-point or --reader");
-  Interpreter other("G0 X1000\nG0 X1.\nM2\n", "p.nc", setup);
-  other.rest();
-  EXPECT_TRUE(other.warnings().empty());
+  std::vector<std::string> out;
+  for (const Fault& one : interpreter.warnings()) out.push_back(to_string(one));
+  return out;
+}
+
+TEST(DecimalPoint, TheFirstLengthWithoutOneIsReported) {
+  const std::vector<std::string> found = warnings_of("G0 X0 Y1.\nG0 Z2. X1000\nX5\nM2\n");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0],
+            "p.nc:2:8: error: a length without a decimal point: read in millimetres or inches "
+            "(LinuxCNC, grbl, Mach); Fanuc and Haas may read increments of 0.001 mm; choose with "
+            "--decimal-point or --reader");
+  EXPECT_TRUE(warnings_of("G0 X1000. Y0\nM2\n").empty());
+  ProgramSetup chosen;
+  chosen.decimal_point = DecimalPoint::calculator;
+  EXPECT_TRUE(warnings_of("G0 X1000\nM2\n", chosen).empty());
+}
+
+// G28 beside G0 stops LinuxCNC and grbl; the others agree on H0.
+TEST(WordDifferences, AreReadAsAllControlsDoThatWouldReadTheProgram) {
+  const std::string program = "G0 G28 Z0.\nG43 H0 Z1.\nM2\n";
+  EXPECT_EQ(moves_of(program, setup_for(Reader::any)),
+            moves_of("G28 Z0\nG49 G0 Z1\nM2\n", setup_for(Reader::linuxcnc)));
+  const std::vector<std::string> found = warnings_of(program);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[1],
+            "p.nc:2:5: error: G43 H0: read as no length (Fanuc, Haas, Mach), since LinuxCNC would "
+            "stop at line 1, grbl at line 1");
+}
+
+// Behind the word, too: what stops LinuxCNC stands in line 3.
+TEST(WordDifferences, AreReadByTheWholeProgram) {
+  EXPECT_EQ(moves_of("T1 M6\nG43 H0\nG0 G28 Z0.\nM2\n", setup_for(Reader::any)),
+            moves_of("T1 M6\nG49\nG28 Z0\nM2\n", setup_for(Reader::linuxcnc)));
+}
+
+// G28 beside G0 leaves Mach, whose dwell is as it is set.
+TEST(WordDifferences, AreNotReadAsOneOfThePossibleControlsDoes) {
+  EXPECT_EQ(moves_of("G0 G28 Z0.\nG4 P5\nM2\n", setup_for(Reader::any)),
+            "p.nc:2:4: error: " + both_readings(WordDifference::dwell_unit));
+}
+
+TEST(WordDifferences, LeaveADwellUnknownThatIsNotNeeded) {
+  ProgramSetup setup = setup_for(Reader::any);
+  setup.accepts_unknown_dwells = true;
+  Interpreter interpreter("G4 P2\nG0 Z5.\nG99 G82 X1. Z-2. R1. P500 F100.\nG4 P3.\nM2\n", "p.nc",
+                          setup);
+  std::vector<double> dwells;
+  while (const Move* move = interpreter.next()) {
+    if (move->kind == MoveKind::dwell) dwells.push_back(move->value);
+  }
+  ASSERT_EQ(dwells.size(), 3u);
+  EXPECT_TRUE(std::isnan(dwells[0]));
+  EXPECT_TRUE(std::isnan(dwells[1]));
+  EXPECT_EQ(dwells[2], 3.0);
+  ASSERT_EQ(interpreter.warnings().size(), 2u);
+  EXPECT_EQ(interpreter.warnings()[0].message,
+            both_readings(WordDifference::dwell_unit) + "; how long it dwells is left unknown");
+}
+
+// From the centre to +X, once round, and back; the motion code in force stays.
+TEST(CircularPocket, OfMachBeginsAtPlusX) {
+  const ProgramSetup setup = setup_for(Reader::mach);
+  EXPECT_EQ(moves_of("G0 X10. Y20.\nG12 I4. F300.\nX0.\nM2\n", setup),
+            moves_of("G0 X10 Y20\nF300\nG1 X14\nG2 I-4\nG1 X10\nG0 X0\nM2\n",
+                     setup_for(Reader::linuxcnc)));
+  EXPECT_EQ(moves_of("G91 G13 I4. F300.\nG1 X1.\nM2\n", setup),
+            moves_of("G91 F300\nG1 X4\nG3 I-4\nG1 X-4\nX1\nM2\n", setup_for(Reader::linuxcnc)));
+  EXPECT_EQ(moves_of("G12 I-4. F300.\nM2\n", setup),
+            "p.nc:1:1: error: G12 needs I > 0, G17, and no axis words");
 }
 
 }  // namespace

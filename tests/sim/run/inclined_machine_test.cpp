@@ -55,20 +55,20 @@ TEST(DirectionOfAnAxis, MayHaveAnyLength) {
 TEST(DirectionOfAnAxis, ThatIsNoneIsRefused) {
   const std::string rule = "must be [x, y, z], not all 0; any length means the same";
   EXPECT_EQ(message_with("[0, 1, 1]", "[0, 0, 0]"),
-            "67:13: error: axis.B.direction = [0, 0, 0]; " + rule);
+            "68:13: error: axis.B.direction = [0, 0, 0]; " + rule);
   EXPECT_EQ(message_with("[0, 1, 1]", "[0, 1]"),
-            "67:13: error: axis.B.direction = [0, 1]; " + rule);
+            "68:13: error: axis.B.direction = [0, 1]; " + rule);
   EXPECT_EQ(message_with("[0, 1, 1]", "[0, \"1\", 1]"),
-            "67:17: error: axis.B.direction[1] = \"1\"; must be a number");
+            "68:17: error: axis.B.direction[1] = \"1\"; must be a number");
   EXPECT_EQ(message_with("[0, 1, 1]", "[0, nan, 1]"),
-            "67:17: error: axis.B.direction[1] = nan; must be finite");
-  EXPECT_EQ(message_with("[0, 1, 1]", "45"), "67:13: error: axis.B.direction = 45; must be a list");
+            "68:17: error: axis.B.direction[1] = nan; must be finite");
+  EXPECT_EQ(message_with("[0, 1, 1]", "45"), "68:13: error: axis.B.direction = 45; must be a list");
 }
 
 TEST(DirectionOfAnAxis, OfALinearAxisIsRefused) {
   EXPECT_EQ(
       message_with("[axis.X]", "[axis.X]\ndirection = [1, 1, 0]"),
-      "13:13: error: axis.X.direction = [1, 1, 0]; must not be given: only rotary axes can be "
+      "14:13: error: axis.X.direction = [1, 1, 0]; must not be given: only rotary axes can be "
       "inclined");
 }
 
