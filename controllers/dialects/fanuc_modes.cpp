@@ -262,7 +262,8 @@ double FanucMachine::length_of(int number, int column) const {
   return found->second;
 }
 
-// G43, G44, G49 and H. Without Z the change of length moves Z where TOS is 0 (M).
+// G43, G44, G49 and H. Without Z the change of length moves Z where TOS is 0 (B-63943EN-1/02
+// p. 1654).
 void FanucMachine::set_length() {
   const FanucWord* H = word('H');
   if (!has(Group::length)) {

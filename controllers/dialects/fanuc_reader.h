@@ -23,8 +23,9 @@ namespace servomill::controllers {
 
 /// Machine builder's parameters that change the effect of a program.
 struct FanucSettings {
-  bool EVO = false;      // No. 5001#6: the length cancelled by G53, G28, G30 returns by itself (M)
-  bool TOS = false;      // No. 5006#6: length by shift of coordinates, not by motion of Z (M)
+  bool EVO = false;  // No. 5001#6: the length cancelled by G53, G28, G30 returns by itself (M)
+  /// No. 5006#6: length by shift of coordinates, not by motion of Z (B-63943EN-1/02 p. 1654).
+  bool TOS = false;
   bool LRP = false;      // No. 1401#1: G0 along a line (B-63844EN/02 p. 48)
   bool is_IS_C = false;  // increment of 0.1 um and 0.0001 deg, not 1 um and 0.001 deg
   bool TLB = false;  // No. 5001#1: length along the normal of the plane (B-63943EN-1/02 p. 1654)
@@ -59,8 +60,8 @@ struct FanucRules {
   double G43_sign = 1.0;
   bool machine_position_cancels_length = true;  // G53: B-63844EN/02 p. 204
   bool reference_return_cancels_length = true;  // G28, G30: the same page
-  bool G49_alone_moves_Z = true;                // M, where TOS is 0
-  bool G43_alone_moves_Z = true;                // M, where TOS is 0
+  bool G49_alone_moves_Z = true;                // where TOS is 0: B-63943EN-1/02 p. 1654
+  bool G43_alone_moves_Z = true;                // the same
   bool length_returns_only_with_EVO = true;     // M
   // positions
   bool G53_ignores_work_offset = true;

@@ -14,8 +14,10 @@
 /// [306] TNC 306 technical manual: p. 4-99 MP7440, halt at M6 (V)
 /// [640] TNC 640 ISO (34059x-05): p. 170 tool 0, p. 631 formats (V)
 /// [620] TNC 620 cycle programming (340 56x-02): p. 256 end of cycle 26 (V)
-/// Everything else is M: cycles 7 to 11, 19, 32 and 247, PLANE RESET STAY, TRANS DATUM, M140, FT,
-/// FU, F of inch programs in 0.1 inch/min.
+/// [41U] TNC 410 user's manual: p. 186 cycle 11 and its end (V)
+/// [TM] TNC 426, TNC 430 technical manual: p. 7-30 the tolerance is that of cycle 32 or MP1096 (V)
+/// Everything else is M: cycles 7 to 10, 19 and 247, the form of cycle 32, PLANE RESET STAY, TRANS
+/// DATUM, M140, FT, FU (mm per revolution: [640] p. 631), F of inch programs in 0.1 inch/min.
 ///
 /// Assumptions, where no manual was found that says otherwise: M90, M103, M109, M110, M112, M118
 /// and M120 are off when a program starts; transformations and M functions of the control survive a
@@ -38,7 +40,8 @@ struct HeidenhainSettings {
   /// when the program starts, and a program must switch them off. Without, the control rejects
   /// them.
   bool has_tilting = false;
-  /// FMAX: all axes arrive together on a straight line. Not found in a manual.
+  /// FMAX: all axes arrive together on a straight line, as G00 does ("straight line at rapid
+  /// traverse": iTNC 530, 60642x-03, ISO p. 211). Of FMAX itself nothing was found.
   bool is_rapid_straight = true;
   /// The display of rotary axes is reduced to less than 360 degrees, so that M126 acts. [476] p.
   /// 192

@@ -88,6 +88,8 @@ struct DialectMotion {
   bool is_Z_known = false;  // before it
 
   bool names(Axis axis) const;
+  /// A rapid whose axes may arrive one after the other, off the line between its ends.
+  bool may_leave_its_line() const { return is_rapid && words.size() > 1; }
   bool rises() const { return arc && names(kAllAxes[static_cast<std::size_t>(arc->path.c)]); }
 };
 

@@ -160,8 +160,9 @@ class Fanuc final : public IsoDialect {
   // What no block can say of the way to its end.
   void assume_ways(const DialectMotion& motion) {
     // B-63844EN/02 p. 48
-    if (motion.is_rapid && motion.names(Axis::X) && motion.names(Axis::Y)) {
-      assume("rapids in X and Y meet nothing, also off their line (No. 1401#1, LRP, may be 0)");
+    if (motion.may_leave_its_line()) {
+      assume(
+          "rapids of several axes meet nothing, also off their line (No. 1401#1, LRP, may be 0)");
     }
   }
 
@@ -214,7 +215,7 @@ class Fanuc final : public IsoDialect {
   }
 
   // G49 alone moves Z by the old length where length works by axis motion, TOS, No. 5006#6, = 0
-  // (M); with G53 it is cancelled safely (B-63844EN/02 p. 204).
+  // (B-63943EN-1/02 p. 1654); with G53 it is cancelled safely (B-63844EN/02 p. 204).
   std::string retract_text() const {
     const double Z = settings_.retract_Z / unit(Axis::Z);
     return "G90 G49 G53 G0 Z" + number(fixed_text(Z, decimals(Axis::Z)));

@@ -59,7 +59,8 @@ class Heidenhain final : public DialectPrinter {
     return "circles lie in the plane that the tool axis determines (TNC 407 manual p. 5-20)";
   }
 
-  // Cycle 32 without a tolerance takes that of the machine (M).
+  // Cycle 32 without a tolerance takes that of the machine, MP1096 (technical manual TNC 426/430
+  // p. 7-30; that the tolerance may be missing: M).
   void put_smoothing(bool is_on) override {
     path_mode(PathMode::continuous, is_on ? settings_.smoothing : 0.0);
   }
@@ -78,6 +79,11 @@ class Heidenhain final : public DialectPrinter {
     check_positions(motion, kMostPosition);
     if (!motion.is_place) check_frame(motion);
     check_rotation(motion);
+    // "Straight line at rapid traverse" is G00: iTNC 530 (60642x-03) ISO p. 211. Of FMAX none was
+    // found.
+    if (motion.may_leave_its_line()) {
+      assume("rapids of several axes meet nothing, also off their line (FMAX may not be straight)");
+    }
     if (motion.arc) {
       const Eigen::Vector3d& centre = motion.arc->centre;
       put("CC" + words({{Axis::X, centre.x()}, {Axis::Y, centre.y()}}));
@@ -203,6 +209,11 @@ class Heidenhain final : public DialectPrinter {
           "selects a work system other than G54; write a program for each, with its --preset"};
     }
     if (!settings_.preset) assume("the active preset is G54");
+    // No manual was found that describes how these end; scaling: TNC 410 p. 186, TNC 620 p. 256
+    assume(
+        settings_.has_rotary_axes
+            ? "CYCL DEF 7, 8, 10, PLANE RESET and M129 end shift, mirror image, rotation and tilt"
+            : "CYCL DEF 7, 8 and 10 end shift, mirror image and rotation");
     if (!tool_) {
       throw Unsayable{
           "moves before a tool is called; the control takes axis and length of the tool called: "

@@ -56,6 +56,12 @@ class Siemens final : public IsoDialect {
 
   void motion(const DialectMotion& motion) override {
     check_positions(motion, kMostPosition);
+    // 6FC5398-2EP40-0BA0 p. 181: G0 under G64 is a line, under G60 where RTLION is in force
+    if (stops_at_ends_ && motion.may_leave_its_line()) {
+      assume(
+          "rapids of several axes meet nothing, also off their line (G60; RTLIOF may be in "
+          "force)");
+    }
     if (motion.is_place) return place(motion);
     if (modes_.work_system != motion.work_system) work_system(motion.work_system);
     // Basic frames act with every settable one (6FC5397-0BP10-0BA0, K2)
@@ -80,7 +86,8 @@ class Siemens final : public IsoDialect {
   }
   void path_mode(PathMode mode, double tolerance) override {
     if (mode == PathMode::exact_path) throw Unsayable{std::string(kExactPath)};
-    if (mode == PathMode::exact_stop) return put("G60");
+    stops_at_ends_ = mode == PathMode::exact_stop;
+    if (stops_at_ends_) return put("G60");
     put(tolerance > 0.0 ? fmt::format("G642 CTOL={}", fixed_text(tolerance / mm, 5)) : "G64");
   }
   // T may change the tool by itself (MD22550 = 0; W1 p. 33): only with its M6.
@@ -90,6 +97,7 @@ class Siemens final : public IsoDialect {
     put("M6");
     assume("T selects the tool and M6 changes it");
     forget_modes();
+    stops_at_ends_ = false;
     counts_.fill({});
     modes_.feed_mode = FeedMode::units_per_minute;
     modes_.work_system = system;
@@ -230,6 +238,7 @@ class Siemens final : public IsoDialect {
   };
   std::array<std::optional<Count>, 3> counts_{};  // of A, B, C as written last
   bool is_of_machine_ = false;
+  bool stops_at_ends_ = false;                         // G60
   Eigen::Vector3d through_ = Eigen::Vector3d::Zero();  // of an arc outside XY, half way along
 
   int feed_decimals() const override { return 4; }

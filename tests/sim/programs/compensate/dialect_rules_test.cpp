@@ -55,6 +55,16 @@ TEST(DialectRules, MovesToWhereAMachineMightBeAreWritten) {
             "L Z+5 FMAX\n");
 }
 
+TEST(DialectRules, MovesToZeroAreWrittenWhereZeroIsAPositionOfTheMachine) {
+  for (const Dialect dialect : {Dialect::fanuc, Dialect::siemens}) {
+    Trial trial = dialect_trial(dialect, "G0 X0 Y0\nM2\n");
+    trial.request.inputs.parameter_file.clear();
+    trial.request.work_offsets = {"X=0,Y=0,Z=0"};
+    const bool has_points = dialect == Dialect::fanuc;
+    EXPECT_EQ(body(trial), has_points ? "G54\nG0 X0. Y0.\n" : "G54\nG0 X0 Y0\n");
+  }
+}
+
 TEST(DialectRules, SpindlesStopBeforeTheToolChangeThatStopsThem) {
   EXPECT_EQ(body(Dialect::fanuc, kStart + "G0 X1 Y1 Z5\nG53 G0 Z0\nM5\nT2 M6\nM2\n"),
             "T1 M6\n"
@@ -334,8 +344,11 @@ TEST(DialectRules, WhatTheOperatorHasToMakeSureOfIsWrittenAndWarnedOf) {
       warned("assumes that machine coordinates count from the same zero as in the original"));
   EXPECT_NE(done.program.find("(ASSUMED: H1 HOLDS THE LENGTH OF TOOL 1)\n"), std::string::npos);
   Trial heidenhain = dialect_trial(Dialect::heidenhain, kStart + "G0 X1 Y1\nM2\n");
-  EXPECT_NE(heidenhain.run().program.find("; assumed: the active preset is G54\n"),
-            std::string::npos);
+  EXPECT_NE(heidenhain.run().program.find(
+                "; assumed: the active preset is G54\n"
+                "6 ; assumed: CYCL DEF 7, 8 and 10 end shift, mirror image and rotation\n"),
+            std::string::npos)
+      << heidenhain.run().program;
   heidenhain.request.preset = 3;
   const std::string text = heidenhain.run().program;
   EXPECT_EQ(text.find("active preset"), std::string::npos);
@@ -651,10 +664,28 @@ TEST(DialectRules, RetractsThatGoDownAreRefused) {
             "and the tool length");
 }
 
+// Verification takes a rapid across whether its axes arrive together or not: what is beside its
+// line is the user's word. Siemens moves along it where G64 is in force ([P] p. 181).
+TEST(DialectRules, RapidsThatMayLeaveTheirLineAreTheUsersWord) {
+  const auto is_assumed = [](Dialect dialect, const std::string& moves) {
+    const std::string written = dialect_trial(dialect, kStart + moves + "M2\n").run().program;
+    std::string text;
+    for (const char c : written) text += static_cast<char>(std::tolower(c));
+    return text.find("rapids of several axes meet nothing, also off their line") !=
+           std::string::npos;
+  };
+  for (const Dialect dialect : {Dialect::fanuc, Dialect::heidenhain}) {
+    EXPECT_TRUE(is_assumed(dialect, "G0 X1 Y1\nZ5\n"));
+    EXPECT_FALSE(is_assumed(dialect, "G0 X1\nY1\nZ5\nG1 X2 Y2 F100\n"));
+  }
+  EXPECT_FALSE(is_assumed(Dialect::siemens, "G0 X1 Y1\nZ5\n"));
+  EXPECT_TRUE(is_assumed(Dialect::siemens, "G61.1\nG0 X1 Y1\nZ5\n"));
+}
+
 TEST(DialectRules, WhatNoBlockCanExpressIsAssumedInTheFile) {
   const std::string text =
       dialect_trial(Dialect::fanuc, kStart + "G0 X1 Y1\nZ5\nG30 Z5\nM2\n").run().program;
-  EXPECT_NE(text.find("RAPIDS IN X AND Y MEET NOTHING"), std::string::npos) << text;
+  EXPECT_NE(text.find("RAPIDS OF SEVERAL AXES MEET NOTHING"), std::string::npos) << text;
   EXPECT_NE(text.find("THE SECOND REFERENCE POSITION"), std::string::npos) << text;
 }
 

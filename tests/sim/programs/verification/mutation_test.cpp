@@ -97,7 +97,7 @@ bool is_found(const CompensateRequest& request, const std::string& mutant) {
 
 struct Tally {
   int mutants = 0, found = 0, equivalent = 0, within_tolerance = 0;
-  std::vector<std::string> missed;
+  std::vector<std::string> missed, same;  // by kind, line and text
 };
 
 void try_kind(const MutationKind& kind, const CompensateRequest& request,
@@ -118,14 +118,16 @@ void try_kind(const MutationKind& kind, const CompensateRequest& request,
     ++tally.mutants;
     const std::string text = text_of(mutant, request.dialect);
     const std::vector<Effect> changed = effects(text, request.dialect);
+    const std::string said = fmt::format("{}, line {}: \"{}\"", kind.name, i + 1, lines[i]);
     if (changed == effect) {
       ++tally.equivalent;
+      tally.same.push_back(said);
     } else if (is_found(request, text)) {
       ++tally.found;
     } else if (is_within(changed, effect, kTolerance)) {
       ++tally.within_tolerance;
     } else {
-      tally.missed.push_back(fmt::format("{}, line {}: \"{}\"", kind.name, i + 1, lines[i]));
+      tally.missed.push_back(said);
     }
   }
 }
@@ -145,6 +147,7 @@ TEST_P(Mutations, ThatChangeWhatTheControlDoesAreFound) {
         "the tolerance\n",
         kDialects[static_cast<std::size_t>(GetParam())], kind.name, tally.mutants, tally.found,
         tally.equivalent, tally.within_tolerance);
+    for (const std::string& one : tally.same) fmt::print("  equivalent: {}\n", one);
     all.mutants += tally.mutants;
     all.found += tally.found;
     for (const std::string& one : tally.missed) ADD_FAILURE() << one;
