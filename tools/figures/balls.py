@@ -87,7 +87,7 @@ def draw_nest(run):
             ax.set_ylim(low, high)
         grid[row][0].set_ylabel(f"{name} of the table, µm")
     figure.align_ylabels([row[0] for row in grid])
-    style.headline(figure, "R-test: way of the ball in its nest" + _before_and_after(run, cases))
+    style.headline(figure, "R-test: path of the ball in its nest" + _before_and_after(run, cases))
     return figure
 
 

@@ -114,4 +114,4 @@ def _draw_plan(ax, run, first, cases, rows, looks):
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel("X of the workpiece, mm")
     ax.set_ylabel("Y, mm")
-    ax.set_title(f"Plan view: programmed (dotted), deviations of the tip x {factor:g}; grey: the way the tool leans")
+    ax.set_title(f"Plan view: programmed (dotted), deviations of the tip x {factor:g}; grey: direction in which the tool leans")

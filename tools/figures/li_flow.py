@@ -8,7 +8,7 @@ BOXES = {   # centre, text, colour of the module
     "amplitude": (0.50, 0.84, "post of the middle: amplitude\na = S_mid − (S_0 + S_1) / 2", style.BLUE),
     "model": (0.50, 0.60, "model of the error\nε(t) = a sin πt   (3.3)", style.BLUE),
     "moved": (0.50, 0.36, "largest ε over the tolerance?\nS_comp = S − ε   (3.4)", style.BLUE),
-    "paths": (0.84, 0.36, "way with and without,\nstraight way", style.RED),
+    "paths": (0.84, 0.36, "paths with and without,\nstraight line", style.RED),
     "left": (0.84, 0.60, "what is left of the error", style.RED),
 }
 MODULES = ((0.16, "post-processing", style.GREY), (0.50, "model and compensation", style.BLUE),
@@ -30,19 +30,19 @@ def draw(_):
     for first, second in (("locations", "between"), ("between", "posts"), ("amplitude", "model"), ("model", "moved"),
                           ("paths", "left")):
         sign = 1.0 if BOXES[second][1] < BOXES[first][1] else -1.0
-        _way(ax, [(BOXES[first][0], BOXES[first][1] - sign * HALF_HEIGHT),
+        _arrow(ax, [(BOXES[first][0], BOXES[first][1] - sign * HALF_HEIGHT),
                   (BOXES[second][0], BOXES[second][1] + sign * HALF_HEIGHT)])
     x, y = BOXES["posts"][:2]
     top = BOXES["amplitude"][1]
-    _way(ax, [(x + HALF_WIDTH, y), (0.31, y), (0.31, top), (BOXES["amplitude"][0] - HALF_WIDTH - 0.02, top)])
-    _way(ax, [(BOXES["moved"][0] + HALF_WIDTH, y), (BOXES["paths"][0] - HALF_WIDTH, y)])
-    _way(ax, [(x, y - HALF_HEIGHT), (x, 0.16), (BOXES["paths"][0], 0.16), (BOXES["paths"][0], y - HALF_HEIGHT)])
+    _arrow(ax, [(x + HALF_WIDTH - 0.02, y), (0.31, y), (0.31, top), (BOXES["amplitude"][0] - HALF_WIDTH - 0.02, top)])
+    _arrow(ax, [(BOXES["moved"][0] + HALF_WIDTH, y), (BOXES["paths"][0] - HALF_WIDTH, y)])
+    _arrow(ax, [(x, y - HALF_HEIGHT), (x, 0.16), (BOXES["paths"][0], 0.16), (BOXES["paths"][0], y - HALF_HEIGHT)])
     ax.text(0.50, 0.17, "S, uncompensated", ha="center", va="bottom", color=style.GREY)
     style.headline(figure, "Nonlinear error of rotary axes: from cutter locations to compensated posts")
     return figure
 
 
-def _way(ax, corners):
+def _arrow(ax, corners):
     xs, ys = zip(*corners[:-1])
     if len(corners) > 2:
         ax.plot(xs, ys, color=style.BLACK, linewidth=1.3, zorder=1)

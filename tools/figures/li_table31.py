@@ -32,7 +32,7 @@ def draw(run, table):
         ax.axhline(0.0, color=style.BLACK, linewidth=0.8)
         ax.set_ylabel("minus table, µm")
     for ax in grid[0]:
-        ax.set_xlabel("way along the chord, mm")
+        ax.set_xlabel("distance along the chord, mm")
     style.headline(figure, f"Table 3.1 from tool axes of unit length: within {np.abs(here - paper).max():.1f} µm; "
                            f"a sine is {np.abs(curves[0][1] - paper).max():.0f} µm off")
     return figure

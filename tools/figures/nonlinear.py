@@ -59,12 +59,12 @@ class Segments:
         return self.line == self.line[np.argmax(error)]
 
     def chord(self, places):
-        """Way of the straight tip since the segment's begin, mm."""
+        """Distance of the straight tip since the segment's begin, mm."""
         tip = self.tip_exact[places]
         return np.linalg.norm(tip - tip[0], axis=1)
 
     def off_the_chord(self):
-        """(way along its chord (mm), tip of the case without strategy off the chord at equal t (um, vectors)) of the
+        """(distance along its chord (mm), tip of the case without strategy off the chord at equal t (um)) of the
         segment with the largest error; needs no other case."""
         places = self.longest_error()
         tip, s = self.at(self.plain, "tool_position_true")[places], self.s[places]
@@ -84,8 +84,8 @@ class Segments:
                                 np.sin(A) * turned + np.cos(A) * error[:, 2]])
 
     def off_the_line(self):
-        """The error of off_the_chord where the axes are, perpendicular to the line between the posts: (way along the
-        chord (mm), um)."""
+        """The error of off_the_chord where the axes are, perpendicular to the line between the posts: (distance
+        along the chord (mm), um)."""
         places = self.longest_error()
         way, error = self.off_the_chord()
         line = self.straight[places][-1] - self.straight[places][0]
@@ -125,7 +125,7 @@ def draw_distribution(run):
         top.set_title(f"{title}: {style.number(size.max())} µm")
         top.tick_params(labelbottom=False)
         bottom.set_title(f"what is left: sine {told[-2]:.1f} %, parabola {told[-1]:.2g} %")
-        bottom.set_xlabel("way along the chord, mm")
+        bottom.set_xlabel("distance along the chord, mm")
     grid[0][0].set_ylabel("|error|, µm")
     grid[1][0].set_ylabel("|error − model|, µm")
     style.headline(figure, f"Nonlinear error of one segment: of the tip, a sine leaves {told[0]:.1f} %, "
@@ -181,16 +181,16 @@ def draw_segment(run):
         style.line(middle, way, np.linalg.norm(values, axis=1), look)
     share = 100.0 * np.linalg.norm(rest, axis=1).max() / np.linalg.norm(error, axis=1).max()
     middle.set_title(f"Posts off the line: {share:.1f} % left")
-    middle.set_ylabel("µm")
+    middle.set_ylabel("distance from the line, µm")
     peak = max(np.linalg.norm(segments.tip_error(case)[places], axis=1).max() for case in [*tips, posted])
     for case in [*tips, posted]:
         error = np.linalg.norm(segments.tip_error(case)[places], axis=1)
         style.line(right, way, np.maximum(error, LEAST_SHOWN * peak), looks[case.name])
     right.set_yscale("log")
     right.set_title("Tip off the chord")
-    right.set_ylabel("µm")
+    right.set_ylabel("distance from the chord, µm")
     for ax in (middle, right):
-        ax.set_xlabel("way along the chord, mm")
+        ax.set_xlabel("distance along the chord, mm")
     tip_before, tip_after = (np.linalg.norm(segments.tip_error(case)[places], axis=1).max()
                              for case in (segments.plain, posted))
     style.headline(figure, f"As published the posts come to the line; the tip stays off the chord: "
@@ -199,7 +199,7 @@ def draw_segment(run):
 
 
 def draw_way(run):
-    """Figure 4.1: way in the machine, enlarged around the largest error, and the errors along it."""
+    """Figure 4.1: path in the machine, enlarged around the largest error, and the errors along it."""
     segments = Segments(run)
     looks = _case_looks(segments)
     cases = [segments.plain, *segments.others]
@@ -219,7 +219,7 @@ def draw_way(run):
         style.line(enlarged, shown[:, i], shown[:, j], looks[case.name])
     style.line(enlarged, segments.post_exact[wide][:, i], segments.post_exact[wide][:, j],
                style.Look("", style.GREY, style.DOT, "", 2.6))
-    for ax, title in ((whole, "Way of the axes"), (enlarged, f"Enlarged, deviations × {ENLARGED:g}")):
+    for ax, title in ((whole, "Path of the axes"), (enlarged, f"Enlarged, deviations × {ENLARGED:g}")):
         ax.set_xlabel(f"{'XYZ'[i]} of the machine, mm")
         ax.set_ylabel(f"{'XYZ'[j]} of the machine, mm")
         ax.set_title(title)

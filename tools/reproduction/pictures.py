@@ -59,9 +59,9 @@ PICTURES = (
     Picture("L", "table 3.1", "li_table31", ("example1_unit",),
             "the values behind figure 3.2.", "tool axes of unit length; how far a sine and a parabola are from the table."),
     Picture("L", "3.3", "li_3_3", ("example1_unit",),
-            "example 1 in the machine: way uncompensated, compensated and ideal; error before and after."),
+            "example 1 in the machine: path uncompensated, compensated and ideal; error before and after."),
     Picture("L", "4.1", "li_4_1", ("table32_identified", "table32_low"),
-            "example 2 in the machine: way uncompensated, compensated and ideal, with an enlargement."),
+            "example 2 in the machine: path uncompensated, compensated and ideal, with an enlargement."),
 )
 
 NOT_DRAWN = ("Not drawn, since they are sketches and photographs: [G] figures 1 to 5, 7, 8, 13.",)
