@@ -10,8 +10,8 @@
 namespace servomill::sim {
 namespace {
 
-constexpr std::size_t kLeastSamples = 401, kMostSamples = 8001;
-constexpr double kApart = 2.5 * mm;    // places on a longer axis; of a rotary one mm read as deg
+constexpr std::size_t kLeastSamples = 1601, kMostSamples = 8001;
+constexpr double kApart = 0.5 * mm;    // places on a longer axis; of a rotary one mm read as deg
 constexpr double kEndless = 500 * mm;  // of a linear axis without travel, to either side of zero
 constexpr double kTurn = 360 * deg;
 

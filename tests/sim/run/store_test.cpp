@@ -146,7 +146,7 @@ TEST_F(RunFile, HasErrorsOverAllOfTheTravelAndLocationErrors) {
   const InputFile file(path("out.h5"));
   const auto x = file.values("/errors/true/X/position"), exx = file.values("/errors/true/X/EXX");
   ASSERT_EQ(x.size(), exx.size());
-  EXPECT_EQ(x.size(), 1121U) << "a place each 2.5 mm";
+  EXPECT_EQ(x.size(), 5601U) << "a place each 0.5 mm";
   EXPECT_DOUBLE_EQ(x.front(), 600.0);
   EXPECT_DOUBLE_EQ(x.back(), 3400.0);
   EXPECT_NEAR(exx.front(), 6.0, 1e-9);
