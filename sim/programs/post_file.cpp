@@ -11,6 +11,7 @@
 #include "controllers/gcode/printer.h"
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_machine.h"
+#include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/verify_post.h"
 #include "sim/system/read_file.h"
 
@@ -84,13 +85,20 @@ void take_tools(const PostRequest& request, const controllers::ClData& data,
       options.tools.add(tool);
     }
   }
+  for (const std::string& text : request.tool_lengths) add_tool_length(text, options.tools);
+}
+
+bool has_length(const PostRequest& request, int tool) {
+  const std::string begin = fmt::format("{}=", tool);
+  return request.tool_length || !request.tool_table.empty() ||
+         std::any_of(request.tool_lengths.begin(), request.tool_lengths.end(),
+                     [&](const std::string& text) { return text.starts_with(begin); });
 }
 
 // 0 may be given as length, but is not assumed: under G49 and H0 the spindle nose would go where
 // the tip belongs, and they cancel the length that an operator has set.
 void refuse_unknown_tools(const PostRequest& request, const controllers::ClData& data) {
   const int wanted = request.options.tool;
-  const bool has_length = request.tool_length || !request.tool_table.empty();
   if (const controllers::ClRecord* first = data.first_without_tool()) {
     const bool loads_later =
         std::any_of(data.records.begin(), data.records.end(),
@@ -107,12 +115,12 @@ void refuse_unknown_tools(const PostRequest& request, const controllers::ClData&
       throw InputError({"--tool 0"},
                        "without a tool there is no length; add --tool N, or --tool-length 0");
     }
-    if (has_length) return;
-    throw InputError({request.cl_file, first->line, 0}, no_length_of(wanted));
+    if (!has_length(request, wanted)) {
+      throw InputError({request.cl_file, first->line, 0}, no_length_of(wanted));
+    }
   }
-  if (has_length) return;
   for (const controllers::ClRecord& record : data.records) {
-    if (record.kind != MoveKind::tool) continue;
+    if (record.kind != MoveKind::tool || has_length(request, record.number)) continue;
     throw InputError({request.cl_file, record.line, 0}, no_length_of(record.number));
   }
 }

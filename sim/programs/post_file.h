@@ -15,6 +15,7 @@ struct PostRequest {
   std::vector<std::string> changes;          // "KEY=VALUE": of the machine
   std::string tool_table;                    // of LinuxCNC's format; empty: none
   std::optional<double> tool_length;         // m, of every tool; without table
+  std::vector<std::string> tool_lengths;     // "1=50": of tool 1, in place of these
   bool has_no_tool = false;                  // before the first LOADTL, with tool_length 0
   std::optional<Eigen::Vector3d> part_zero;  // m: options.part_zero
   std::optional<double> retract_Z;           // m, machine coordinate: options.safe.retract_Z

@@ -33,10 +33,22 @@ double bounded_option(const Options& options, const std::string& name, sim::Quan
                                               options.get<std::string>(name), kMin, kMax, unit));
 }
 
-double length_option(const Options& options, const std::string& name) {
-  const double value = *quantity_option(options, name, sim::kLength, "mm");
-  if (value >= 0.0) return value;
-  throw InputError({"--" + name}, fmt::format("'{}' must be >= 0", options.get<std::string>(name)));
+// "110 mm" of every tool, "1=50" of one.
+void take_tool_lengths(const Options& options, sim::PostRequest& request) {
+  for (const std::string& text : options.list("tool-length")) {
+    if (text.find('=') != std::string::npos) {
+      request.tool_lengths.push_back(text);
+      continue;
+    }
+    const sim::ScaledText length = sim::scale_option(text, sim::kLength, "mm");
+    const std::string fault = !length.complaint.empty() ? length.complaint
+                              : length.si < 0.0         ? "must be >= 0"
+                                                        : "";
+    if (!fault.empty()) {
+      throw InputError({"--tool-length"}, fmt::format("'{}' {}", text, fault));
+    }
+    request.tool_length = length.si;
+  }
 }
 
 // "10,0,-5.5" in mm
@@ -121,7 +133,7 @@ sim::PostRequest request_of(const Options& options) {
   request.machine_file = options.get<std::string>("machine");
   request.changes = options.list("set");
   if (options.has("tools")) request.tool_table = options.get<std::string>("tools");
-  if (options.has("tool-length")) request.tool_length = length_option(options, "tool-length");
+  take_tool_lengths(options, request);
   if (options.has("start")) request.start = options.get<std::string>("start");
   controllers::PostOptions& post = request.options;
   post.mode = options.has("tcp")         ? controllers::PostMode::tip
@@ -196,8 +208,9 @@ int post_command(const Arguments& arguments) {
                 "G54 to G59");
   options.add()("tools", po::value<std::string>()->value_name("TABLE"),
                 "tool table in LinuxCNC's format, mm: lengths of the tools");
-  options.add()("tool-length", po::value<std::string>()->value_name("\"110 mm\""),
-                "length of every tool (mm); this or --tools is needed (0 is a length, too)");
+  options.add()("tool-length", po::value<std::vector<std::string>>()->value_name("\"110 mm\""),
+                "length of every tool, or 1=110 of tool 1 (mm); this or --tools is needed (0 is a "
+                "length, too)");
   options.add()("tool", po::value<int>()->value_name("N"),
                 "tool in the spindle before the first LOADTL; T1 where the file has none and "
                 "--tool-length is given; 0: none, G49, with --tool-length 0");

@@ -214,6 +214,21 @@ TEST(PostFile, LengthOfALoadedToolIsNotAssumed) {
   }
 }
 
+TEST(PostFile, LengthsMayBeThoseOfSingleTools) {
+  Locations locations("LOADTL/1\nFEDRAT/600\nGOTO/0,0,-130\nLOADTL/2\nGOTO/5,0,-130\n",
+                      "router_3axis");
+  PostRequest& request = locations.request();
+  request.tool_lengths = {"1=50"};
+  EXPECT_EQ(fault_of(request), locations.at(4) + no_length_of(2));
+  request.tool_lengths = {"1=50", "2=60 mm"};
+  const std::string program = post_file(request).program;
+  EXPECT_NE(program.find("tool 1: length 50 mm"), std::string::npos) << program;
+  EXPECT_NE(program.find("tool 2: length 60 mm"), std::string::npos) << program;
+  request.tool_lengths = {"1=50", "2=sixty"};
+  EXPECT_EQ(fault_of(request),
+            "--tool-length 2=sixty: error: length must be a length such as \"3 mm\"");
+}
+
 // The first section runs with the tool of --tool, its length in force, and that tool is loaded.
 TEST(PostFile, ToolBeforeTheFirstLoadtl) {
   Locations locations(kTilted + "LOADTL/2\nRAPID\nGOTO/5,0,50\n", "generic_trunnion_ac");
