@@ -23,7 +23,22 @@ constexpr std::size_t kLongestSkipped = 10'000'000;
 }  // namespace
 
 struct ProgramText::Reader {
-  OpenFile file;
+  OpenFile file = {};
+  std::shared_ptr<const std::string> text = {};  // in place of a file
+  std::size_t at = 0;                            // in the text
+
+  std::size_t read(char* to, std::size_t most) {
+    if (!text) return std::fread(to, 1, most, file.get());
+    const std::size_t count = text->copy(to, most, at);
+    at += count;
+    return count;
+  }
+  bool go_to(std::uint64_t offset) {
+    if (!text) return ::fseeko(file.get(), static_cast<off_t>(offset), SEEK_SET) == 0;
+    at = static_cast<std::size_t>(offset);
+    return true;
+  }
+  bool has_failed() const { return !text && std::ferror(file.get()) != 0; }
 };
 
 ProgramText::ProgramText() = default;
@@ -36,6 +51,16 @@ ProgramText ProgramText::of_text(std::string text, std::string file) {
   out.file_ = std::move(file);
   out.buffer_ = std::move(text);
   out.at_end_ = true;
+  out.skip_byte_order_mark();
+  return out;
+}
+
+ProgramText ProgramText::of_shared_text(std::shared_ptr<const std::string> text, std::string file) {
+  ProgramText out;
+  out.file_ = std::move(file);
+  out.reader_ = std::make_unique<Reader>();
+  out.reader_->text = std::move(text);
+  out.refill();
   out.skip_byte_order_mark();
   return out;
 }
@@ -75,10 +100,10 @@ bool ProgramText::refill() {
   at_ = 0;
   const std::size_t kept = buffer_.size();
   buffer_.resize(kept + kPiece);
-  const std::size_t got = std::fread(buffer_.data() + kept, 1, kPiece, reader_->file.get());
+  const std::size_t got = reader_->read(buffer_.data() + kept, kPiece);
   buffer_.resize(kept + got);
   at_end_ = got < kPiece;
-  return std::ferror(reader_->file.get()) == 0;
+  return !reader_->has_failed();
 }
 
 bool ProgramText::next(std::string_view& line) {
@@ -153,9 +178,7 @@ void ProgramText::seek(std::uint64_t offset) {
   at_ = 0;
   base_ = offset;
   at_end_ = false;
-  if (::fseeko(reader_->file.get(), static_cast<off_t>(offset), SEEK_SET) != 0 || !refill()) {
-    fail();
-  }
+  if (!reader_->go_to(offset) || !refill()) fail();
   skip_byte_order_mark();
 }
 

@@ -29,8 +29,8 @@ inline bool is_blank(std::string_view line) {
 }
 
 /// Hands out the lines of a text or of a file, and goes back to a line that it has handed out. Of
-/// a file it holds a piece of constant size, however long the file is. A byte-order mark (UTF-8) at
-/// the begin is left out.
+/// a file or a shared text it holds a piece of constant size, however long that is. A byte-order
+/// mark (UTF-8) at the begin is left out.
 class ProgramText {
  public:
   /// Where a line begins.
@@ -41,6 +41,8 @@ class ProgramText {
 
   /// @param file  name for messages
   static ProgramText of_text(std::string text, std::string file);
+  /// The same of a text that others hold, too: it is not copied.
+  static ProgramText of_shared_text(std::shared_ptr<const std::string> text, std::string file);
   /// @throws InputError if the file cannot be read
   static ProgramText of_file(const std::string& path);
   /// The same text or file again, from its first line.
@@ -79,7 +81,7 @@ class ProgramText {
   void rewind() { go_to({}); }
 
  private:
-  struct Reader;  // an open file
+  struct Reader;  // an open file, or a text that others hold
 
   ProgramText();
   [[noreturn]] void fail() const;
@@ -89,7 +91,7 @@ class ProgramText {
   void skip_byte_order_mark();
 
   std::string file_;
-  std::string buffer_;      // of a text: all of it
+  std::string buffer_;      // of a text of its own: all of it
   std::uint64_t base_ = 0;  // offset of buffer_ in the file
   std::size_t at_ = 0;      // where the next line begins, in buffer_
   int number_ = 0;

@@ -19,8 +19,9 @@ namespace {
 constexpr double kSearchMargin = 0.1e-3;  // m
 
 // Signs of zero included.
-bool has_same_bits(const AxisWords& a, const AxisWords& b) {
-  for (int i = 0; i < kAxisWords; ++i) {
+template <class Words>
+bool has_same_bits(const Words& a, const Words& b) {
+  for (int i = 0; i < a.size(); ++i) {
     if (std::bit_cast<std::uint64_t>(a[i]) != std::bit_cast<std::uint64_t>(b[i])) return false;
   }
   return true;
@@ -61,6 +62,7 @@ ProgramPath::ProgramPath(const MoveRange& moves, const AxisWords& start,
     piece.begin = begin_of(piece, before ? &*before : nullptr, at);
     set_tool_axes(piece, move);
     const bool is_straight = move.kind != MoveKind::arc && !piece.is_great_circle && before &&
+                             piece.s_begin == before->s_end &&
                              has_same_bits(piece.begin, before->end);
     hold(piece, is_straight ? nullptr : &move);
     before = piece;
@@ -71,13 +73,13 @@ ProgramPath::ProgramPath(const MoveRange& moves, const AxisWords& start,
 
 // @param move  of which the curve is; nullptr: straight from the end of the piece before
 void ProgramPath::hold(const Piece& piece, const Move* move) {
-  Held held{piece.end, piece.s_begin, piece.s_end, piece.line};
+  Held held{piece.end.head<3>(), piece.s_end, piece.line, index_of_rotary(piece.end.tail<3>())};
   held.setting = index_of(
       {piece.tool_offset, piece.tool, piece.rapid, piece.is_tip, piece.section, piece.p_ST});
   if (move != nullptr) {
     held.curved = static_cast<std::uint32_t>(curved_.size());
-    curved_.push_back({MoveCurve(piece.begin, *move), piece.begin, piece.is_great_circle,
-                       piece.k_begin, piece.k_end});
+    curved_.push_back({MoveCurve(piece.begin, *move), piece.begin, piece.s_begin,
+                       piece.is_great_circle, piece.k_begin, piece.k_end});
   }
   pieces_.push_back(held);
 }
@@ -87,20 +89,36 @@ std::uint32_t ProgramPath::index_of(const Setting& setting) {
   return static_cast<std::uint32_t>(settings_.size() - 1);
 }
 
+std::uint32_t ProgramPath::index_of_rotary(const Eigen::Vector3d& end) {
+  if (rotary_ends_.empty() || !has_same_bits(rotary_ends_.back(), end)) rotary_ends_.push_back(end);
+  return static_cast<std::uint32_t>(rotary_ends_.size() - 1);
+}
+
+AxisWords ProgramPath::end_of(const Held& held) const {
+  AxisWords end;
+  end << held.end, rotary_ends_[held.rotary_end];
+  return end;
+}
+
+double ProgramPath::s_begin_of(std::size_t index) const {
+  const std::uint32_t curved = pieces_[index].curved;
+  return curved == kStraight ? pieces_[index - 1].s_end : curved_[curved].s_begin;
+}
+
 MoveCurve ProgramPath::curve_of(std::size_t index) const {
   const Held& held = pieces_[index];
   if (held.curved != kStraight) return curved_[held.curved].curve;
-  return {pieces_[index - 1].end, held.end};
+  return {end_of(pieces_[index - 1]), end_of(held)};
 }
 
 ProgramPath::Piece ProgramPath::piece(std::size_t index) const {
   const Held& held = pieces_[index];
   const Setting& setting = setting_of(held);
-  Piece out{curve_of(index),     held.end,     held.s_begin,  held.s_end,      held.line,
-            setting.tool_offset, setting.tool, setting.rapid, setting.section, setting.is_tip,
-            setting.p_ST};
+  Piece out{curve_of(index), end_of(held),        s_begin_of(index), held.s_end,
+            held.line,       setting.tool_offset, setting.tool,      setting.rapid,
+            setting.section, setting.is_tip,      setting.p_ST};
   if (held.curved == kStraight) {
-    out.begin = pieces_[index - 1].end;
+    out.begin = end_of(pieces_[index - 1]);
     return out;
   }
   const Curved& curved = curved_[held.curved];
@@ -129,14 +147,15 @@ void ProgramPath::set_tool_axes(Piece& piece, const Move& move) const {
 }
 
 std::vector<std::size_t> ProgramPath::pieces_of(const MoveRange& moves) const {
-  const auto holds = [](const Held& p, const Move& move) {
-    return p.line == move.line && p.s_begin <= move.s_begin && move.s_end <= p.s_end;
+  const auto holds = [this](std::size_t piece, const Move& move) {
+    const Held& p = pieces_[piece];
+    return p.line == move.line && s_begin_of(piece) <= move.s_begin && move.s_end <= p.s_end;
   };
   std::vector<std::size_t> out;
   out.reserve(moves.size());
   std::size_t piece = 0;
   for (const Move& move : moves) {
-    while (is_motion(move.kind) && !holds(pieces_[piece], move)) {
+    while (is_motion(move.kind) && !holds(piece, move)) {
       if (++piece == pieces_.size()) throw std::logic_error("a move is on no line of the program");
     }
     out.push_back(piece);
@@ -146,9 +165,9 @@ std::vector<std::size_t> ProgramPath::pieces_of(const MoveRange& moves) const {
 
 AxisWords ProgramPath::at(std::size_t index, double s) const {
   const Held& p = pieces_[index];
-  const double length = p.s_end - p.s_begin;
-  if (!(length > 0.0)) return p.end;
-  return curve_of(index).at(std::clamp((s - p.s_begin) / length, 0.0, 1.0));
+  const double s_begin = s_begin_of(index), length = p.s_end - s_begin;
+  if (!(length > 0.0)) return end_of(p);
+  return curve_of(index).at(std::clamp((s - s_begin) / length, 0.0, 1.0));
 }
 
 // Share of the piece that is behind; by the turn of the rotary axes where s stands.

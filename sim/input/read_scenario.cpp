@@ -118,7 +118,7 @@ class ScenarioReader {
   Value with_contents_of_files() const {
     Value program;
     program.key = "program";
-    program.children.push_back(text_value("text", out_.program.text));
+    program.children.push_back(text_value("text", out_.program.text()));
     if (!out_.program.subroutines.empty()) {
       Value subroutines;
       subroutines.key = "subroutines";
@@ -143,7 +143,7 @@ class ScenarioReader {
     ProgramSpec& program = out_.program;
     program.file = table.text("file");
     if (table.has("text") && !is_outdated_copy(table, "file", "text")) {
-      program.text = table.text("text");
+      program.shared_text = std::make_shared<const std::string>(table.text("text"));
       if (table.has("subroutines")) {
         Reader texts = table.table("subroutines");
         for (const std::string& name : texts.keys()) program.subroutines[name] = texts.text(name);
@@ -152,13 +152,13 @@ class ScenarioReader {
       for (const char* stored : {"text", "subroutines"}) table.raw(stored);
       const Place at = table.place("file");
       program.file = beside(at, program.file);
-      program.text = *files_.text(program.file, at, "program");
-      read_subroutines(program, program.text, at);
+      program.shared_text = files_.text(program.file, at, "program");
+      read_subroutines(program, program.shared_text, at);
     }
     if (table.is("file", Value::Type::text) && table.text("file").empty()) {
       table.fault("file", "must name the program");
     }
-    refuse_unwritable(program.file, program.text);
+    refuse_unwritable(program.file, program.text());
     const NcSettings& nc = out_.machine.nc;
     program.reader = static_cast<controllers::Reader>(table.choice_or(
         "reader", static_cast<std::size_t>(nc.program_reader), controllers::kReaders));
@@ -190,14 +190,16 @@ class ScenarioReader {
   }
 
   // The files of subroutines that the program may call, and those that they may call.
-  void read_subroutines(ProgramSpec& program, const std::string& text, const Place& at) {
-    for (const std::string& name :
-         controllers::called_subroutines(controllers::ProgramText::of_text(text, program.file))) {
+  void read_subroutines(ProgramSpec& program, const std::shared_ptr<const std::string>& text,
+                        const Place& at) {
+    for (const std::string& name : controllers::called_subroutines(
+             controllers::ProgramText::of_shared_text(text, program.file))) {
       const std::string file = subroutine_file(program.file, name);
       if (program.subroutines.contains(name) || !std::filesystem::is_regular_file(file)) continue;
-      program.subroutines[name] = *files_.text(file, at, "subroutine");
-      refuse_unwritable(file, program.subroutines[name]);
-      read_subroutines(program, program.subroutines[name], at);
+      const std::shared_ptr<const std::string> called = files_.text(file, at, "subroutine");
+      program.subroutines[name] = *called;
+      refuse_unwritable(file, *called);
+      read_subroutines(program, called, at);
     }
   }
 

@@ -30,7 +30,8 @@ class TriangleMesh;
 
 struct ProgramSpec {
   std::string file;  // as messages name it
-  std::string text;
+  // of the program; what is made of a scenario shares it
+  std::shared_ptr<const std::string> shared_text = std::make_shared<const std::string>();
   std::map<std::string, std::string> subroutines;  // texts of NAME.ngc beside the program, by NAME
   std::map<std::string, double> parameters;        // "#101" -> value
   controllers::Reader reader = controllers::Reader::any;
@@ -42,6 +43,8 @@ struct ProgramSpec {
   Place start_place;                          // for a start outside the travel
   controllers::ToolTable tools;
   std::map<int, plant::Cutter> cutters;  // of the tools with a diameter, by number
+
+  const std::string& text() const { return *shared_text; }
 };
 
 struct StrategySpec {

@@ -18,6 +18,7 @@
 #include "sim/model/machine.h"
 #include "sim/preparation/circular_sections.h"
 #include "sim/system/memo.h"
+#include "sim/system/shared_texts.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim {
@@ -37,6 +38,7 @@ struct InterpretedProgram {
   /// The first feed in coordinates that the program has shifted; nullptr: none is.
   std::optional<Move> first_shifted_feed() const;
 
+  std::shared_ptr<const std::string> text;  // of the program, if a key names it
   MoveList moves;
   std::vector<Fault> warnings;
   std::map<int, Eigen::Vector3d> tips;                  // p_ST (m) by tool offset number
@@ -91,6 +93,7 @@ struct PreparationCache {
 
   PreparationCache();
 
+  SharedTexts texts;  // of programs
   Memo<InterpretedProgram> programs;
   Memo<RewrittenProgram> rewritten;
   Memo<PlannedMotion> motions;

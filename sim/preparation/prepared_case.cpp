@@ -29,6 +29,10 @@ using SharedStrategy = std::shared_ptr<const strategies::Strategy>;
 using SharedCutting = std::shared_ptr<const PlannedCutting>;
 using SharedMotion = std::shared_ptr<const PlannedMotion>;
 
+controllers::ProgramText text_of(const ProgramSpec& program) {
+  return controllers::ProgramText::of_shared_text(program.shared_text, program.file);
+}
+
 AxisWords machine_start(const Scenario& scenario, const CaseSpec& spec) {
   return scenario.program.start + scenario.program.work_offset + spec.work_offset;
 }
@@ -70,9 +74,8 @@ MoveList through_text(const std::vector<Move>& rewritten, const Scenario& scenar
     if (axis) options.axes += letter(*axis);
   }
   text = controllers::print_program(rewritten, options, header_of(scenario, spec)).text;
-  controllers::ProgramSetup setup = controllers::conversational::gcode_setup(
-      controllers::ProgramText::of_text(scenario.program.text, scenario.program.file),
-      setup_of(scenario, spec));
+  controllers::ProgramSetup setup =
+      controllers::conversational::gcode_setup(text_of(scenario.program), setup_of(scenario, spec));
   setup.reader = controllers::Reader::linuxcnc;  // for which it is written
   controllers::Interpreter interpreter(
       text, fmt::format("{} as rewritten for case {}", scenario.program.file, spec.name), setup);
@@ -189,7 +192,8 @@ class Preparation {
   SharedProgram program() const {
     const controllers::ProgramSetup setup = setup_of(scenario_, spec_);
     MemoKey key;
-    key.add(scenario_.program.text);
+    const auto shared = cache_.texts.shared(scenario_.program.shared_text);
+    key.add_shared(shared.get());
     for (const auto& [name, text] : scenario_.program.subroutines) {
       key.add(name);
       key.add(text);
@@ -199,7 +203,9 @@ class Preparation {
       std::vector<Fault> warnings;
       MoveList moves = read_program(scenario_, spec_, &warnings);
       refuse_unnumbered_tools(moves, scenario_.program.file);
-      return InterpretedProgram(std::move(moves), std::move(warnings), setup);
+      InterpretedProgram out(std::move(moves), std::move(warnings), setup);
+      out.text = shared;
+      return out;
     });
   }
 
@@ -576,7 +582,7 @@ MoveList read_program(const Scenario& scenario, const CaseSpec& spec,
                       std::vector<Fault>* warnings) {
   const ProgramSpec& program = scenario.program;
   try {
-    controllers::Interpreter interpreter(program.text, program.file, setup_of(scenario, spec));
+    controllers::Interpreter interpreter(text_of(program), setup_of(scenario, spec));
     MoveList moves = interpreter.rest_held();
     if (warnings != nullptr) {
       warnings->insert(warnings->end(), interpreter.warnings().begin(),
@@ -584,7 +590,7 @@ MoveList read_program(const Scenario& scenario, const CaseSpec& spec,
     }
     return moves;
   } catch (const InputError&) {  // stopped at the first fault; the user wants all of them
-    auto faults = controllers::check_program(program.text, program.file, setup_of(scenario, spec));
+    auto faults = controllers::check_program(text_of(program), setup_of(scenario, spec));
     if (faults.empty()) throw;
     throw InputError(std::move(faults));
   }

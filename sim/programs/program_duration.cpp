@@ -51,7 +51,7 @@ bool ProgramDuration::refuses(const Move& move) {
   if (move.kind != MoveKind::rapid && !(move.feed > 0.0)) {
     why_unknown_ = fmt::format("line {} feeds per revolution of a spindle that is off", move.line);
   }
-  if (!why_unknown_.empty()) moves_.clear();
+  if (!why_unknown_.empty()) moves_ = {};
   return !why_unknown_.empty();
 }
 
@@ -60,7 +60,7 @@ void ProgramDuration::plan() {
     duration_ +=
         controllers::plan(moves_, machine_.chain.layout, start_, limits_, options_).duration();
   }
-  moves_.clear();
+  moves_ = {};
   start_ = at_;
 }
 

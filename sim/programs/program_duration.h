@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "controllers/path/trajectory.h"
+#include "plant/vocabulary/move_list.h"
 #include "sim/model/machine.h"
 #include "sim/programs/known_positions.h"
 
@@ -36,7 +37,7 @@ class ProgramDuration {
   const MachineSettings& machine_;
   controllers::JointLimits limits_;
   controllers::PathOptions options_;
-  std::vector<Move> moves_;  // not planned yet
+  MoveList moves_;  // not planned yet
   Joints start_ = Joints::Zero();
   Joints at_ = Joints::Zero();
   double duration_ = 0.0;

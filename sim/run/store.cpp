@@ -218,7 +218,7 @@ void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view ki
   Hdf5Group inputs = root.group("inputs");
   inputs.attribute("scenario", scenario.text);
   inputs.attribute("machine", scenario.machine_text);
-  inputs.attribute("program", scenario.program.text);
+  inputs.attribute("program", scenario.program.text());
   inputs.attribute("resolved", scenario.resolved);
 }
 

@@ -1,5 +1,6 @@
 #include "sim/system/memory.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -50,6 +51,11 @@ double resident_memory() {
   double all = 0.0, resident = 0.0;
   if (!(std::ifstream("/proc/self/statm") >> all >> resident)) return 0.0;
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+void return_large_blocks() {
+  constexpr int kLarge = 4 << 20;
+  mallopt(M_MMAP_THRESHOLD, kLarge);
 }
 
 double memory_of_process() {

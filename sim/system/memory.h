@@ -12,6 +12,10 @@ double memory_of_process();
 /// Bytes that this process holds; 0 where the system does not tell.
 double resident_memory();
 
+/// Lets blocks of more than 4 MB go back to the system as soon as they are freed: left to itself,
+/// the library keeps what was once freed of a long text for smaller blocks.
+void return_large_blocks();
+
 /// Bytes that the control groups of a process allow, of version 1 and 2, from its own group up to
 /// the root; infinite where none sets a limit.
 /// @param groups  the file that lists them (/proc/PID/cgroup)

@@ -16,6 +16,7 @@
 #include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/user_file.h"
 #include "sim/run/build_identity.h"
+#include "sim/system/memory.h"
 #include "sim/system/system_error.h"
 #include "sim/version.h"
 #include "tools/servomill/command.h"
@@ -132,6 +133,7 @@ int guarded(const servomill::tools::Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  servomill::sim::return_large_blocks();
   const int status = guarded({argv + 1, argv + argc});
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
   fmt::print(stderr, "standard output: cannot be written: {}\n", std::strerror(errno));

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
@@ -29,14 +30,19 @@ std::vector<std::string> lines_of(ProgramText text) {
   return lines;
 }
 
+ProgramText shared(const std::string& text) {
+  return ProgramText::of_shared_text(std::make_shared<const std::string>(text), "p.nc");
+}
+
 using Lines = std::vector<std::string>;
 
-TEST(ProgramText, AFileReadsLikeItsText) {
+TEST(ProgramText, FilesAndSharedTextsReadLikeTheirText) {
   for (const std::string& text : {std::string("a\nb\n"), std::string("a\n\nb"), std::string(),
                                   std::string("\n"), std::string("a\r\nb\r\n")}) {
     const TempFile file(text);
-    EXPECT_EQ(lines_of(ProgramText::of_file(file.path())),
-              lines_of(ProgramText::of_text(text, "p.nc")));
+    const Lines lines = lines_of(ProgramText::of_text(text, "p.nc"));
+    EXPECT_EQ(lines_of(ProgramText::of_file(file.path())), lines);
+    EXPECT_EQ(lines_of(shared(text)), lines);
   }
   EXPECT_EQ(lines_of(ProgramText::of_text("a\n\nb", "p.nc")), (Lines{"a", "", "b"}));
 }
@@ -55,11 +61,13 @@ TEST(ProgramText, LeavesOutAByteOrderMark) {
             (Lines{"a", "\xEF\xBB\xBFG0"}));
 }
 
-TEST(ProgramText, GoesBackToAnyLineOfALongFile) {
+std::string numbered_lines(int count) {
   std::string text;
-  for (int i = 1; i <= 50'000; ++i) text += "line " + std::to_string(i) + "\n";
-  const TempFile file(text);
-  ProgramText program = ProgramText::of_file(file.path());
+  for (int i = 1; i <= count; ++i) text += "line " + std::to_string(i) + "\n";
+  return text;
+}
+
+void expect_to_go_back(ProgramText program) {
   std::vector<ProgramText::Mark> marks;
   std::string_view line;
   do {
@@ -72,6 +80,20 @@ TEST(ProgramText, GoesBackToAnyLineOfALongFile) {
     EXPECT_EQ(program.number(), i);
   }
   EXPECT_FALSE(program.next(line));
+}
+
+TEST(ProgramText, GoesBackToAnyLineOfALongFile) {
+  const TempFile file(numbered_lines(50'000));
+  expect_to_go_back(ProgramText::of_file(file.path()));
+}
+
+TEST(ProgramText, GoesBackToAnyLineOfASharedText) {
+  expect_to_go_back(shared(numbered_lines(50'000)));
+}
+
+TEST(ProgramText, LeavesOutAByteOrderMarkOfASharedText) {
+  ProgramText program = shared("\xEF\xBB\xBF%\na\n");
+  EXPECT_EQ(lines_of(std::move(program)), (Lines{"%", "a"}));
 }
 
 TEST(ProgramText, ALineWithoutEndDoesNotFillTheMemory) {

@@ -59,7 +59,7 @@ TEST_P(EveryScenario, SurvivesWriteAndReadUnchanged) {
   const Scenario scenario = read_scenario(GetParam());
   const Scenario again = read_resolved_scenario(scenario.resolved, "again");
   EXPECT_EQ(again.resolved, scenario.resolved);
-  EXPECT_EQ(again.program.text, scenario.program.text);
+  EXPECT_EQ(again.program.text(), scenario.program.text());
   EXPECT_EQ(again.cases.size(), scenario.cases.size());
 }
 
@@ -93,12 +93,12 @@ TEST(Changes, OfAProgramReplaceTheOneThatAResolvedScenarioHolds) {
   std::ofstream(resolved) << read_scenario(kSmall).resolved;
   std::ofstream(other) << "G1 X7 F1000\nM2\n";
   const Scenario changed = read_scenario(resolved, {"program.file=\"" + other + "\""});
-  EXPECT_EQ(changed.program.text, "G1 X7 F1000\nM2\n");
-  EXPECT_EQ(read_resolved_scenario(changed.resolved, "again").program.text, "G1 X7 F1000\nM2\n");
+  EXPECT_EQ(changed.program.text(), "G1 X7 F1000\nM2\n");
+  EXPECT_EQ(read_resolved_scenario(changed.resolved, "again").program.text(), "G1 X7 F1000\nM2\n");
   const Scenario both =
       read_scenario(resolved, {"program.file=\"" + other + "\"", "program.text=\"M2\\n\""});
-  EXPECT_EQ(both.program.text, "M2\n") << "as --set says";
-  EXPECT_EQ(read_scenario(resolved).program.text, read_scenario(kSmall).program.text);
+  EXPECT_EQ(both.program.text(), "M2\n") << "as --set says";
+  EXPECT_EQ(read_scenario(resolved).program.text(), read_scenario(kSmall).program.text());
   try {
     read_scenario(resolved, {"program.file=\"nowhere.ngc\""});
     ADD_FAILURE() << "ran the stored program";
@@ -297,7 +297,7 @@ TEST_F(BasedOn, WinsOverTheScenarioBelowAndKeepsTheRest) {
   const Scenario above = read_scenario(path), below = read_scenario(kSmall);
   EXPECT_EQ(above.title, "above");
   EXPECT_EQ(above.program.feed_override, 0.5);
-  EXPECT_EQ(above.program.text, below.program.text);  // found beside the scenario that names it
+  EXPECT_EQ(above.program.text(), below.program.text());  // found beside the scenario that names it
   EXPECT_EQ(above.cases.size(), below.cases.size());
 }
 

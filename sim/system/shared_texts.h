@@ -1,0 +1,25 @@
+/// Long texts, each held once.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace servomill::sim {
+
+/// Equal texts become one object, whose address then stands for the text (MemoKey::add_shared).
+/// Holds none of them itself. For any number of threads.
+class SharedTexts {
+ public:
+  using Text = std::shared_ptr<const std::string>;
+
+  /// The text that equals this one and is still held by somebody, or else this one.
+  Text shared(const Text& text);
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::weak_ptr<const std::string>> known_;
+};
+
+}  // namespace servomill::sim
