@@ -222,34 +222,6 @@ double of_imposed_curve(const QuantitySpec& spec, const CaseData& one, const Cas
 // The tool stands from one place to another (mm) if both are the same but for rounding.
 bool stands(double s, double later) { return later - s < 1e-7; }
 
-std::vector<double> all_of(const AtRow& value, const RowRanges& rows) {
-  std::vector<double> out;
-  if (!value) return out;
-  out.reserve(rows.size());
-  rows.for_each([&](std::size_t row) { out.push_back(value(row)); });
-  return out;
-}
-
-// What rotary axes have turned at each row since the tool stands there, as a share of all that they
-// turn until it moves on.
-std::vector<double> turned_while_standing(const CaseData& one, const RowRanges& rows,
-                                          const std::vector<double>& s) {
-  std::vector<double> out(rows.size(), 0.0);
-  for (const char axis : std::string_view("ABC")) {
-    const std::vector<double> ref = all_of(column_of(one, "ref_rotary", axis), rows);
-    for (std::size_t i = 1; i < ref.size(); ++i) out[i] += std::abs(ref[i] - ref[i - 1]);
-  }
-  for (std::size_t first = 0, end = 0; first < rows.size(); first = end) {
-    double turned = 0.0;
-    for (end = first; end < rows.size() && (end == first || stands(s[end - 1], s[end])); ++end) {
-      out[end] = end == first ? 0.0 : out[end] + out[end - 1];
-      turned = out[end];
-    }
-    for (std::size_t i = first; i < end && turned > 0.0; ++i) out[i] /= turned;
-  }
-  return out;
-}
-
 }  // namespace
 
 bool has_path_signal(std::string_view quantity) {
@@ -257,15 +229,69 @@ bool has_path_signal(std::string_view quantity) {
          quantity == "tool_deviation" || quantity == "following_error";
 }
 
-PathSignal path_signal(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
+struct PathSignal::Parts {
+  Parts(const QuantitySpec& spec, const CaseData& one, const CaseData* base)
+      : rows(CaseSamples(one).rows(spec.sections)),
+        at(rows),
+        s(column_of(one, "s", '\0')),
+        value(signed_value(spec, one, base)) {
+    for (const char axis : std::string_view("ABC")) {
+      if (AtRow ref = column_of(one, "ref_rotary", axis)) rotary.push_back(std::move(ref));
+    }
+  }
+
+  // What rotary axes turn from one row to another.
+  double turn(std::size_t from, std::size_t to) const {
+    double sum = 0.0;
+    for (const AtRow& ref : rotary) sum += std::abs(ref(to) - ref(from));
+    return sum;
+  }
+
+  // The same from a row until the tool moves on.
+  double turn_while_standing(RowRanges::Cursor from) const {
+    double sum = 0.0;
+    while (!rotary.empty()) {
+      const std::size_t row = from.row();
+      from.step();
+      if (from.is_at_end() || !stands(s(row), s(from.row()))) break;
+      sum += turn(row, from.row());
+    }
+    return sum;
+  }
+
+  RowRanges rows;
+  RowRanges::Cursor at;
+  AtRow s, value;
+  std::vector<AtRow> rotary;
+  std::optional<std::size_t> before;   // row of the sample before
+  double turned = 0.0, to_turn = 0.0;  // since the tool stands; in all until it moves on
+};
+
+PathSignal::PathSignal(const QuantitySpec& spec, const CaseData& one, const CaseData* base)
+    : parts_(std::make_unique<Parts>(spec, one, base)) {
   assert(has_path_signal(spec.name));
-  CaseSamples samples(one);
-  const RowRanges& rows = samples.rows(spec.sections);
-  PathSignal out;
-  out.s = all_of(column_of(one, "s", '\0'), rows);
-  out.turned = turned_while_standing(one, rows, out.s);
-  out.value = all_of(signed_value(spec, one, base), rows);
-  return out;
+}
+PathSignal::PathSignal(PathSignal&&) noexcept = default;
+PathSignal::~PathSignal() = default;
+
+std::size_t PathSignal::size() const { return parts_->value ? parts_->rows.size() : 0; }
+
+bool PathSignal::next(PathSample& sample) {
+  Parts& p = *parts_;
+  if (!p.value || p.at.is_at_end()) return false;
+  const std::size_t row = p.at.row();
+  sample.s = p.s(row);
+  if (p.before && stands(p.s(*p.before), sample.s)) {
+    p.turned += p.turn(*p.before, row);
+  } else {
+    p.turned = 0.0;
+    p.to_turn = p.turn_while_standing(p.at);
+  }
+  sample.turned = p.to_turn > 0.0 ? p.turned / p.to_turn : 0.0;
+  sample.value = p.value(row);
+  p.before = row;
+  p.at.step();
+  return true;
 }
 
 PathValue path_value(const QuantitySpec& spec, CaseSamples& samples, const CaseData* base) {

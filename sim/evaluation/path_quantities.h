@@ -7,30 +7,46 @@
 /// the programmed path is linear from row to row.
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "sim/evaluation/case_samples.h"
 #include "sim/evaluation/comparison.h"
 
 namespace servomill::sim {
 
-/// A signed quantity at each sample of feed motion.
-struct PathSignal {
-  std::vector<double> s;       // mm, arc length of the original path, not falling
-  std::vector<double> turned;  // 0 to 1, of what rotary axes turn while s stands; 0 where it moves
-  std::vector<double> value;   // of the same length, in the unit of the quantity; or none
+/// A signed quantity at a sample of feed motion.
+struct PathSample {
+  double s = 0.0;       // mm, arc length of the original path, not falling
+  double turned = 0.0;  // 0 to 1, of what rotary axes turn while s stands; 0 where it moves
+  double value = 0.0;   // in the unit of the quantity
 };
 
-/// Whether path_signal knows this quantity: imposed_curve_residual, trajectory_difference,
+/// Whether there is a PathSignal of this quantity: imposed_curve_residual, trajectory_difference,
 /// tool_deviation, following_error.
 bool has_path_signal(std::string_view quantity);
 
-/// What the statistic of a quantity is taken over.
-/// @param base  the case it is compared with; nullptr if it needs none
-/// @pre has_path_signal(spec.name), and both cases have finished
-PathSignal path_signal(const QuantitySpec& spec, const CaseData& one, const CaseData* base);
+/// What the statistic of a quantity is taken over, sample by sample; nothing is kept of them.
+class PathSignal {
+ public:
+  /// @param one, base  the recordings must outlive it; base: the case it is compared with, nullptr
+  ///                   if it needs none
+  /// @pre has_path_signal(spec.name), and both cases have finished
+  PathSignal(const QuantitySpec& spec, const CaseData& one, const CaseData* base);
+  PathSignal(PathSignal&&) noexcept;
+  ~PathSignal();
+
+  /// Samples; 0 also if what it takes was not recorded.
+  std::size_t size() const;
+  /// The next sample; false behind the last.
+  bool next(PathSample& sample);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
 
 /// A quantity of quantity_info that is none of circles, balls and probes, nor cycle_time or blocks.
 struct PathValue {

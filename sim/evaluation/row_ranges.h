@@ -25,6 +25,28 @@ class RowRanges {
 
   std::size_t size() const { return size_; }
 
+  /// Goes through the rows, one by one.
+  class Cursor {
+   public:
+    /// @param ranges  must outlive it
+    explicit Cursor(const RowRanges& ranges) : ranges_(&ranges.ranges_) { enter(); }
+    bool is_at_end() const { return range_ == ranges_->size(); }
+    /// @pre of these: not at the end
+    std::size_t row() const { return row_; }
+    void step() {
+      if (++row_ < (*ranges_)[range_].end) return;
+      ++range_;
+      enter();
+    }
+
+   private:
+    void enter() {
+      if (!is_at_end()) row_ = (*ranges_)[range_].begin;
+    }
+    const std::vector<Range>* ranges_;
+    std::size_t range_ = 0, row_ = 0;
+  };
+
   template <class Do>
   void for_each(Do do_row) const {
     for (const auto [begin, end] : ranges_) {

@@ -3,327 +3,66 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
 #include <ranges>
-#include <set>
 #include <utility>
 
-#include "plant/vocabulary/units.h"
-#include "sim/config/quantity.h"
 #include "sim/evaluation/path_quantities.h"
+#include "sim/evaluation/statistic.h"
 #include "sim/preparation/preparation_cache.h"
 
 namespace servomill::sim {
 namespace {
 
-constexpr std::array<CauseInfo, kCauses> kInfos = {{
-    {"lag", "servo loops and drives follow late"},
-    {"table", "points and form of compensation tables"},
-    {"delay", "response and update of tables, signal delay, model period"},
-    {"saturation", "limits of virtual displacements"},
-    {"one_step", "errors evaluated at a displaced position"},
-    {"identification", "believed errors, or origin, are not the true ones"},
-    {"friction", "dry friction, backlash, cogging, and their compensation"},
-    {"measurement", "encoders and, where the motor is read, screws"},
-    {"cutting", "forces of the cut"},
-    {"interpolation", "chords, path tolerance and filter of the NC"},
-    {"uncorrected", "errors that no strategy of the case corrects, or brings out"},
-    {"uncorrectable", "what the axes of the strategies cannot do"},
-    {"imposed", "what strategies bring out on purpose"},
-}};
-
-constexpr double kFine = 0.01;        // share of tolerances that are taken away
-constexpr double kLeastChord = 1e-9;  // m
-
-using Causes = std::set<Cause>;
-// What the signal goes through, in this order.
-constexpr std::array kChain = {Cause::interpolation, Cause::lag, Cause::delay};
-// What adds to it, beside measurement.
-constexpr std::array kAdding = {Cause::table,          Cause::saturation, Cause::one_step,
-                                Cause::identification, Cause::friction,   Cause::cutting,
-                                Cause::uncorrected};
-
-MachineSettings& own_machine(const Scenario& scenario, CaseSpec& one) {
-  if (!one.machine) one.machine = scenario.machine;
-  return *one.machine;
-}
-
-// Sets a parameter to its ideal; whether it had another value.
-bool idealise(const ParameterSpec& spec, Parameters& parameters) {
-  const bool is_word =
-      std::find(spec.words.begin(), spec.words.end(), spec.ideal) != spec.words.end();
-  if (is_word) {
-    if (parameters.is_word(spec.name) && parameters.word(spec.name) == spec.ideal) return false;
-    parameters.set(spec.name, spec.ideal);
-    return true;
+// Reads a signal at the places of a budget, one after the other; constant beyond its ends.
+class AtPlaces {
+ public:
+  /// @pre the signal has samples
+  AtPlaces(PathSignal signal, const Budget& places)
+      : signal_(std::move(signal)), s_(places.s), turned_(places.turned) {
+    signal_.next(now_);
+    has_ahead_ = signal_.next(ahead_);
   }
-  const ParsedUnit unit = parse_unit(spec.unit);
-  const double ideal = std::stod(std::string(spec.ideal)) * (unit.unit ? unit.unit->factor : 1.0);
-  if (!parameters.is_word(spec.name) && parameters.number(spec.name) == ideal) return false;
-  parameters.set(spec.name, ideal);
-  return true;
-}
 
-// Takes a shortcoming away from all strategies that have it; whether any had.
-bool idealise(CaseSpec& one, Shortcoming shortcoming) {
-  bool any = false;
-  for (StrategySpec& strategy : one.strategies) {
-    for (const ParameterSpec& spec : strategy.entry->parameters) {
-      if (spec.shortcoming != shortcoming || spec.ideal.empty()) continue;
-      any |= idealise(spec, strategy.parameters);
+  double next() {
+    const double s = s_.next(), turned = turned_.next();
+    while (has_ahead_ && !is_behind(ahead_, s, turned)) {
+      now_ = ahead_;
+      has_ahead_ = signal_.next(ahead_);
     }
+    if (!has_ahead_ || is_behind(now_, s, turned)) return now_.value;
+    const bool moves = key(ahead_.s) > key(now_.s);
+    const double share = moves ? (s - now_.s) / (ahead_.s - now_.s)
+                               : (turned - now_.turned) / (ahead_.turned - now_.turned);
+    return now_.value + share * (ahead_.value - now_.value);
   }
-  return any;
-}
 
-bool remove_friction(MachineSettings& machine) {
-  bool any = false;
-  for (const int joint : machine.joints()) {
-    const auto j = static_cast<std::size_t>(joint);
-    plant::FeedDriveParams& drive = machine.drives[j];
-    AxisFunctions& functions = machine.nc.functions[j];
-    any |=
-        !drive.is_linear() || functions.friction.compensates() || functions.backlash.width != 0.0;
-    drive.friction = {};
-    drive.gap = 0.0;
-    drive.cogging = {};
-    functions.friction = {};
-    functions.backlash = {};
+ private:
+  static double key(double s) { return std::round(s * 1e6); }  // nm: cases differ by rounding
+  static bool is_behind(const PathSample& sample, double s, double turned) {
+    return std::pair(key(sample.s), sample.turned) > std::pair(key(s), turned);
   }
-  return any;
-}
 
-bool remove_measurement(MachineSettings& machine) {
-  bool any = false;
-  for (const int joint : machine.joints()) {
-    const auto j = static_cast<std::size_t>(joint);
-    for (plant::Encoder* encoder : {&machine.scale[j], &machine.motor[j]}) {
-      any |= !encoder->is_plain() || encoder->step() > 0.0;
-      *encoder = {};
-    }
-    any |= machine.marks[j].has_value() || !machine.screw[j].is_zero();
-    machine.marks[j].reset();
-    machine.screw[j] = {};
-  }
-  return any;
-}
-
-bool remove_delay(Scenario& scenario, CaseSpec& one) {
-  constexpr Tick kNone = 0, kLeast = 1;
-  const bool needs_hardware = one.needs_feedback_hardware();
-  MachineSettings& machine = own_machine(scenario, one);
-  bool any = machine.scale_delay != kNone ||
-             (one.feedback_hardware && scenario.hardware.signal_delay != kNone) ||
-             (needs_hardware && scenario.hardware.model_period != kLeast);
-  machine.scale_delay = kNone;
-  any |= idealise(one, Shortcoming::delay);
-  return any;
-}
-
-const std::string& truth_of(const Scenario& scenario, const CaseSpec& one) {
-  return one.truth ? *one.truth : scenario.truth;
-}
-
-// Whether strategies of a case know errors, to correct or to generate them.
-bool has_strategy(const CaseSpec& one, strategies::Sign sign) {
-  return std::any_of(one.strategies.begin(), one.strategies.end(), [&](const StrategySpec& spec) {
-    return spec.entry->reads_errors && spec.sign == sign;
-  });
-}
-
-bool remove_identification(const Scenario& scenario, CaseSpec& one) {
-  bool any = idealise(one, Shortcoming::identification);
-  const std::string& truth = truth_of(scenario, one);
-  for (StrategySpec& strategy : one.strategies) {
-    if (!strategy.entry->reads_errors) continue;
-    const bool corrects_truth = strategy.sign == strategies::Sign::correct && !truth.empty();
-    const std::string& right = corrects_truth ? truth : scenario.imposed;
-    if (right.empty() || strategy.model == right) continue;
-    strategy.model = right;
-    any = true;
-  }
-  return any;
-}
-
-bool remove_uncorrected(const Scenario& scenario, CaseSpec& one) {
-  if (truth_of(scenario, one).empty() || has_strategy(one, strategies::Sign::correct)) return false;
-  one.truth = "";
-  return true;
-}
-
-bool remove_interpolation(const Scenario& scenario, CaseSpec& one) {
-  NcSettings& nc = own_machine(scenario, one).nc;
-  nc.path_tolerance *= kFine;
-  nc.rotary_tolerance *= kFine;
-  nc.tolerance_share *= kFine;
-  nc.filter = {};
-  nc.block_time = 0.0;
-  for (StrategySpec& strategy : one.strategies) {
-    for (const ParameterSpec& spec : strategy.entry->parameters) {
-      if (spec.shortcoming != Shortcoming::chord_tolerance) continue;
-      Parameters& p = strategy.parameters;
-      p.set(spec.name, std::max(kLeastChord, kFine * p.number(spec.name)));
-    }
-  }
-  return true;  // there is always a tolerance
-}
-
-// Takes a cause away from a case, but for what is the scenario's; whether it had it.
-bool remove(Cause cause, Scenario& scenario, CaseSpec& one) {
-  switch (cause) {
-    case Cause::lag: {
-      const bool had = one.servo != ServoModel::ideal;
-      one.servo = ServoModel::ideal;
-      return had;
-    }
-    case Cause::table:
-      return idealise(one, Shortcoming::points);
-    case Cause::delay:
-      return remove_delay(scenario, one);
-    case Cause::saturation:
-      return idealise(one, Shortcoming::saturation);
-    case Cause::one_step:
-      return idealise(one, Shortcoming::one_step);
-    case Cause::identification:
-      return remove_identification(scenario, one);
-    case Cause::friction:
-      return remove_friction(own_machine(scenario, one));
-    case Cause::measurement:
-      return remove_measurement(own_machine(scenario, one));
-    case Cause::cutting:
-      return std::exchange(one.cutting, false);
-    case Cause::interpolation:
-      return remove_interpolation(scenario, one);
-    case Cause::uncorrected:
-      return remove_uncorrected(scenario, one);
-    case Cause::uncorrectable:
-    case Cause::imposed:
-      break;
-  }
-  return false;
-}
-
-// All that can be removed.
-Causes all_causes() {
-  Causes out = {Cause::measurement};
-  out.insert(kAdding.begin(), kAdding.end());
-  out.insert(kChain.begin(), kChain.end());
-  return out;
-}
-
-// Whether strategies of a case move the tool where the program does not want it.
-bool moves_on_purpose(const CaseSpec& one) {
-  return has_strategy(one, strategies::Sign::generate) ||
-         std::any_of(one.strategies.begin(), one.strategies.end(), [](const StrategySpec& spec) {
-           return !spec.entry->reads_errors && spec.entry->acts;
-         });
-}
-
-// What stays without all others; none of what begins behind the strategies.
-// @param base  the case it is compared with, or nullptr
-std::optional<Cause> rest_of(const QuantitySpec& quantity, const CaseSpec& one,
-                             const CaseSpec* base) {
-  if (quantity.name == "following_error") return std::nullopt;
-  const auto any = [&](auto fact) { return fact(one) || (base != nullptr && fact(*base)); };
-  const bool takes_imposed_off = quantity.name == "imposed_curve_residual";
-  if (any(moves_on_purpose) && !takes_imposed_off) return Cause::imposed;
-  const bool knows_errors = any([](const CaseSpec& spec) {
-    return has_strategy(spec, strategies::Sign::generate) ||
-           has_strategy(spec, strategies::Sign::correct);
-  });
-  if (knows_errors) return Cause::uncorrectable;
-  if (takes_imposed_off) return Cause::uncorrected;
-  return std::nullopt;
-}
-
-// Of these, what a case has. An ideal servo has nothing that goes through loops.
-Causes present(const Causes& causes, const Scenario& scenario, const CaseSpec& one) {
-  Causes out;
-  for (const Cause cause : causes) {
-    Scenario trial = scenario;
-    CaseSpec spec = one;
-    if (remove(cause, trial, spec)) out.insert(cause);
-  }
-  if (one.servo == ServoModel::ideal) {
-    for (const Cause cause : {Cause::friction, Cause::measurement}) out.erase(cause);
-  }
-  return out;
-}
-
-// The cases that have a cause to be removed that another run has not removed already, without it.
-Scenario without(const Scenario& scenario, const Causes& removed, const Causes& already,
-                 const std::map<std::string, Causes>& present_in) {
-  Scenario out = scenario;
-  if (!removed.empty()) {  // the first run has checked them; signals along the path need no part
-    out.quantities.clear();
-    out.probes.clear();
-    out.part.reset();
-  }
-  out.cases.clear();
-  for (const CaseSpec& one : scenario.cases) {
-    const auto found = present_in.find(one.name);
-    if (found == present_in.end()) continue;  // nobody asks for it
-    CaseSpec changed = one;
-    bool any = removed.empty();
-    for (const Cause cause : removed) {
-      if (!found->second.contains(cause)) continue;
-      remove(cause, out, changed);
-      any |= !already.contains(cause);
-    }
-    if (any) out.cases.push_back(std::move(changed));
-  }
-  if (removed.contains(Cause::delay)) {  // of the scenario, hence after the cases were asked
-    out.hardware.signal_delay = 0;
-    out.hardware.model_period = 1;
-  }
-  return out;
-}
-
-// Values of a signal at the places of a budget; constant beyond its ends.
-std::vector<double> at_places(const PathSignal& signal, const Budget& places) {
-  const auto key = [](double s) { return std::round(s * 1e6); };  // nm: cases differ by rounding
-  const auto is_behind = [&](std::size_t k, std::size_t n) {
-    return std::pair(key(signal.s[k]), signal.turned[k]) >
-           std::pair(key(places.s[n]), places.turned[n]);
-  };
-  std::vector<double> out;
-  out.reserve(places.s.size());
-  std::size_t k = 0;
-  const std::size_t last = signal.s.size() - 1;
-  for (std::size_t n = 0; n < places.s.size(); ++n) {
-    while (k < last && !is_behind(k + 1, n)) ++k;
-    if (k == last || is_behind(k, n)) {
-      out.push_back(signal.value[k]);
-      continue;
-    }
-    const bool moves = key(signal.s[k + 1]) > key(signal.s[k]);
-    const std::vector<double>& from = moves ? signal.s : signal.turned;
-    const double at = moves ? places.s[n] : places.turned[n];
-    const double share = (at - from[k]) / (from[k + 1] - from[k]);
-    out.push_back(signal.value[k] + share * (signal.value[k + 1] - signal.value[k]));
-  }
-  return out;
-}
-
-double rms(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v * v;
-  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
-}
+  PathSignal signal_;
+  StoredSignal::Reader s_, turned_;
+  PathSample now_, ahead_;
+  bool has_ahead_ = false;
+};
 
 using Runs = std::map<std::string, std::shared_ptr<const CaseOutput>>;  // by case
 
 // The budgets of all quantities, filled run by run.
-class Accounts {
+class BudgetRun {
  public:
-  Accounts(const Scenario& scenario, std::span<const QuantitySpec> quantities,
-           const BudgetControl& control)
-      : scenario_(scenario), control_(control) {
+  BudgetRun(const Scenario& scenario, std::span<const QuantitySpec> quantities,
+            const BudgetControl& control)
+      : scenario_(scenario),
+        control_(control),
+        store_(std::make_shared<SignalStore>(control.scratch_folder)) {
     scenario_.quantities.assign(quantities.begin(), quantities.end());
     const Causes all = all_causes();
     for (const QuantitySpec& quantity : quantities) {
@@ -391,9 +130,8 @@ class Accounts {
     return out;
   }
 
-  // The residual of a run; why there is none, otherwise.
-  static std::pair<PathSignal, std::string> residual(const Budget& budget, const Runs& runs,
-                                                     const char* stops) {
+  // The residual of a run; none and why in the note of the budget, otherwise.
+  static std::optional<PathSignal> residual(Budget& budget, const Runs& runs, const char* stops) {
     const QuantitySpec& quantity = budget.quantity;
     std::vector<CaseData> compared;
     for (const std::string& name : {quantity.cases.front(), quantity.base}) {
@@ -401,38 +139,45 @@ class Accounts {
       const CaseOutput& one = *runs.at(name);
       const Outcome& outcome = one.result.outcome;
       if (!outcome.finished) {
-        return {{}, fmt::format("case {} {}: {}", name, stops, outcome.reason)};
+        budget.note = fmt::format("case {} {}: {}", name, stops, outcome.reason);
+        return std::nullopt;
       }
       compared.push_back(one.data());
     }
     const CaseData* base = compared.size() > 1 ? &compared.back() : nullptr;
-    PathSignal found = path_signal(quantity, compared.front(), base);
-    if (found.value.empty()) return {{}, "no samples"};
-    return {std::move(found), ""};
+    PathSignal found(quantity, compared.front(), base);
+    if (found.size() > 0) return found;
+    budget.note = "no samples";
+    return std::nullopt;
   }
 
-  static void start(Budget& budget, const Runs& complete) {
-    auto [signal, why_not] = residual(budget, complete, "stopped");
-    budget.note = std::move(why_not);
-    if (!budget.note.empty()) return;
-    budget.s = signal.s;
-    budget.residual = std::move(signal.value);
-    const auto largest =
-        std::max_element(budget.residual.begin(), budget.residual.end(),
-                         [](double a, double b) { return std::abs(a) < std::abs(b); });
-    budget.place = static_cast<std::size_t>(largest - budget.residual.begin());
-    budget.turned = std::move(signal.turned);
-    for (BudgetPart& part : budget.parts) part.signal.assign(budget.s.size(), 0.0);
+  void start(Budget& budget, const Runs& complete) {
+    auto signal = residual(budget, complete, "stopped");
+    if (!signal) return;
+    const std::size_t size = signal->size();
+    for (StoredSignal* one : {&budget.s, &budget.turned, &budget.residual.signal}) {
+      *one = StoredSignal(store_, size);
+    }
+    Statistic rms("rms");
+    PathSample sample;
+    for (std::size_t n = 0; signal->next(sample); ++n) {
+      budget.s.append(sample.s);
+      budget.turned.append(sample.turned);
+      budget.residual.signal.append(sample.value);
+      rms.add(sample.value);
+      if (n > 0 && !(std::abs(budget.residual.at_place) < std::abs(sample.value))) continue;
+      budget.place = n;
+      budget.place_s = sample.s;
+      budget.residual.at_place = sample.value;
+    }
+    budget.residual.rms = rms.value();
   }
 
   // The residual of a run without some causes, at the places of the budget.
-  static std::vector<double> signal(Budget& budget, const Runs& runs) {
-    auto [found, why_not] = residual(budget, runs, "stops where a cause is taken away");
-    if (!why_not.empty()) {
-      budget.note = std::move(why_not);
-      return {};
-    }
-    return at_places(found, budget);
+  static std::optional<AtPlaces> at_places(Budget& budget, const Runs& runs) {
+    auto signal = residual(budget, runs, "stops where a cause is taken away");
+    if (!signal) return std::nullopt;
+    return AtPlaces(std::move(*signal), budget);
   }
 
   bool has(const Budget& budget, Cause cause) const {
@@ -445,18 +190,34 @@ class Accounts {
   void subtract(Cause cause, const Runs& with, const Runs& less) {
     for (Budget& budget : budgets_) {
       if (!budget.note.empty() || !has(budget, cause)) continue;
-      std::vector<double> part = signal(budget, with);
-      const std::vector<double> left = signal(budget, less);
-      if (!budget.note.empty()) continue;
-      for (std::size_t n = 0; n < part.size(); ++n) part[n] -= left[n];
-      add(budget, cause, part);
+      auto one = at_places(budget, with), other = at_places(budget, less);
+      if (!one || !other) continue;
+      add(budget, cause, [&] { return one->next() - other->next(); });
     }
   }
 
-  static void add(Budget& budget, Cause cause, const std::vector<double>& signal) {
+  // Adds values, one a place, to what a cause has.
+  template <class Next>
+  void add(Budget& budget, Cause cause, Next next) const {
     BudgetPart& part = budget.parts[static_cast<std::size_t>(cause)];
+    const StoredSignal before = part.signal;
+    StoredSignal::Reader values(before);
+    fill(budget, part, [&] { return (part.present ? values.next() : 0.0) + next(); });
     part.present = true;
-    for (std::size_t n = 0; n < signal.size(); ++n) part.signal[n] += signal[n];
+  }
+
+  template <class Next>
+  void fill(const Budget& budget, BudgetSignal& signal, Next next) const {
+    StoredSignal out(store_, budget.s.size());
+    Statistic rms("rms");
+    for (std::size_t n = 0; n < budget.s.size(); ++n) {
+      const double value = next();
+      out.append(value);
+      rms.add(value);
+      if (n == budget.place) signal.at_place = value;
+    }
+    signal.signal = std::move(out);
+    signal.rms = rms.value();
   }
 
   void finish(Budget& budget, const Runs& none) const {
@@ -465,17 +226,20 @@ class Accounts {
     const auto rest = rest_of(quantity, *scenario_.find_case(quantity.cases.front()),
                               scenario_.find_case(quantity.base));
     if (rest) {
-      const std::vector<double> left = signal(budget, none);
-      if (!budget.note.empty()) return;
-      add(budget, *rest, left);
+      auto left = at_places(budget, none);
+      if (!left) return;
+      add(budget, *rest, [&] { return left->next(); });
     }
-    budget.remainder = budget.residual;
-    for (BudgetPart& part : budget.parts) {
-      part.at_place = part.signal[budget.place];
-      part.rms = rms(part.signal);
-      for (std::size_t n = 0; n < budget.s.size(); ++n) budget.remainder[n] -= part.signal[n];
+    StoredSignal::Reader residual(budget.residual.signal);
+    std::vector<StoredSignal::Reader> parts;
+    for (const BudgetPart& part : budget.parts) {
+      if (part.present) parts.emplace_back(part.signal);
     }
-    budget.remainder_rms = rms(budget.remainder);
+    fill(budget, budget.remainder, [&] {
+      double left = residual.next();
+      for (StoredSignal::Reader& part : parts) left -= part.next();
+      return left;
+    });
   }
 
   // complete, without measurement, each that adds, all of these, each of the chain
@@ -484,6 +248,7 @@ class Accounts {
   Scenario scenario_;
   const BudgetControl& control_;
   PreparationCache cache_;
+  std::shared_ptr<SignalStore> store_;
   std::map<std::string, Causes> present_;  // by case
   std::vector<Budget> budgets_;
   double runs_ = 0.0;
@@ -510,10 +275,6 @@ std::vector<QuantitySpec> asked_for(const Scenario& scenario, std::span<const st
 }
 
 }  // namespace
-
-const CauseInfo& info_of(Cause cause) { return kInfos[static_cast<std::size_t>(cause)]; }
-
-double Budget::residual_rms() const { return rms(residual); }
 
 bool is_of_any_case(std::string_view quantity) {
   if (!has_path_signal(quantity)) return false;
@@ -549,7 +310,7 @@ std::vector<QuantitySpec> budget_quantities(const Scenario& scenario,
 
 std::vector<Budget> find_budgets(const Scenario& scenario, std::span<const QuantitySpec> quantities,
                                  const BudgetControl& control) {
-  return Accounts(scenario, quantities, control).find();
+  return BudgetRun(scenario, quantities, control).find();
 }
 
 }  // namespace servomill::sim

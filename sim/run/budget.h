@@ -3,53 +3,29 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "sim/records/stored_signal.h"
+#include "sim/run/budget_causes.h"
 #include "sim/run/run.h"
 
 namespace servomill::sim {
 
-/// What a residual can come from. Taking a cause away (of the case and of the case that it is
-/// compared with) means:
-enum class Cause : std::uint8_t {
-  lag,             // loops and drives: axes stand where the NC wants them (servo = "ideal")
-  table,           // points of compensation tables, lines for several axes, their ends: the error
-                   // itself (form = "exact")
-  delay,           // response, dead time and update of tables, signal delay and model period of the
-                   // feedback hardware, delay of the scales: 0, and one base tick for the model
-  saturation,      // limits of virtual displacements: out of reach
-  one_step,        // errors evaluated where displacing changes them: iterations = "converged"
-  identification,  // strategies believe in the truth (or, without one, in the imposed model), and
-                   // in the origin of the case (rewritten_for = "case")
-  friction,        // dry friction, backlash, cogging, and what the NC does against them: none
-  measurement,     // errors, noise, steps, marks of encoders, errors of screws: none
-  cutting,         // the case runs in air
-  interpolation,   // chords of rewritten programs and path tolerances a hundredth, no
-                   // nominal-position filter, no block time
-  uncorrected,     // errors of the machine that no strategy of the case corrects: none
-  uncorrectable,   // stays without all others: what the axes of the strategies cannot do, and
-                   // the hundredth of tolerances
-  imposed,         // likewise: what strategies bring out on purpose
+/// A signal of a budget, um, at all places of it.
+struct BudgetSignal {
+  StoredSignal signal;
+  double at_place = 0.0;  // signed, where the residual is largest
+  double rms = 0.0;       // along the path
 };
-inline constexpr std::size_t kCauses = 13;
-struct CauseInfo {
-  std::string_view name;  // "lag", "table", ...
-  std::string_view help;
-};
-const CauseInfo& info_of(Cause cause);
 
 /// One cause of a residual.
-struct BudgetPart {
+struct BudgetPart : BudgetSignal {
   Cause cause = Cause::lag;
-  bool present = false;        // the case has it; else all is 0
-  double at_place = 0.0;       // um, signed, where the residual is largest
-  double rms = 0.0;            // um, along the path
-  std::vector<double> signal;  // um
+  bool present = false;  // the case has it; else all is 0, and no signal stored
 };
 
 /// With R the residual along the path, R(-c) that of a run without the causes c and R(c) that of a
@@ -82,21 +58,21 @@ struct BudgetPart {
 /// the path) and the quantity does not take that off, else `uncorrectable` where one knows errors,
 /// else `uncorrected`: the imposed displacement that imposed_curve_residual wants and nobody brings
 /// out.
+///
+/// Signals are computed sample by sample, from recordings that may lie on the disk, and kept there
+/// themselves when they are long.
 struct Budget {
-  QuantitySpec quantity;         // of one case; a signal along the path (has_path_signal)
-  std::vector<double> s;         // mm, of the original path
-  std::vector<double> turned;    // as in PathSignal
-  std::vector<double> residual;  // um
-  std::size_t place = 0;         // index of its largest value
+  QuantitySpec quantity;  // of one case; a signal along the path (PathSignal)
+  StoredSignal s;         // mm, of the original path
+  StoredSignal turned;    // as in PathSample
+  BudgetSignal residual;
+  std::size_t place = 0;  // index of its largest value
+  double place_s = 0.0;   // mm
   std::array<BudgetPart, kCauses> parts;
-  std::vector<double> remainder;  // um
-  double remainder_rms = 0.0;
+  BudgetSignal remainder;
   std::string note;  // why there is none: "case table stopped: ..."
 
-  double residual_at_place() const { return residual.at(place); }
-  double remainder_at_place() const { return remainder.at(place); }
-  double sum_at_place() const { return residual_at_place() - remainder_at_place(); }
-  double residual_rms() const;
+  double sum_at_place() const { return residual.at_place - remainder.at_place; }
 };
 
 /// Whether each case has this quantity, asked for or not: tool_deviation, following_error.

@@ -7,12 +7,23 @@
 namespace servomill::sim {
 namespace {
 
-void write_signal(Hdf5Group& group, const std::string& name, const std::vector<double>& signal,
-                  const std::string& help, double at_place, double rms) {
-  group.list(name, signal, {"um", help}, "s");
-  Hdf5Dataset data = group.dataset(name);
-  data.attribute("at_place", at_place);
-  data.attribute("rms", rms);
+Hdf5Dataset write(Hdf5Group& group, const std::string& name, const StoredSignal& signal,
+                  const Meaning& meaning) {
+  Hdf5Dataset data = group.extendible(name, 1, false, signal.chunk_rows(), Storage::float64,
+                                      SignalStore::kCompression, meaning);
+  for (std::size_t chunk = 0; chunk < signal.chunks(); ++chunk) {
+    const std::vector<std::uint8_t> encoded = signal.encoded(chunk);
+    data.append(signal.rows_of(chunk), {&encoded, 1});
+  }
+  return data;
+}
+
+void write(Hdf5Group& group, const std::string& name, const BudgetSignal& signal,
+           const std::string& help, Hdf5Dataset& s) {
+  Hdf5Dataset data = write(group, name, signal.signal, {"um", help});
+  data.attach_scale(s, 0);
+  data.attribute("at_place", signal.at_place);
+  data.attribute("rms", signal.rms);
 }
 
 }  // namespace
@@ -34,18 +45,17 @@ void BudgetStore::add(const Budget& budget) {
   group.attribute("base", quantity.base);
   group.attribute("note", budget.note);
   if (!budget.note.empty()) return;
-  group.attribute("place", budget.s[budget.place]);
-  group.list("s", budget.s, {"mm", "arc length on the path of the original program"});
-  write_signal(group, "residual", budget.residual, "residual", budget.residual_at_place(),
-               budget.residual_rms());
+  group.attribute("place", budget.place_s);
+  Hdf5Dataset s =
+      write(group, "s", budget.s, {"mm", "arc length on the path of the original program"});
+  s.make_scale("s");
+  write(group, "residual", budget.residual, "residual", s);
   for (const BudgetPart& part : budget.parts) {
     if (!part.present) continue;
     const CauseInfo& info = info_of(part.cause);
-    write_signal(group, std::string(info.name), part.signal, std::string(info.help), part.at_place,
-                 part.rms);
+    write(group, std::string(info.name), part, std::string(info.help), s);
   }
-  write_signal(group, "remainder", budget.remainder, "residual minus all parts",
-               budget.remainder_at_place(), budget.remainder_rms);
+  write(group, "remainder", budget.remainder, "residual minus all parts", s);
 }
 
 }  // namespace servomill::sim

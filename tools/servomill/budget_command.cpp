@@ -121,10 +121,10 @@ void print_budget(const sim::Budget& budget) {
     fmt::print("  none: {}\n", budget.note);
     return;
   }
-  const double whole = budget.residual_at_place();
+  const double whole = budget.residual.at_place;
   const auto share = [&](double part) { return whole != 0.0 ? part / whole : 0.0; };
-  fmt::print("  {:<15} {:>12} {:>9} {:>12}\n", "cause",
-             fmt::format("at s {:.1f}", budget.s[budget.place]), "share", "rms");
+  fmt::print("  {:<15} {:>12} {:>9} {:>12}\n", "cause", fmt::format("at s {:.1f}", budget.place_s),
+             "share", "rms");
   for (const sim::BudgetPart& part : budget.parts) {
     if (!part.present) continue;
     const sim::CauseInfo& info = sim::info_of(part.cause);
@@ -137,9 +137,9 @@ void print_budget(const sim::Budget& budget) {
   }
   const double sum = budget.sum_at_place();
   fmt::print("  {:<15} {:>9} um {:>7} %\n", "sum", micrometres(sum), percent(share(sum)));
-  print_line("remainder", budget.remainder_at_place(), share(budget.remainder_at_place()),
-             budget.remainder_rms, "what causes do together");
-  print_line("residual", whole, 1.0, budget.residual_rms(), "");
+  print_line("remainder", budget.remainder.at_place, share(budget.remainder.at_place),
+             budget.remainder.rms, "what causes do together");
+  print_line("residual", whole, 1.0, budget.residual.rms, "");
   if (!absent.empty()) fmt::print("  not in this case: {}\n", absent);
 }
 
@@ -158,8 +158,7 @@ void print_json(const sim::Budget& budget) {
     return;
   }
   fmt::print(R"("unit": "um", "s_mm": {}, "residual": {}, "residual_rms": {}, "parts": {{)",
-             number(budget.s[budget.place]), number(budget.residual_at_place()),
-             number(budget.residual_rms()));
+             number(budget.place_s), number(budget.residual.at_place), number(budget.residual.rms));
   const char* separator = "";
   for (const sim::BudgetPart& part : budget.parts) {
     if (!part.present) continue;
@@ -168,8 +167,8 @@ void print_json(const sim::Budget& budget) {
     separator = ", ";
   }
   fmt::print("}}, \"sum\": {}, \"remainder\": {}, \"remainder_rms\": {}}}\n",
-             number(budget.sum_at_place()), number(budget.remainder_at_place()),
-             number(budget.remainder_rms));
+             number(budget.sum_at_place()), number(budget.remainder.at_place),
+             number(budget.remainder.rms));
 }
 
 }  // namespace

@@ -40,10 +40,14 @@ std::string one_case(const std::string& strategy, const std::string& more = "") 
 // Parts and remainder make the residual, at each place.
 void expect_sum(const Budget& budget) {
   constexpr double kRounding = 1e-9;  // um, of sums of some hundred um
-  for (std::size_t n = 0; n < budget.s.size(); ++n) {
-    double sum = budget.remainder[n];
-    for (const BudgetPart& one : budget.parts) sum += one.signal[n];
-    ASSERT_NEAR(sum, budget.residual[n], kRounding) << "at s = " << budget.s[n];
+  const std::vector<double> residual = budget.residual.signal.all(), s = budget.s.all();
+  std::vector<double> sum = budget.remainder.signal.all();
+  for (const BudgetPart& one : budget.parts) {
+    const std::vector<double> part = one.signal.all();
+    for (std::size_t n = 0; n < part.size(); ++n) sum[n] += part[n];
+  }
+  for (std::size_t n = 0; n < s.size(); ++n) {
+    ASSERT_NEAR(sum[n], residual[n], kRounding) << "at s = " << s[n];
   }
 }
 
@@ -60,9 +64,9 @@ const BudgetPart& part(const Budget& budget, Cause cause) {
   return budget.parts[static_cast<std::size_t>(cause)];
 }
 
-double largest(const std::vector<double>& values) {
+double largest(const BudgetSignal& signal) {
   double out = 0.0;
-  for (const double v : values) out = std::max(out, std::abs(v));
+  for (const double v : signal.signal.all()) out = std::max(out, std::abs(v));
   return out;
 }
 
@@ -70,7 +74,7 @@ double largest(const std::vector<double>& values) {
 void expect_nothing_else(const Budget& budget, const std::vector<Cause>& but, double least) {
   for (const BudgetPart& one : budget.parts) {
     if (std::find(but.begin(), but.end(), one.cause) != but.end()) continue;
-    EXPECT_LT(largest(one.signal), least) << info_of(one.cause).name;
+    EXPECT_LT(largest(one), least) << info_of(one.cause).name;
   }
   EXPECT_LT(largest(budget.remainder), least);
 }
@@ -86,7 +90,7 @@ TEST(Budget, OfLagAlone) {
   constexpr double kSome = 0.01;            // share; the path is a little slower at the ends
   EXPECT_NEAR(part(budget, Cause::lag).at_place, -lag, kSome * lag);
   EXPECT_NEAR(part(budget, Cause::lag).rms, lag, 2.0 * kSome * lag);
-  EXPECT_NEAR(budget.residual_at_place(), -lag, kSome * lag);
+  EXPECT_NEAR(budget.residual.at_place, -lag, kSome * lag);
   expect_nothing_else(budget, {Cause::lag}, 0.03 * lag);  // encoder steps and path tolerance
 }
 
@@ -111,7 +115,7 @@ TEST(Budget, OfTheSpacingOfATableAlone) {
                                            "servo = \"ideal\"\n"));
   const double chord = 6.5536 * 6.5536 / 8.0 * 0.1;  // 0.537 um
   EXPECT_NEAR(part(budget, Cause::table).at_place, chord, 0.01 * chord);
-  EXPECT_NEAR(part(budget, Cause::table).at_place, budget.residual_at_place(), 1e-3 * chord);
+  EXPECT_NEAR(part(budget, Cause::table).at_place, budget.residual.at_place, 1e-3 * chord);
   EXPECT_NEAR(part(budget, Cause::table).rms, std::sqrt(8.0 / 15.0) * chord, 0.02 * chord);
   expect_nothing_else(budget, {Cause::table}, 0.01 * chord);
 }
@@ -177,9 +181,9 @@ TEST(Budget, OfAFollowingErrorHasNoPartForTheInterpolation) {
       program.c_str());
   const double lag = 1e3 * 16.0 / kKv;  // 267 um
   constexpr double kSome = 1e-3;        // share
-  EXPECT_NEAR(budget.residual_at_place(), lag, kSome * lag);
+  EXPECT_NEAR(budget.residual.at_place, lag, kSome * lag);
   EXPECT_NEAR(part(budget, Cause::lag).at_place, lag, kSome * lag);
-  EXPECT_EQ(largest(part(budget, Cause::interpolation).signal), 0.0);
+  EXPECT_EQ(largest(part(budget, Cause::interpolation)), 0.0);
   expect_nothing_else(budget, {Cause::lag}, kSome * lag);
 }
 
@@ -231,10 +235,10 @@ TEST(Budget, OfATableWithAllOfItsCausesAddsUp) {
   const double slope = 0.1 * 80.0;  // um/mm, where the section ends
   const double lag = slope * kFeed / kKv, delay = slope * kFeed * 50e-3;  // 3.1, 9.3 um
   const double chord = 6.5536 * 6.5536 / 8.0 * 0.1;                       // 0.537 um
-  EXPECT_NEAR(part(budget, Cause::lag).signal.back(), -lag, 0.02 * lag);
-  EXPECT_NEAR(part(budget, Cause::delay).signal.back(), -delay, 0.02 * delay);
-  EXPECT_NEAR(largest(part(budget, Cause::table).signal), chord, 0.05 * chord);
-  EXPECT_LT(largest(budget.remainder), 1e-3 * std::abs(budget.residual_at_place()));
+  EXPECT_NEAR(part(budget, Cause::lag).signal.all().back(), -lag, 0.02 * lag);
+  EXPECT_NEAR(part(budget, Cause::delay).signal.all().back(), -delay, 0.02 * delay);
+  EXPECT_NEAR(largest(part(budget, Cause::table)), chord, 0.05 * chord);
+  EXPECT_LT(largest(budget.remainder), 1e-3 * std::abs(budget.residual.at_place));
 }
 
 // What is left without all others has a name that says whose it is.
@@ -280,7 +284,7 @@ TEST(Budget, OfTheCutAlone) {
       "[[quantity]]\nname = \"tool_deviation\"\naxis = \"Y\"\nsections = [\"slot\"]\n");
   const auto budgets = find_budgets(scenario, budget_quantities(scenario));
   ASSERT_EQ(budgets.size(), 1U);
-  const double residual = budgets[0].residual_at_place();
+  const double residual = budgets[0].residual.at_place;
   EXPECT_GT(std::abs(residual), 1.0);
   EXPECT_NEAR(part(budgets[0], Cause::cutting).at_place, residual, 1e-6);
   expect_nothing_else(budgets[0], {Cause::cutting}, 1e-6);
@@ -314,15 +318,15 @@ TEST(Budget, AddsUpForExperiment1) {
   for (const Budget& budget : budgets) {
     expect_sum(budget);
     const std::string& name = budget.quantity.cases.front();
-    RecordProperty(name + "_residual_um", std::to_string(budget.residual_at_place()));
-    RecordProperty(name + "_remainder_um", std::to_string(budget.remainder_at_place()));
-    EXPECT_LT(std::abs(budget.remainder_at_place()), kShare * std::abs(budget.residual_at_place()))
+    RecordProperty(name + "_residual_um", std::to_string(budget.residual.at_place));
+    RecordProperty(name + "_remainder_um", std::to_string(budget.remainder.at_place));
+    EXPECT_LT(std::abs(budget.remainder.at_place), kShare * std::abs(budget.residual.at_place))
         << name;
-    EXPECT_LT(budget.remainder_rms, kShare * budget.residual_rms()) << name;
+    EXPECT_LT(budget.remainder.rms, kShare * budget.residual.rms) << name;
   }
   // the table's own response is most of what it leaves, lag most of what feedback does
   EXPECT_GT(part(budgets[0], Cause::delay).rms, 2.0 * part(budgets[0], Cause::lag).rms);
-  EXPECT_GT(part(budgets[1], Cause::lag).rms, 0.9 * budgets[1].residual_rms());
+  EXPECT_GT(part(budgets[1], Cause::lag).rms, 0.9 * budgets[1].residual.rms);
   EXPECT_GT(part(budgets[2], Cause::interpolation).rms, part(budgets[2], Cause::lag).rms);
 }
 
@@ -334,10 +338,10 @@ TEST(Budget, LeavesWhatCausesDoTogetherInTheRemainder) {
       root("constant_um = 120.0", "[errors.belief]\nEYX = { constant_um = 144.0 }\n") +
       one_case("type = \"feedback\"\nmodel = \"belief\"\nmax_um = 100.0\n", "servo = \"ideal\"\n"));
   constexpr double kSteps = 0.1;  // um, of encoders and more than these
-  EXPECT_NEAR(budget.residual_at_place(), -20.0, kSteps);
+  EXPECT_NEAR(budget.residual.at_place, -20.0, kSteps);
   EXPECT_NEAR(part(budget, Cause::saturation).at_place, -44.0, kSteps);
   EXPECT_NEAR(part(budget, Cause::identification).at_place, 0.0, kSteps);
-  EXPECT_NEAR(budget.remainder_at_place(), 24.0, kSteps);
+  EXPECT_NEAR(budget.remainder.at_place, 24.0, kSteps);
 }
 
 // The tip stands while C turns under tool-centre-point control: arc length does not tell where. The
@@ -350,9 +354,9 @@ TEST(Budget, ComparesByTheTurnWhereTheTipStands) {
           quantity("tool_deviation", 'X', "turn"),
       "G17 G90 G94 G64 P0.0002 T1 M6\nG43.4 H1\nG0 X30 Y0 Z-10 C0\nF3600\nG1 C10\n(MSG, turn)\nG1 "
       "C350\nM30\n");
-  EXPECT_EQ(budget.s.front(), budget.s.back());
+  EXPECT_EQ(budget.s.all().front(), budget.s.all().back());
   EXPECT_NEAR(part(budget, Cause::uncorrected).at_place, 20.0, 0.01);
-  EXPECT_LT(largest(part(budget, Cause::interpolation).signal), 0.2);  // um, P0.0002
+  EXPECT_LT(largest(part(budget, Cause::interpolation)), 0.2);  // um, P0.0002
   expect_nothing_else(budget, {Cause::uncorrected, Cause::interpolation}, 0.01);
 }
 

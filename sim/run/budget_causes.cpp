@@ -1,0 +1,268 @@
+#include "sim/run/budget_causes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "plant/vocabulary/units.h"
+#include "sim/config/quantity.h"
+#include "sim/run/budget.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr std::array<CauseInfo, kCauses> kInfos = {{
+    {"lag", "servo loops and drives follow late"},
+    {"table", "points and form of compensation tables"},
+    {"delay", "response and update of tables, signal delay, model period"},
+    {"saturation", "limits of virtual displacements"},
+    {"one_step", "errors evaluated at a displaced position"},
+    {"identification", "believed errors, or origin, are not the true ones"},
+    {"friction", "dry friction, backlash, cogging, and their compensation"},
+    {"measurement", "encoders and, where the motor is read, screws"},
+    {"cutting", "forces of the cut"},
+    {"interpolation", "chords, path tolerance and filter of the NC"},
+    {"uncorrected", "errors that no strategy of the case corrects, or brings out"},
+    {"uncorrectable", "what the axes of the strategies cannot do"},
+    {"imposed", "what strategies bring out on purpose"},
+}};
+
+constexpr double kFine = 0.01;        // share of tolerances that are taken away
+constexpr double kLeastChord = 1e-9;  // m
+
+MachineSettings& own_machine(const Scenario& scenario, CaseSpec& one) {
+  if (!one.machine) one.machine = scenario.machine;
+  return *one.machine;
+}
+
+// Sets a parameter to its ideal; whether it had another value.
+bool idealise(const ParameterSpec& spec, Parameters& parameters) {
+  const bool is_word =
+      std::find(spec.words.begin(), spec.words.end(), spec.ideal) != spec.words.end();
+  if (is_word) {
+    if (parameters.is_word(spec.name) && parameters.word(spec.name) == spec.ideal) return false;
+    parameters.set(spec.name, spec.ideal);
+    return true;
+  }
+  const ParsedUnit unit = parse_unit(spec.unit);
+  const double ideal = std::stod(std::string(spec.ideal)) * (unit.unit ? unit.unit->factor : 1.0);
+  if (!parameters.is_word(spec.name) && parameters.number(spec.name) == ideal) return false;
+  parameters.set(spec.name, ideal);
+  return true;
+}
+
+// Takes a shortcoming away from all strategies that have it; whether any had.
+bool idealise(CaseSpec& one, Shortcoming shortcoming) {
+  bool any = false;
+  for (StrategySpec& strategy : one.strategies) {
+    for (const ParameterSpec& spec : strategy.entry->parameters) {
+      if (spec.shortcoming != shortcoming || spec.ideal.empty()) continue;
+      any |= idealise(spec, strategy.parameters);
+    }
+  }
+  return any;
+}
+
+bool remove_friction(MachineSettings& machine) {
+  bool any = false;
+  for (const int joint : machine.joints()) {
+    const auto j = static_cast<std::size_t>(joint);
+    plant::FeedDriveParams& drive = machine.drives[j];
+    AxisFunctions& functions = machine.nc.functions[j];
+    any |=
+        !drive.is_linear() || functions.friction.compensates() || functions.backlash.width != 0.0;
+    drive.friction = {};
+    drive.gap = 0.0;
+    drive.cogging = {};
+    functions.friction = {};
+    functions.backlash = {};
+  }
+  return any;
+}
+
+bool remove_measurement(MachineSettings& machine) {
+  bool any = false;
+  for (const int joint : machine.joints()) {
+    const auto j = static_cast<std::size_t>(joint);
+    for (plant::Encoder* encoder : {&machine.scale[j], &machine.motor[j]}) {
+      any |= !encoder->is_plain() || encoder->step() > 0.0;
+      *encoder = {};
+    }
+    any |= machine.marks[j].has_value() || !machine.screw[j].is_zero();
+    machine.marks[j].reset();
+    machine.screw[j] = {};
+  }
+  return any;
+}
+
+bool remove_delay(Scenario& scenario, CaseSpec& one) {
+  constexpr Tick kNone = 0, kLeast = 1;
+  const bool needs_hardware = one.needs_feedback_hardware();
+  MachineSettings& machine = own_machine(scenario, one);
+  bool any = machine.scale_delay != kNone ||
+             (one.feedback_hardware && scenario.hardware.signal_delay != kNone) ||
+             (needs_hardware && scenario.hardware.model_period != kLeast);
+  machine.scale_delay = kNone;
+  any |= idealise(one, Shortcoming::delay);
+  return any;
+}
+
+const std::string& truth_of(const Scenario& scenario, const CaseSpec& one) {
+  return one.truth ? *one.truth : scenario.truth;
+}
+
+// Whether strategies of a case know errors, to correct or to generate them.
+bool has_strategy(const CaseSpec& one, strategies::Sign sign) {
+  return std::any_of(one.strategies.begin(), one.strategies.end(), [&](const StrategySpec& spec) {
+    return spec.entry->reads_errors && spec.sign == sign;
+  });
+}
+
+bool remove_identification(const Scenario& scenario, CaseSpec& one) {
+  bool any = idealise(one, Shortcoming::identification);
+  const std::string& truth = truth_of(scenario, one);
+  for (StrategySpec& strategy : one.strategies) {
+    if (!strategy.entry->reads_errors) continue;
+    const bool corrects_truth = strategy.sign == strategies::Sign::correct && !truth.empty();
+    const std::string& right = corrects_truth ? truth : scenario.imposed;
+    if (right.empty() || strategy.model == right) continue;
+    strategy.model = right;
+    any = true;
+  }
+  return any;
+}
+
+bool remove_uncorrected(const Scenario& scenario, CaseSpec& one) {
+  if (truth_of(scenario, one).empty() || has_strategy(one, strategies::Sign::correct)) return false;
+  one.truth = "";
+  return true;
+}
+
+bool remove_interpolation(const Scenario& scenario, CaseSpec& one) {
+  NcSettings& nc = own_machine(scenario, one).nc;
+  nc.path_tolerance *= kFine;
+  nc.rotary_tolerance *= kFine;
+  nc.tolerance_share *= kFine;
+  nc.filter = {};
+  nc.block_time = 0.0;
+  for (StrategySpec& strategy : one.strategies) {
+    for (const ParameterSpec& spec : strategy.entry->parameters) {
+      if (spec.shortcoming != Shortcoming::chord_tolerance) continue;
+      Parameters& p = strategy.parameters;
+      p.set(spec.name, std::max(kLeastChord, kFine * p.number(spec.name)));
+    }
+  }
+  return true;  // there is always a tolerance
+}
+
+// Takes a cause away from a case, but for what is the scenario's; whether it had it.
+bool remove(Cause cause, Scenario& scenario, CaseSpec& one) {
+  switch (cause) {
+    case Cause::lag: {
+      const bool had = one.servo != ServoModel::ideal;
+      one.servo = ServoModel::ideal;
+      return had;
+    }
+    case Cause::table:
+      return idealise(one, Shortcoming::points);
+    case Cause::delay:
+      return remove_delay(scenario, one);
+    case Cause::saturation:
+      return idealise(one, Shortcoming::saturation);
+    case Cause::one_step:
+      return idealise(one, Shortcoming::one_step);
+    case Cause::identification:
+      return remove_identification(scenario, one);
+    case Cause::friction:
+      return remove_friction(own_machine(scenario, one));
+    case Cause::measurement:
+      return remove_measurement(own_machine(scenario, one));
+    case Cause::cutting:
+      return std::exchange(one.cutting, false);
+    case Cause::interpolation:
+      return remove_interpolation(scenario, one);
+    case Cause::uncorrected:
+      return remove_uncorrected(scenario, one);
+    case Cause::uncorrectable:
+    case Cause::imposed:
+      break;
+  }
+  return false;
+}
+
+// Whether strategies of a case move the tool where the program does not want it.
+bool moves_on_purpose(const CaseSpec& one) {
+  return has_strategy(one, strategies::Sign::generate) ||
+         std::any_of(one.strategies.begin(), one.strategies.end(), [](const StrategySpec& spec) {
+           return !spec.entry->reads_errors && spec.entry->acts;
+         });
+}
+
+}  // namespace
+
+const CauseInfo& info_of(Cause cause) { return kInfos[static_cast<std::size_t>(cause)]; }
+
+Causes all_causes() {
+  Causes out = {Cause::measurement};
+  out.insert(kAdding.begin(), kAdding.end());
+  out.insert(kChain.begin(), kChain.end());
+  return out;
+}
+
+std::optional<Cause> rest_of(const QuantitySpec& quantity, const CaseSpec& one,
+                             const CaseSpec* base) {
+  if (quantity.name == "following_error") return std::nullopt;
+  const auto any = [&](auto fact) { return fact(one) || (base != nullptr && fact(*base)); };
+  const bool takes_imposed_off = quantity.name == "imposed_curve_residual";
+  if (any(moves_on_purpose) && !takes_imposed_off) return Cause::imposed;
+  const bool knows_errors = any([](const CaseSpec& spec) {
+    return has_strategy(spec, strategies::Sign::generate) ||
+           has_strategy(spec, strategies::Sign::correct);
+  });
+  if (knows_errors) return Cause::uncorrectable;
+  if (takes_imposed_off) return Cause::uncorrected;
+  return std::nullopt;
+}
+
+Causes present(const Causes& causes, const Scenario& scenario, const CaseSpec& one) {
+  Causes out;
+  for (const Cause cause : causes) {
+    Scenario trial = scenario;
+    CaseSpec spec = one;
+    if (remove(cause, trial, spec)) out.insert(cause);
+  }
+  if (one.servo == ServoModel::ideal) {
+    for (const Cause cause : {Cause::friction, Cause::measurement}) out.erase(cause);
+  }
+  return out;
+}
+
+Scenario without(const Scenario& scenario, const Causes& removed, const Causes& already,
+                 const std::map<std::string, Causes>& present_in) {
+  Scenario out = scenario;
+  if (!removed.empty()) {  // the first run has checked them; signals along the path need no part
+    out.quantities.clear();
+    out.probes.clear();
+    out.part.reset();
+  }
+  out.cases.clear();
+  for (const CaseSpec& one : scenario.cases) {
+    const auto found = present_in.find(one.name);
+    if (found == present_in.end()) continue;  // nobody asks for it
+    CaseSpec changed = one;
+    bool any = removed.empty();
+    for (const Cause cause : removed) {
+      if (!found->second.contains(cause)) continue;
+      remove(cause, out, changed);
+      any |= !already.contains(cause);
+    }
+    if (any) out.cases.push_back(std::move(changed));
+  }
+  if (removed.contains(Cause::delay)) {  // of the scenario, hence after the cases were asked
+    out.hardware.signal_delay = 0;
+    out.hardware.model_period = 1;
+  }
+  return out;
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,70 @@
+/// Causes of residuals, taken away from cases.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "sim/model/scenario.h"
+
+namespace servomill::sim {
+
+/// What a residual can come from. Taking a cause away (of the case and of the case that it is
+/// compared with) means:
+enum class Cause : std::uint8_t {
+  lag,             // loops and drives: axes stand where the NC wants them (servo = "ideal")
+  table,           // points of compensation tables, lines for several axes, their ends: the error
+                   // itself (form = "exact")
+  delay,           // response, dead time and update of tables, signal delay and model period of the
+                   // feedback hardware, delay of the scales: 0, and one base tick for the model
+  saturation,      // limits of virtual displacements: out of reach
+  one_step,        // errors evaluated where displacing changes them: iterations = "converged"
+  identification,  // strategies believe in the truth (or, without one, in the imposed model), and
+                   // in the origin of the case (rewritten_for = "case")
+  friction,        // dry friction, backlash, cogging, and what the NC does against them: none
+  measurement,     // errors, noise, steps, marks of encoders, errors of screws: none
+  cutting,         // the case runs in air
+  interpolation,   // chords of rewritten programs and path tolerances a hundredth, no
+                   // nominal-position filter, no block time
+  uncorrected,     // errors of the machine that no strategy of the case corrects: none
+  uncorrectable,   // stays without all others: what the axes of the strategies cannot do, and
+                   // the hundredth of tolerances
+  imposed,         // likewise: what strategies bring out on purpose
+};
+inline constexpr std::size_t kCauses = 13;
+struct CauseInfo {
+  std::string_view name;  // "lag", "table", ...
+  std::string_view help;
+};
+const CauseInfo& info_of(Cause cause);
+using Causes = std::set<Cause>;
+
+/// Those that the signal goes through, in this order.
+inline constexpr std::array kChain = {Cause::interpolation, Cause::lag, Cause::delay};
+/// Those that add to it, beside measurement.
+inline constexpr std::array kAdding = {Cause::table,          Cause::saturation, Cause::one_step,
+                                       Cause::identification, Cause::friction,   Cause::cutting,
+                                       Cause::uncorrected};
+
+/// All that can be taken away.
+Causes all_causes();
+
+/// Those that a case has. An ideal servo has nothing that goes through loops.
+Causes present(const Causes& causes, const Scenario& scenario, const CaseSpec& one);
+
+/// What stays without all others; none of what begins behind the strategies.
+/// @param base  the case it is compared with, or nullptr
+std::optional<Cause> rest_of(const QuantitySpec& quantity, const CaseSpec& one,
+                             const CaseSpec* base);
+
+/// The cases that have a cause to be removed that another run has not removed already, without it.
+/// @param present_in  by case; others are left out
+Scenario without(const Scenario& scenario, const Causes& removed, const Causes& already,
+                 const std::map<std::string, Causes>& present_in);
+
+}  // namespace servomill::sim
