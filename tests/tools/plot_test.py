@@ -25,7 +25,7 @@ import numpy as np
 from PIL import Image
 
 import plot as program
-from figures import balls, circular, five_axis, lag, names, nonlinear, notches, parts, probed_points, results, straightness, style, sweeps, volumetric
+from figures import balls, circular, five_axis, lag, names, nonlinear, notches, parts, probed_points, results, rows, straightness, style, sweeps, volumetric
 
 SERVOMILL = ""
 AGREE = 1e-7        # um; `compare` prints nine digits of up to 100 um
@@ -218,7 +218,7 @@ class Agreement(WithFiles):
 
         values = np.array([10.0, 20.0, 30.0, 50.0])
         at = np.array([-1.0, 0.0, 0.5, 1.0, 2.0, 3.0, 4.0])
-        self.assertEqual(list(results.along_path(Base, values, at)),
+        self.assertEqual(list(rows.along_path(Base, values, at)),
                          [10.0, 10.0, 15.0, 30.0, 40.0, 50.0, 50.0])
 
     def test_magnification_is_round_and_as_large_as_fits(self):
@@ -711,6 +711,52 @@ class OwnNames(WithFiles):
                    "compensated_lead, nominal_air, generated_air, compensated_air", side, "--case", "table")
         self.fails("plot.py: error: --case names generated twice: table and gcode",
                    side, "--case", "generated=table", "--case", "generated=gcode")
+
+
+class LongRecordings(unittest.TestCase):
+    """Of a recording with many rows few are held; 10 000 stand for many here, in blocks of 1000."""
+
+    ROWS, MOST = 10_000, 600
+
+    def setUp(self):
+        self.enterContext(unittest.mock.patch.object(rows, "BLOCK", 1000))
+        chance = np.random.default_rng(1)
+        file = self.file = self.enterContext(h5py.File("rows.h5", "w", driver="core", backing_store=False))
+        step = chance.uniform(0.0, 0.02, self.ROWS)
+        step[3950:4050] = 0.0   # the tool stands over the end of a block
+        file["s"] = np.cumsum(step)
+        file["contour_error"] = np.abs(chance.normal(size=self.ROWS))
+        file["tool_deviation"] = chance.normal(size=(self.ROWS, 3))
+        file["rapid"] = np.zeros(self.ROWS)
+        file["rapid"][7000:7003] = 1.0
+        file["section"] = np.zeros(self.ROWS, dtype=np.int32)
+        file["section"][2000:2200] = 1    # a circle, say
+        file["section"][5000:9000] = 2
+
+    def test_few_rows_are_held_with_the_peaks_of_all(self):
+        kept = rows.kept_rows(self.file, self.MOST)
+        self.assertLess(len(kept), self.MOST)
+        self.assertTrue((np.diff(kept) > 0).all())
+        for name, column in (("contour_error", None), *(("tool_deviation", k) for k in range(3))):
+            every = self.file[name][:] if column is None else self.file[name][:, column]
+            some = rows.read(self.file[name], kept, column)
+            self.assertEqual((some.min(), some.max()), (every.min(), every.max()), name)
+            self.assertEqual(list(some), list(every[kept]))
+
+    def test_short_sections_and_rapid_moves_are_there_as_a_whole(self):
+        kept = set(rows.kept_rows(self.file, self.MOST))
+        self.assertLessEqual(set(range(2000, 2200)), kept)
+        self.assertLessEqual({0, 1999, 4999, 5000, 6999, 7000, 7002, 7003, 9999}, kept)
+
+    def test_a_short_recording_is_held_as_it_is(self):
+        self.assertIsNone(rows.kept_rows(self.file, self.ROWS))
+        self.assertEqual(rows.read(self.file["tool_deviation"], None, 1).shape, (self.ROWS,))
+
+    def test_another_case_is_read_between_all_of_its_rows(self):
+        s, values = self.file["s"][:], self.file["tool_deviation"][:, 2]
+        places = np.concatenate([np.linspace(-1.0, s[-1] + 1.0, 777), s[[0, 999, 1000, 3999, 4000, 4001, 9999]]])
+        self.assertEqual(list(rows.values_along(self.file["s"], self.file["tool_deviation"], 2, places)),
+                         list(rows.interpolated(s, values, places)))
 
 
 class Headlines(unittest.TestCase):

@@ -62,8 +62,8 @@ def draw_air_and_cutting(run):
         angle, _, _ = _around(base, cutting[name], rows)
         added = results.trajectory_difference(cutting[name], air[name + AIR], "Z", rows)
         style.noisy_line(scale, angle, added, looks[name], buckets=120)
-        at_tool = (_tool_z(cutting[name], rows) - results.along_path(
-            air[name + AIR], air[name + AIR].column("tool_position_true", "Z"), cutting[name].column("s")[rows])) * UM_PER_MM
+        at_tool = (_tool_z(cutting[name], rows) - air[name + AIR].along(
+            "tool_position_true", "Z", cutting[name].column("s")[rows])) * UM_PER_MM
         style.noisy_line(tool, angle, at_tool, looks[name], buckets=120)
         told[name] = (np.abs(np.median(added)), np.abs(np.median(at_tool)))
     oblique.set_title(f"(a) Circle seen obliquely, Z at the scale × {factor:.0f}")
@@ -84,7 +84,7 @@ def draw_air_and_cutting(run):
 
 def _around(base, case, rows):
     s = case.column("s")[rows]
-    x, y = (results.along_path(base, base.column("ref_linear", axis), s) for axis in "XY")
+    x, y = (base.along("ref_linear", axis, s) for axis in "XY")
     x, y = x - 0.5 * (x.max() + x.min()), y - 0.5 * (y.max() + y.min())
     angle = np.degrees(np.unwrap(np.arctan2(y, x)))
     return np.abs(angle - angle[0]), x, y
@@ -92,7 +92,7 @@ def _around(base, case, rows):
 
 def _height(base, case, rows):
     # scale minus what the nominal program asks for, um
-    nominal = results.along_path(base, base.column("ref_linear", "Z"), case.column("s")[rows])
+    nominal = base.along("ref_linear", "Z", case.column("s")[rows])
     return (case.column("meas_linear", "Z")[rows] - nominal) * UM_PER_MM
 
 

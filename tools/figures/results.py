@@ -12,6 +12,7 @@ import numpy as np
 
 from command_line import InputError
 from figures import names as naming
+from figures import rows as of_file
 
 SCHEMA_VERSION = 1
 SWEEP_SCHEMA_VERSION = 3
@@ -70,7 +71,7 @@ class ResultFile:
 
 
 class Case:
-    """One case of a run: arrays of its group `servo`, read when asked for."""
+    """One case of a run: arrays of its group `servo`, read when asked for; of a long one some rows (figures/rows.py)."""
 
     def __init__(self, name, group):
         self.name = name
@@ -78,6 +79,7 @@ class Case:
         self.outcome = str(group.attrs.get("outcome", ""))
         self.sections = str(group.attrs["sections"]).split("\n")
         self._servo = group["servo"]
+        self._kept = of_file.kept_rows(self._servo) if "s" in self._servo else None
         self._read = {}
 
     def has(self, name):
@@ -95,9 +97,15 @@ class Case:
             data = self._servo[name]
             if letter is not None and letter not in self.labels(name):
                 raise NotInFile(f"{name} has no axis {letter}")
-            column = ... if letter is None else np.s_[:, self.labels(name).index(letter)]
-            self._read[name, letter] = data[column]
+            column = None if letter is None else self.labels(name).index(letter)
+            self._read[name, letter] = of_file.read(data, self._kept, column)
         return self._read[name, letter]
+
+    def along(self, name, letter, s):
+        """Values of a column at other arc lengths: of_file.along_path, from all rows."""
+        if self._kept is None:
+            return of_file.along_path(self, self.column(name, letter), s)
+        return of_file.values_along(self._servo["s"], self._servo[name], self.labels(name).index(letter), s)
 
     def samples(self, sections=None):
         """Indices of the samples of feed motion, in the sections named (all without)."""
@@ -318,9 +326,11 @@ class Budget:
     def __init__(self, group):
         self.case, self.quantity, self.axis, self.sections = (
             str(group.attrs[name]) for name in ("case", "quantity", "axis", "sections"))
-        self.place, self.s = float(group.attrs["place"]), group["s"][:]
-        parts = {name: BudgetPart(name, float(data.attrs["at_place"]), float(data.attrs["rms"]), data[:])
-                 for name, data in group.items() if name != "s"}
+        signals = [name for name in group if name != "s"]
+        kept = of_file.kept_rows(group, deciding=signals)
+        self.place, self.s = float(group.attrs["place"]), of_file.read(group["s"], kept)
+        parts = {name: BudgetPart(name, float(group[name].attrs["at_place"]), float(group[name].attrs["rms"]),
+                                  of_file.read(group[name], kept)) for name in signals}
         self.residual, self.remainder = parts.pop("residual"), parts.pop("remainder")
         self.parts = list(parts.values())
 
@@ -365,22 +375,9 @@ def open_result(path):
         raise damaged(path, fault) from None
 
 
-def along_path(base, values, s):
-    """Values of the base case's samples at other arc lengths: linear between the sample at or
-    before s and the next one; where the base stands still the last of its samples counts."""
-    s_base = base.column("s")
-    before = np.searchsorted(s_base, s, side="right") - 1
-    row = np.clip(before, 0, len(s_base) - 1)
-    after = np.minimum(row + 1, len(s_base) - 1)
-    length = s_base[after] - s_base[row]
-    weight = np.divide(s - s_base[row], length, out=np.zeros_like(s), where=length > 0.0)
-    weight = np.clip(weight, 0.0, 1.0)
-    return (1.0 - weight) * values[row] + weight * values[after]
-
-
 def trajectory_difference(case, base, axis, rows):
     """Scale reading of a case minus that of the base at equal s (um), at the samples `rows`."""
-    nominal = along_path(base, base.column("meas_linear", axis), case.column("s")[rows])
+    nominal = base.along("meas_linear", axis, case.column("s")[rows])
     return (case.column("meas_linear", axis)[rows] - nominal) * UM_PER_MM
 
 
@@ -391,7 +388,7 @@ def imposed_curve_residual(case, base, axis, rows):
 
 def programmed(base, axis, s):
     """Interpolated position of the base case at given arc lengths (mm)."""
-    return along_path(base, base.column("ref_linear", axis), s)
+    return base.along("ref_linear", axis, s)
 
 
 def passes(rows):

@@ -31,8 +31,7 @@ def differences(run, sections):
         columns = []
         for rows in parts:
             s = case.column("s")[rows]
-            path = [along for along in (results.along_path(
-                base, base.column("meas_linear", axis), s) for axis in "XYZ")]
+            path = [base.along("meas_linear", axis, s) for axis in "XYZ"]
             moved = [results.trajectory_difference(case, base, axis, rows) for axis in "XYZ"]
             block = np.stack([s, *path, *moved], axis=1)
             columns.append(np.vstack([block, np.full((1, block.shape[1]), np.nan)]))
