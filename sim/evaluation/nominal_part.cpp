@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
@@ -69,6 +70,16 @@ std::vector<Fault> faults_of_plan(std::span<const ProbeSpec> plan, const Nominal
     }
   }
   return faults;
+}
+
+double largest_distance(std::span<const ProbeSpec> plan, const TriangleMesh& mesh) {
+  double largest = 0.0;
+  for (const ProbeSpec& probe : plan) {
+    for (const plant::ProbeTarget& target : probe.feature.targets) {
+      largest = std::max(largest, std::abs(mesh.closest(target.point).distance));
+    }
+  }
+  return largest;
 }
 
 }  // namespace servomill::sim

@@ -27,4 +27,7 @@ struct NominalPart {
 /// facing as it does.
 std::vector<Fault> faults_of_plan(std::span<const ProbeSpec> plan, const NominalPart& part);
 
+/// The largest distance (m) of a nominal point from the mesh: what its facets leave.
+double largest_distance(std::span<const ProbeSpec> plan, const TriangleMesh& mesh);
+
 }  // namespace servomill::sim

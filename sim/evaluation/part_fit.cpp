@@ -1,11 +1,9 @@
 #include "sim/evaluation/part_fit.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "sim/evaluation/probed_part.h"
-#include "sim/metrology/cmm.h"
 
 namespace servomill::sim {
 namespace {
@@ -15,10 +13,9 @@ using Eigen::Vector3d;
 // Where a point was met; components are NaN where nothing was.
 std::vector<Vector3d> measured_points(const ProbedFeature& feature) {
   std::vector<Vector3d> out;
-  const std::vector<double> d = mean_of(feature.measured);
+  const std::vector<double> d = mean_deviations(feature);
   for (std::size_t i = 0; i < d.size(); ++i) {
-    const plant::ProbeTarget& target = feature.feature.targets[i];
-    out.emplace_back(target.point + d[i] * target.normal);
+    out.push_back(probed_point(feature.feature.targets[i], d[i]));
   }
   return out;
 }
@@ -34,9 +31,6 @@ std::variant<PartFit, NoFit> fit_part(std::span<const ProbedFeature> features,
     measured.push_back(measured_points(feature));
     std::copy_if(measured.back().begin(), measured.back().end(), std::back_inserter(met),
                  [](const Vector3d& p) { return p.allFinite(); });
-    for (const plant::ProbeTarget& target : feature.feature.targets) {
-      out.off = std::max(out.off, std::abs(nominal.closest(target.point).distance));
-    }
   }
   auto fit = best_fit(met, nominal);
   if (NoFit* none = std::get_if<NoFit>(&fit)) return std::move(*none);

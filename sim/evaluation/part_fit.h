@@ -17,7 +17,6 @@ struct ProbedFeature;
 struct PartFit {
   BestFit fit;                             // of all points that were met, feature by feature
   std::vector<std::vector<Arrow>> arrows;  // feature, point; NaN: nothing was met
-  double off = 0.0;  // m, the largest distance of a nominal point from the mesh: its facets
 };
 
 /// Lays the means of the repetitions on a mesh in the frame of the nominal points.

@@ -15,6 +15,7 @@
 #include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/statistic.h"
+#include "sim/evaluation/vector_at.h"
 #include "sim/model/scenario.h"
 #include "sim/records/row_thinning.h"
 
@@ -129,10 +130,6 @@ AtRow tool_difference(const CaseData& one, const CaseData& base) {
     for (const AtRow& axis : axes) distance = std::hypot(distance, axis(row));
     return distance;
   };
-}
-
-Eigen::Vector3d vector_at(const Series& servo, std::size_t row, std::size_t first) {
-  return {servo.at(row, first), servo.at(row, first + 1), servo.at(row, first + 2)};
 }
 
 AtRow tool_tip_deviation(const CaseData& one) {

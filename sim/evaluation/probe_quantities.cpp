@@ -72,17 +72,12 @@ Points points_of(const std::string& name, const CaseData& one, const CaseData* b
   const ProbedFeature* other = find(base, name);
   if (mine == nullptr || (base != nullptr && other == nullptr)) return out;
   out.feature = mine;
-  std::vector<double> d = mean_of(mine->measured);
-  if (other != nullptr) {
-    const std::vector<double> of_base = mean_of(other->measured);
-    for (std::size_t i = 0; i < d.size(); ++i) d[i] -= of_base[i];
-  }
+  const std::vector<double> d = mean_deviations(*mine, other);
   for (std::size_t i = 0; i < d.size(); ++i) {
     if (std::isnan(d[i])) continue;
-    const plant::ProbeTarget& target = mine->feature.targets[i];
     out.index.push_back(i);
     out.d.push_back(d[i]);
-    out.p.push_back(target.point + d[i] * target.normal);
+    out.p.push_back(probed_point(mine->feature.targets[i], d[i]));
   }
   out.note = missed_note(one, out, base != nullptr);
   return out;

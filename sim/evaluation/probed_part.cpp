@@ -7,9 +7,13 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
+#include <utility>
 
+#include "plant/cutting/machined_surface.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/evaluation/vector_at.h"
 #include "sim/model/work_frame.h"
 
 namespace servomill::sim {
@@ -19,44 +23,9 @@ using Eigen::Vector3d;
 using plant::Meeting;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kSameS = 1e-8;          // m; recorded arc lengths are rounded
 constexpr double kPoorChord = 1.0 * um;  // chord errors beyond it are told
 constexpr double kParallel = 1e-9;       // sine of an angle
 constexpr double kBelow = 1.0 * um;      // a surface, where its material is looked for
-
-Vector3d vector_at(const Series& series, std::size_t row, std::size_t first) {
-  return {series.at(row, first), series.at(row, first + 1), series.at(row, first + 2)};
-}
-
-// The piece of the program that a recorded row belongs to; rows are asked for in order.
-class PieceOfRow {
- public:
-  PieceOfRow(const Series& series, const ProgramPath& path)
-      : series_(series), path_(path), s_(*series.column("s")), line_(*series.column("line")) {}
-
-  ProgramPath::Piece at(std::size_t row) {
-    const double s = series_.at(row, s_) * mm;
-    const int line = static_cast<int>(series_.at(row, line_));
-    while (piece_ + 1 < path_.size() && is_behind(s, line)) ++piece_;
-    return path_.piece(piece_);
-  }
-
- private:
-  bool is_behind(double s, int line) const {
-    const double s_end = path_.s_end(piece_);
-    return s > s_end + kSameS || (line != path_.line(piece_) && s >= s_end - kSameS);
-  }
-
-  const Series& series_;
-  const ProgramPath& path_;
-  std::size_t s_, line_;
-  std::size_t piece_ = 0;
-};
-
-const plant::Cutter* cutter_of(const PartSource& source, const ProgramPath::Piece& piece) {
-  const auto found = source.cutters.find(piece.tool);
-  return found == source.cutters.end() ? nullptr : &found->second;
-}
 
 // Where the tip of a cutter with axis k stands when its body touches a face with this normal at a
 // point: at the foot of the flank, on the rounding or, as for a plane, under the axis.
@@ -67,46 +36,6 @@ Vector3d tip_that_cuts(const plant::Cutter& cutter, const Vector3d& k,
   Vector3d tip = target.point + r * (target.normal - k);
   if (across.norm() > kParallel) tip += (cutter.radius - r) * across.normalized();
   return tip;
-}
-
-// The ways of the cutters, and the first feed of each, which says what turned in the spindle.
-struct Ways {
-  std::vector<plant::CutterPass> passes;
-  std::vector<std::optional<ProgramPath::Piece>> feeds;  // of each pass; none: only rapid
-
-  // That of the pass which a position (counted through all of them) belongs to.
-  const ProgramPath::Piece* feed_at(std::size_t position) const {
-    for (std::size_t i = 0; i < passes.size(); ++i) {
-      if (position < passes[i].positions.size()) return feeds[i] ? &*feeds[i] : nullptr;
-      position -= passes[i].positions.size();
-    }
-    return nullptr;
-  }
-};
-
-Ways ways_of(const PartSource& source) {
-  const PartFrame frame = work_frame(source.chain, source.work_offset);
-  const Series& servo = source.servo;
-  const std::size_t position = *servo.column("tool_position_true", 'X');
-  const std::size_t axis = *servo.column("tool_axis_true", 'I');
-  PieceOfRow pieces(servo, source.path);
-  Ways out;
-  const plant::Cutter* cutting = nullptr;
-  for (std::size_t row = 0; row < servo.rows(); ++row) {
-    const ProgramPath::Piece& piece = pieces.at(row);
-    const plant::Cutter* cutter = cutter_of(source, piece);
-    if (cutter != nullptr && cutter != cutting) {
-      out.passes.push_back({*cutter, {}});
-      out.feeds.emplace_back();
-    }
-    cutting = cutter;
-    if (cutter == nullptr) continue;
-    if (!out.feeds.back() && !piece.rapid) out.feeds.back() = piece;
-    out.passes.back().positions.push_back(
-        {frame.point(vector_at(servo, row, position) * mm),
-         frame.direction(vector_at(servo, row, axis)).normalized()});
-  }
-  return out;
 }
 
 // Displacement along the normal that the imposed errors ask for where a piece of the program cuts
@@ -125,6 +54,83 @@ double imposed_at(const PartSource& source, const PartFrame& frame, const Progra
       plant::linear_jacobian(chain, Q_0) * source.imposed->joint_offset(*Q, p_ST);
   return target.normal.dot(frame.direction(displacement));
 }
+
+// What a probe met, and the feed that cut there.
+struct Probed {
+  Meeting meeting;
+  const ProgramPath::Piece* feed = nullptr;
+};
+
+// The surface of a part. A short path of the cutters is held as a whole; of a long one, what comes
+// near some targets at a time.
+class ProbedSurface {
+ public:
+  ProbedSurface(const PartSource& source, const Cmm& cmm, const PositionsHeld& held)
+      : path_(source), cmm_(cmm), held_(held) {
+    if (path_.positions() <= held.most) whole_.emplace(path_.all());
+  }
+
+  std::vector<Probed> probe(std::span<const plant::ProbeTarget> targets) const {
+    std::vector<Probed> out;
+    out.reserve(targets.size());
+    if (whole_) {
+      probe(targets, *whole_, out);
+      return out;
+    }
+    while (!targets.empty()) {
+      const std::vector<CutterPath::Box> boxes = next_boxes(targets);
+      probe(targets.first(boxes.size()), Cut(path_.near(boxes)), out);
+      targets = targets.subspan(boxes.size());
+    }
+    return out;
+  }
+
+ private:
+  struct Cut {
+    explicit Cut(CutterPasses passes_in) : passes(std::move(passes_in)), surface(passes.passes) {}
+    CutterPasses passes;
+    plant::MachinedSurface surface;
+  };
+
+  void probe(std::span<const plant::ProbeTarget> targets, const Cut& cut,
+             std::vector<Probed>& out) const {
+    const auto meetings =
+        cmm_.probe_radius > 0.0
+            ? cut.surface.touch(targets, cmm_.probe_radius, cmm_.clearance, cmm_.depth)
+            : cut.surface.meet(targets, cmm_.clearance, cmm_.depth);
+    for (const Meeting& meeting : meetings) {
+      const bool is_met = meeting.kind == Meeting::Kind::met;
+      out.push_back({meeting, is_met ? cut.passes.feed_at(meeting.position) : nullptr});
+    }
+  }
+
+  // Boxes of the first targets, as many as may be held together.
+  std::vector<CutterPath::Box> next_boxes(std::span<const plant::ProbeTarget> targets) const {
+    std::vector<CutterPath::Box> out;
+    std::size_t held = 0;
+    for (const plant::ProbeTarget& target : targets) {
+      const CutterPath::Box box = around(target);
+      held += path_.positions_near(box);
+      if (!out.empty() && held > held_.at_once) break;
+      out.push_back(box);
+    }
+    return out;
+  }
+
+  // All that the stylus goes through.
+  CutterPath::Box around(const plant::ProbeTarget& target) const {
+    const double r = cmm_.probe_radius;
+    CutterPath::Box box(Vector3d(target.point + (cmm_.clearance + 2.0 * r) * target.normal));
+    box.extend(Vector3d(target.point - (cmm_.depth + r) * target.normal));
+    const Vector3d side = Vector3d::Constant(r);
+    return {box.min() - side, box.max() + side};
+  }
+
+  CutterPath path_;
+  const Cmm& cmm_;
+  const PositionsHeld& held_;
+  std::optional<Cut> whole_;
+};
 
 struct Misses {
   std::size_t count = 0, first = 0;
@@ -171,10 +177,6 @@ std::string why(Miss miss, const Cmm& cmm) {
 
 }  // namespace
 
-std::vector<plant::CutterPass> cutter_passes(const PartSource& source) {
-  return ways_of(source).passes;
-}
-
 double chord_error(const Series& servo) {
   const std::size_t position = *servo.column("tool_position_true", 'X');
   const std::size_t rapid = *servo.column("rapid");
@@ -189,29 +191,26 @@ double chord_error(const Series& servo) {
   return largest;
 }
 
-ProbedPart probe_part(const PartSource& source, const std::vector<ProbeSpec>& plan,
-                      const Cmm& cmm) {
+ProbedPart probe_part(const PartSource& source, const std::vector<ProbeSpec>& plan, const Cmm& cmm,
+                      const PositionsHeld& held) {
   const PartFrame frame = work_frame(source.chain, source.work_offset);
-  const Ways ways = ways_of(source);
-  const plant::MachinedSurface surface(ways.passes);
+  const ProbedSurface surface(source, cmm, held);
   ProbedPart out;
   std::size_t met = 0;
   for (const ProbeSpec& probe : plan) {
     const std::vector<plant::ProbeTarget>& targets = probe.feature.targets;
     ProbedFeature found{probe.name, probe.feature, {}, {}, {}};
     std::map<Miss, Misses> missed;
-    const auto meetings = cmm.probe_radius > 0.0
-                              ? surface.touch(targets, cmm.probe_radius, cmm.clearance, cmm.depth)
-                              : surface.meet(targets, cmm.clearance, cmm.depth);
-    for (std::size_t i = 0; i < meetings.size(); ++i) {
+    const std::vector<Probed> probed = surface.probe(targets);
+    for (std::size_t i = 0; i < probed.size(); ++i) {
       throw_if_interrupted();
-      const std::optional<Miss> miss = miss_of(meetings[i], targets[i], source.stock);
-      found.deviation.push_back(miss ? kNone : meetings[i].distance);
+      const auto& [meeting, feed] = probed[i];
+      const std::optional<Miss> miss = miss_of(meeting, targets[i], source.stock);
+      found.deviation.push_back(miss ? kNone : meeting.distance);
       met += miss ? 0 : 1;
       if (miss && missed[*miss].count++ == 0) missed[*miss].first = i;
       if (source.imposed == nullptr) continue;
-      const ProgramPath::Piece* feed = miss ? nullptr : ways.feed_at(meetings[i].position);
-      found.imposed.push_back(feed ? imposed_at(source, frame, *feed, targets[i]) : kNone);
+      found.imposed.push_back(!miss && feed ? imposed_at(source, frame, *feed, targets[i]) : kNone);
     }
     for (const auto& [miss, misses] : missed) {
       out.notes.push_back(fmt::format(
@@ -231,6 +230,14 @@ ProbedPart probe_part(const PartSource& source, const std::vector<ProbeSpec>& pl
         source.case_name, chord / um));
   }
   return out;
+}
+
+std::vector<double> mean_deviations(const ProbedFeature& feature, const ProbedFeature* base) {
+  std::vector<double> d = mean_of(feature.measured);
+  if (base == nullptr) return d;
+  const std::vector<double> of_base = mean_of(base->measured);
+  for (std::size_t i = 0; i < d.size(); ++i) d[i] -= of_base[i];
+  return d;
 }
 
 }  // namespace servomill::sim

@@ -1,15 +1,10 @@
 /// The part that a case left behind, on the CMM.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
-#include "plant/cutting/cutter.h"
-#include "plant/cutting/machined_surface.h"
-#include "plant/cutting/stock.h"
-#include "plant/geometry/volumetric.h"
-#include "sim/engine/program_path.h"
+#include "sim/evaluation/cutter_path.h"
 #include "sim/metrology/cmm.h"
 #include "sim/metrology/probing_plan.h"
 #include "sim/records/series.h"
@@ -32,30 +27,28 @@ struct ProbedPart {
   std::vector<std::string> notes;  // what was missed, and how well the recorded path resolves it
 };
 
-/// What a case brings along.
-struct PartSource {
-  const std::string& case_name;
-  const Series& servo;
-  const ProgramPath& path;
-  const std::map<int, plant::Cutter>& cutters;      // by number of the tool
-  const std::map<int, Eigen::Vector3d>& tips;       // p_ST (m), by number of the tool offset
-  const plant::MachineChain& chain;                 // the ideal machine
-  AxisWords work_offset = AxisWords::Zero();        // m, rad, machine coordinates
-  const plant::VolumetricModel* imposed = nullptr;  // or none
-  const plant::Stock* stock = nullptr;              // the raw part; none: it is everywhere
-};
-
-/// The true ways of the cutters in the work frame, one pass from each change of the tool to the
-/// next: every recorded row, rapid moves included. Between rows they are straight; what is lost is
-/// chord_error(). Rows of tools without a cutting part are left out.
-std::vector<plant::CutterPass> cutter_passes(const PartSource& source);
-
 /// Largest distance (m) between the recorded feed motion, straight from row to row, and a parabola
 /// through three rows: a T^2 / 8 for an acceleration a and a record period T (0.6 um at 5 m/s^2 and
 /// 1 ms), 0 where the tool moves evenly.
 double chord_error(const Series& servo);
 
-/// Cuts the part and probes it.
-ProbedPart probe_part(const PartSource& source, const std::vector<ProbeSpec>& plan, const Cmm& cmm);
+/// How many positions of the cutters are in memory, 200 bytes each.
+struct PositionsHeld {
+  std::size_t most = 500'000;    // of a longer path only what comes near some points at a time
+  std::size_t at_once = 60'000;  // then, unless a single point has more
+};
+
+/// Cuts the part and probes it. Depths do not depend on what is held, but for 1 nm.
+ProbedPart probe_part(const PartSource& source, const std::vector<ProbeSpec>& plan, const Cmm& cmm,
+                      const PositionsHeld& held = {});
+
+/// Means of the repetitions along the normals (m); with a base case minus those of it. NaN: one of
+/// them met nothing.
+std::vector<double> mean_deviations(const ProbedFeature& feature,
+                                    const ProbedFeature* base = nullptr);
+
+inline Eigen::Vector3d probed_point(const plant::ProbeTarget& target, double deviation) {
+  return target.point + deviation * target.normal;
+}
 
 }  // namespace servomill::sim

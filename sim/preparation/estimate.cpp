@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "plant/vocabulary/units.h"
+#include "sim/evaluation/probed_part.h"
 #include "sim/system/background.h"
-#include "sim/system/memory.h"
 
 namespace servomill::sim {
 namespace {
@@ -53,11 +53,13 @@ double compression_of(const Scenario& scenario) {
 }
 
 // Rows of short cases are held, of long ones a chunk while they run and pages while they are
-// compared; where the way of a cutter or a ball counts, all places of it.
+// compared; where the path of a cutter counts, so many places of it as are held at once, where that
+// of a ball does, all.
 double memory_of(const Scenario& scenario, std::span<const double> motions, double row,
                  unsigned threads) {
   constexpr double kCaseRuns = 25e6, kCaseIsCompared = 8e6;
   constexpr double kPlaceOfCutter = 200.0, kPlaceOfBall = 100.0;
+  const auto most_of_cutter = static_cast<double>(PositionsHeld{}.most);
   const RowKeeping keeping;
   const double period = scenario.machine.nc.periods.seconds(scenario.record_period);
   const bool has_ball = std::any_of(
@@ -72,9 +74,9 @@ double memory_of(const Scenario& scenario, std::span<const double> motions, doub
   }
   const double at_once =
       std::min<double>(thread_count(threads), static_cast<double>(motions.size()));
-  const double place =
-      (scenario.probes.empty() ? 0.0 : kPlaceOfCutter) + (has_ball ? kPlaceOfBall : 0.0);
-  return sum + at_once * (kCaseRuns + longest * place);
+  double places = has_ball ? longest * kPlaceOfBall : 0.0;
+  if (!scenario.probes.empty()) places += std::min(longest, most_of_cutter) * kPlaceOfCutter;
+  return sum + at_once * (kCaseRuns + places);
 }
 
 }  // namespace
@@ -145,7 +147,7 @@ bool is_worth_telling(const RunEstimate& estimate) {
   return estimate.computing > kMinute || estimate.size > kGigabyte;
 }
 
-void refuse_too_large(const Scenario& scenario, const RunEstimate& estimate) {
+void refuse_too_large(const Scenario& scenario, const RunEstimate& estimate, double memory) {
   const auto refuse = [&](const std::string& what) {
     throw InputError(
         {scenario.program.file},
@@ -159,27 +161,35 @@ void refuse_too_large(const Scenario& scenario, const RunEstimate& estimate) {
     refuse(fmt::format("{} of signals; must be <= record.max_size_GB = {:g}; raise it",
                        in_gigabytes(estimate.size), max_size / kGigabyte));
   }
-  const double memory = kMemoryShare * memory_of_process();
-  if (estimate.memory > memory) {
+  if (estimate.memory > kMemoryShare * memory) {
     refuse(fmt::format("{} of memory; must be <= the {} that there are; run fewer cases",
-                       in_gigabytes(estimate.memory), in_gigabytes(memory)));
+                       in_gigabytes(estimate.memory), in_gigabytes(kMemoryShare * memory)));
   }
 }
 
-void refuse_full_disk(const Scenario& scenario, const RunEstimate& estimate,
-                      const std::string& folder) {
+namespace {
+
+// Bytes that are free in a folder; none: the system does not tell.
+std::optional<double> room_in(const std::string& folder) {
   std::error_code unknown;
-  const auto space = std::filesystem::space(folder.empty() ? "." : folder, unknown);
-  // what was recorded goes to the file when a case ends, and is there twice until all are compared
-  const double needed = 2.0 * estimate.file;
-  if (unknown || needed <= static_cast<double>(space.available)) return;
-  throw InputError(
-      {scenario.program.file},
-      fmt::format("takes {} of the disk, half of it until the cases are compared; {} has {}: "
-                  "lower record.max_size_GB = {:g} or name another file (--output)",
-                  in_gigabytes(needed), folder.empty() ? "." : folder,
-                  in_gigabytes(static_cast<double>(space.available)),
-                  scenario.record.max_size / kGigabyte));
+  const auto space = std::filesystem::space(folder, unknown);
+  if (unknown) return std::nullopt;
+  return static_cast<double>(space.available);
+}
+
+}  // namespace
+
+void refuse_full_disk(const Scenario& scenario, const RunEstimate& estimate,
+                      const std::string& folder, double copies, std::optional<double> available) {
+  const std::string where = folder.empty() ? "." : folder;
+  if (!available) available = room_in(where);
+  const double needed = copies * estimate.file;
+  if (!available || needed <= *available) return;
+  throw InputError({scenario.program.file},
+                   fmt::format("takes {} of the disk while it runs; {} has {}: lower "
+                               "record.max_size_GB = {:g} or name another file (--output)",
+                               in_gigabytes(needed), where, in_gigabytes(*available),
+                               scenario.record.max_size / kGigabyte));
 }
 
 }  // namespace servomill::sim

@@ -1,11 +1,13 @@
 /// What a run will take, known before it begins.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "sim/preparation/prepared_case.h"
+#include "sim/system/memory.h"
 
 namespace servomill::sim {
 
@@ -42,13 +44,22 @@ std::vector<bool> sections_kept_whole(const Scenario& scenario,
 /// Whether the user should know before the work begins: above a minute or a gigabyte.
 bool is_worth_telling(const RunEstimate& estimate);
 
-/// @throws InputError if the signals are larger than the scenario allows, or if this process may
-///     not use so much memory
-void refuse_too_large(const Scenario& scenario, const RunEstimate& estimate);
+/// @param memory  bytes that this process may use
+/// @throws InputError if the signals are larger than the scenario allows, or if the run takes more
+///     than four fifths of the memory
+void refuse_too_large(const Scenario& scenario, const RunEstimate& estimate,
+                      double memory = memory_of_process());
 
-/// @param folder  of the result file, and of recordings until they are compared
+/// How often the recordings of a run are on the disk at the same time: what was recorded goes to
+/// the result file when a case ends, and stays until all are compared.
+inline constexpr double kCopiesOfRun = 2.0;
+
+/// @param folder     of the result file, and of recordings until they are compared
+/// @param copies     of the recordings
+/// @param available  bytes that are free there; none: the system says how many
 /// @throws InputError if there is not so much room
 void refuse_full_disk(const Scenario& scenario, const RunEstimate& estimate,
-                      const std::string& folder);
+                      const std::string& folder, double copies = kCopiesOfRun,
+                      std::optional<double> available = {});
 
 }  // namespace servomill::sim

@@ -121,7 +121,8 @@ PreparationCache::PreparationCache()
       cuttings(kRows, [](const PlannedCutting& c) { return c.table.rows().size() + 1; }),
       models(kModels),
       strategies(kModels),
-      spectral_radii(kRadii) {}
+      spectral_radii(kRadii),
+      plan_distances(kModels) {}
 
 void add(MemoKey& key, const JointLayout& layout) {
   const auto& [axes] = layout;

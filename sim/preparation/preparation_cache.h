@@ -23,6 +23,8 @@
 
 namespace servomill::sim {
 
+class TriangleMesh;
+
 /// Moves of a program, shared by all that was made of them.
 using SharedMoves = std::shared_ptr<const MoveList>;
 
@@ -73,6 +75,12 @@ struct SectionsOfMotion {
   std::map<std::string, CircularSection> sections;
 };
 
+/// How far nominal points of probes are from the part.
+struct PlanDistance {
+  std::shared_ptr<const TriangleMesh> mesh;
+  double distance = 0.0;  // m, the largest
+};
+
 /// The force of the cut along a program.
 struct PlannedCutting {
   std::shared_ptr<const InterpretedProgram> program;
@@ -102,6 +110,7 @@ struct PreparationCache {
   Memo<plant::VolumetricModel> models;
   Memo<strategies::Strategy> strategies;
   Memo<double> spectral_radii;
+  Memo<PlanDistance> plan_distances;
   plant::PreparedDrives drives{kDrives};
 };
 

@@ -11,6 +11,7 @@
 #include "controllers/path/slowed_motion.h"
 #include "controllers/path/travel.h"
 #include "plant/vocabulary/units.h"
+#include "sim/evaluation/nominal_part.h"
 #include "sim/input/subroutine_files.h"
 #include "sim/preparation/case_faults.h"
 #include "sim/preparation/estimate.h"
@@ -23,6 +24,7 @@
 namespace servomill::sim {
 namespace {
 
+using SharedMesh = std::shared_ptr<const TriangleMesh>;
 using SharedModel = std::shared_ptr<const plant::VolumetricModel>;
 using SharedProgram = std::shared_ptr<const InterpretedProgram>;
 using SharedStrategy = std::shared_ptr<const strategies::Strategy>;
@@ -353,6 +355,23 @@ class Preparation {
     return cache_.cuttings.get(key, [&] { return plan_cutting(inputs); });
   }
 
+  // The largest distance of a nominal point from the part.
+  double distance_of_plan() const {
+    if (!scenario_.part) return 0.0;
+    const SharedMesh& mesh = scenario_.part->mesh;
+    MemoKey key;
+    key.add_shared(mesh.get());
+    for (const ProbeSpec& probe : scenario_.probes) {
+      for (const plant::ProbeTarget& target : probe.feature.targets) key.add(target.point);
+    }
+    return cache_.plan_distances
+        .get(key,
+             [&] {
+               return PlanDistance{mesh, largest_distance(scenario_.probes, *mesh)};
+             })
+        ->distance;
+  }
+
   const Joints& start() const { return start_; }
 
  private:
@@ -378,6 +397,7 @@ struct PreparedCase::Parts {
   NotedCase noted() const { return {scenario, spec, *program, *motion, cutting.get(), strategies}; }
   Joints machine_start;
   std::optional<ThinningLimits> thinning = {};  // of its recording
+  double distance_of_plan = 0.0;                // m, of nominal points from the part
 };
 
 PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, PreparationCache* cache)
@@ -387,6 +407,7 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   Parts& parts = *parts_;
   parts.program = prepare.program();
   parts.machine_start = prepare.start();
+  parts.distance_of_plan = prepare.distance_of_plan();
   if (parts.program->path.size() == 0) throw InputError({scenario.program.file}, "moves no axis");
   refuse_absent_axes(*parts.program, scenario);
   refuse_standing_spindle(*parts.program, scenario);
@@ -490,7 +511,8 @@ CaseOutput PreparedCase::output(CaseResult result) const {
     out.probes = std::move(part.features);
     out.notes = std::move(part.notes);
     if (p.scenario.part) {
-      out.part_fit = lay_on_nominal(p.spec.name, *p.scenario.part, out.probes, out.notes);
+      out.part_fit =
+          lay_on_nominal(p.spec.name, *p.scenario.part, p.distance_of_plan, out.probes, out.notes);
     }
   }
   for (std::string& note : notes_of_run(p.noted(), out.result.saturations)) {

@@ -98,6 +98,10 @@ struct BudgetControl {
   std::string scratch_folder;  // as in RunControl
 };
 
+/// How often the recordings of a run are on the disk while budgets are found: complete, without
+/// measurement, of the step before and of this one; and the signals.
+inline constexpr double kCopiesOfBudget = 5.0;
+
 /// Budgets of quantities, in their order; runs each case with and without each cause that it has.
 /// @param quantities  of one case each, as budget_quantities gives them
 /// @return empty if it was stopped

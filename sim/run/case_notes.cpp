@@ -167,7 +167,7 @@ std::vector<std::string> notes_of_left_tables(const NotedCase& one) {
 }
 
 std::optional<PartFit> lay_on_nominal(const std::string& case_name, const NominalPart& part,
-                                      std::span<const ProbedFeature> probes,
+                                      double distance, std::span<const ProbedFeature> probes,
                                       std::vector<std::string>& notes) {
   auto found = fit_part(probes, *part.mesh);
   if (const NoFit* none = std::get_if<NoFit>(&found)) {
@@ -175,14 +175,13 @@ std::optional<PartFit> lay_on_nominal(const std::string& case_name, const Nomina
         fmt::format("warning: case {}: best fit to '{}': {}", case_name, part.file, none->why));
     return std::nullopt;
   }
-  auto fit = std::get<PartFit>(std::move(found));
-  if (fit.off > kFacets) {
+  if (distance > kFacets) {
     notes.push_back(fmt::format(
         "warning: case {}: nominal points of the probes are up to {:.3g} um off '{}' "
         "(facets in place of curved faces, or another part); distances after best fit hold that",
-        case_name, fit.off / um, part.file));
+        case_name, distance / um, part.file));
   }
-  return fit;
+  return std::get<PartFit>(std::move(found));
 }
 
 }  // namespace servomill::sim

@@ -37,9 +37,10 @@ std::vector<std::string> notes_of_uncorrectable(const NotedCase& one);
 std::vector<std::string> notes_of_left_tables(const NotedCase& one);
 
 /// Lays what was probed on the nominal part.
+/// @param distance  largest_distance of the plan
 /// @param notes  takes why that cannot be done, or how uncertain it is
 std::optional<PartFit> lay_on_nominal(const std::string& case_name, const NominalPart& part,
-                                      std::span<const ProbedFeature> probes,
+                                      double distance, std::span<const ProbedFeature> probes,
                                       std::vector<std::string>& notes);
 
 }  // namespace servomill::sim

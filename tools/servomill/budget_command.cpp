@@ -209,8 +209,14 @@ int budget_command(const Arguments& arguments) {
   control.threads = thread_count(options);
   control.stop = &stop;
   control.progress = [&](double share) { bar.show(share); };
-  control.prepared = [](const sim::RunEstimate& takes) {
+  control.prepared = [&](const sim::RunEstimate& takes) {
     if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::thinning_message(takes));
+    if (sim::is_worth_telling(takes)) {
+      const std::string folder = control.scratch_folder.empty()
+                                     ? std::filesystem::temp_directory_path().string()
+                                     : control.scratch_folder;
+      sim::refuse_full_disk(scenario, takes, folder, sim::kCopiesOfBudget);
+    }
   };
   if (store) {
     const auto path = std::filesystem::absolute(options.get<std::string>("output"));

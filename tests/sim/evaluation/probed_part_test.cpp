@@ -274,5 +274,46 @@ TEST(ProbedPart, IsDistortedByWhatBestFitLeaves) {
   EXPECT_NEAR(distortion("EC0Y = \"100 urad\"\n"), 2.0, kPerfect);
 }
 
+// The same with all of the path in memory, with what a few points need and with one point at a
+// time.
+TEST(ProbedPart, DoesNotDependOnHowMuchOfThePathIsHeld) {
+  Asked asked{std::string(kFlank) + kSide + kPlane + kBoss, "", "", "imposed = \"wave\""};
+  asked.errors =
+      "EYX = { polynomial_um = [7.0] }\n[errors.wave]\nEYX = { harmonic = { "
+      "amplitude_um = 20.0, period_mm = 50.0 } }\n";
+  const Scenario scenario = asking(asked);
+  const PreparedCase prepared(scenario, scenario.cases.front());
+  const CaseInputs inputs = prepared.inputs();
+  const CaseOutput one = run_case(scenario, "one");
+  const plant::VolumetricModel imposed(one.chain, scenario.errors.at("wave"));
+  for (const double radius : {0.0, 1.0 * mm}) {
+    Cmm cmm = scenario.cmm;
+    cmm.probe_radius = radius;
+    std::vector<ProbeSpec> plan = scenario.probes;
+    if (radius > 0.0) plan.resize(1), plan[0].feature.targets.resize(4);  // a ball takes its time
+    const auto probed = [&](const PositionsHeld& held) {
+      return probe_part({one.name, one.result.servo, inputs.path, scenario.program.cutters,
+                         inputs.tips, one.chain, scenario.program.work_offset, &imposed},
+                        plan, cmm, held);
+    };
+    const ProbedPart whole = probed({});
+    for (const PositionsHeld& held : {PositionsHeld{0, 3000}, PositionsHeld{0, 1}}) {
+      const ProbedPart parts = probed(held);
+      EXPECT_EQ(parts.notes, whole.notes);
+      ASSERT_EQ(parts.features.size(), whole.features.size());
+      for (std::size_t k = 0; k < whole.features.size(); ++k) {
+        const ProbedFeature &some = parts.features[k], &all = whole.features[k];
+        ASSERT_EQ(some.deviation.size(), all.deviation.size());
+        for (std::size_t i = 0; i < all.deviation.size(); ++i) {
+          ASSERT_EQ(std::isnan(some.deviation[i]), std::isnan(all.deviation[i])) << all.name << i;
+          if (std::isnan(all.deviation[i])) continue;
+          EXPECT_NEAR(some.deviation[i], all.deviation[i], radius > 0.0 ? 50e-9 : 1e-9) << all.name;
+          EXPECT_EQ(some.imposed[i], all.imposed[i]) << all.name << " " << i;
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace servomill::sim

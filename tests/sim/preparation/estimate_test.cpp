@@ -1,0 +1,93 @@
+/// What a run takes is known before it begins, and refused where it would not fit.
+#include "sim/preparation/estimate.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/sim/small_scenario.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr const char* kProgram = "G21 G90 G94\nG1 X100 F1200\nM2\n";
+
+Scenario scenario(const std::string& more = "") {
+  return small_scenario(kProgram, "[record]\nperiod_ms = 1.0\n" + more +
+                                      "[[case]]\nname = \"one\"\n[[case]]\nname = \"two\"\n");
+}
+
+// An hour of motion in each of two cases.
+RunEstimate two_hours(const Scenario& of) {
+  const std::vector<double> motions = {3599.9, 3599.9};  // s, and 0.1 s of settling
+  return estimate(of, motions, 1);
+}
+
+template <class Refuse>
+std::string refusal(const Refuse& refuse) {
+  try {
+    refuse();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(RunEstimate, CountsRowsAndTheirBytes) {
+  const RunEstimate found = two_hours(scenario());
+  EXPECT_NEAR(found.motion, 7200.0, 1e-9);
+  EXPECT_NEAR(found.rows, 7.2e6, 1e-3);
+  // 27 numbers of a row and 10 of each of the five axes of the machine, 8 bytes each
+  EXPECT_NEAR(found.size, 7.2e6 * 77.0 * 8.0, 1.0);
+}
+
+// The rest is the program's and the system's.
+TEST(RunEstimate, TakesFourFifthsOfTheMemoryAndNoMore) {
+  const Scenario of = scenario();
+  RunEstimate takes = two_hours(of);
+  takes.memory = 8e9;
+  EXPECT_EQ(refusal([&] { refuse_too_large(of, takes, 10.001e9); }), "");
+  EXPECT_EQ(
+      refusal([&] { refuse_too_large(of, takes, 9.999e9); }),
+      "small.ngc: error: takes 2 h in 2 cases and 7.2e+06 rows: 8 GB of memory; must be <= the "
+      "8 GB that there are; run fewer cases, or record fewer rows: record.period_ms = 1");
+}
+
+TEST(RunEstimate, KeepsToTheSizeThatTheScenarioAllows) {
+  const Scenario of = scenario();
+  RunEstimate takes = two_hours(of);
+  takes.size = of.record.max_size;
+  EXPECT_EQ(refusal([&] { refuse_too_large(of, takes); }), "");
+  takes.size *= 1.01;
+  EXPECT_EQ(
+      refusal([&] { refuse_too_large(of, takes); }),
+      "small.ngc: error: takes 2 h in 2 cases and 7.2e+06 rows: 8.1 GB of signals; must be <= "
+      "record.max_size_GB = 8; raise it, or record fewer rows: record.period_ms = 1");
+}
+
+// A recording is on the disk once more until the cases are compared.
+TEST(RunEstimate, TakesTwiceTheFileOfTheDisk) {
+  const Scenario of = scenario();
+  RunEstimate takes = two_hours(of);
+  takes.file = 1e9;
+  EXPECT_EQ(refusal([&] { refuse_full_disk(of, takes, "out", kCopiesOfRun, 2.0e9); }), "");
+  EXPECT_EQ(refusal([&] { refuse_full_disk(of, takes, "out", kCopiesOfRun, 1.99e9); }),
+            "small.ngc: error: takes 2 GB of the disk while it runs; out has 2 GB: lower "
+            "record.max_size_GB = 8 or name another file (--output)");
+  EXPECT_EQ(refusal([&] { refuse_full_disk(of, takes, "out", 5.0, 4.9e9); }),
+            "small.ngc: error: takes 5 GB of the disk while it runs; out has 4.9 GB: lower "
+            "record.max_size_GB = 8 or name another file (--output)");
+}
+
+// The path of the cutters is held as far as it comes near probes.
+TEST(RunEstimate, MemoryOfAProbedPartDoesNotGrowWithTheDuration) {
+  const Scenario of = small_scenario(
+      "T1 M6\nG43 H1\nG1 X100 F1200\nM2\n",
+      "[record]\nperiod_ms = 1.0\n[[program.tool]]\nnumber = 1\nlength_mm = 110.0\ndiameter_mm = "
+      "8.0\n[[probe]]\nname = \"top\"\nline = { from_mm = [0.0, 0.0, 0.0], to_mm = [100.0, 0.0, "
+      "0.0], normal = [0, 0, 1], points = 3 }\n[[case]]\nname = \"one\"\n");
+  const std::vector<double> half = {1800.0}, nine_times = {16200.0};
+  const double least = estimate(of, half, 1).memory, most = estimate(of, nine_times, 1).memory;
+  EXPECT_NEAR(most, least, 0.01 * least);
+}
+
+}  // namespace
+}  // namespace servomill::sim
