@@ -288,11 +288,21 @@ class Rewriter {
     block.end_machine = target.words;
     block.s_begin = s_;
     block.s_end = move_->s_begin + target.t * (move_->s_end - move_->s_begin);
-    if (way_->controls_tip()) leave_tip_control(block, target.t - t_);
+    if (way_->controls_tip()) {
+      leave_tip_control(block, target.t - t_);
+    } else if (way_->length() == 0.0 && !way_->turn().any()) {
+      take_linear_feed(block);
+    }
     out_at_ = target.words;
     s_ = block.s_end;
     t_ = target.t;
     out_.push_back(block);
+  }
+
+  // A move that stands has F in degrees; displaced, X, Y and Z go where the one before left them.
+  static void take_linear_feed(Move& block) {
+    block.feed *= mm / deg;
+    if (block.feed_mode == FeedMode::units_per_revolution) block.value *= mm / deg;
   }
 
   // A block of the axes that takes the time of its share of the move.
@@ -302,7 +312,8 @@ class Rewriter {
     block.plane.reset();
     if (block.kind == MoveKind::rapid) return;
     block.feed_mode = FeedMode::inverse_time;
-    if (block.s_end > block.s_begin) return;  // its feed is that of the tip along s
+    // its feed is that of the tip along s, or nothing moves
+    if (block.s_end > block.s_begin || way_->angle() == 0.0) return;
     const double turned = (block.end_machine - out_at_).tail<3>().norm();
     block.feed = turned * move_->feed / (share * way_->angle());
   }

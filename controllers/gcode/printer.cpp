@@ -22,6 +22,7 @@ class Grid {
  public:
   explicit Grid(int decimals) : decimals_(decimals), scale_(std::pow(10.0, decimals)) {}
   double step_count(double x) const { return std::round(x * scale_); }
+  bool is_zero(double x) const { return step_count(x) == 0.0; }
   std::string text(double steps) const { return fixed_text(steps / scale_, decimals_); }
 
  private:
@@ -43,7 +44,10 @@ std::string path_code(const Move& move) {
 class Printer {
  public:
   explicit Printer(const PrintOptions& options)
-      : options_(options), linear_(options.decimals_mm), rotary_(options.decimals_deg) {}
+      : options_(options),
+        linear_(options.decimals_mm),
+        rotary_(options.decimals_deg),
+        machine_before_(options.start) {}
 
   PrintedProgram print(std::span<const Move> moves, std::string_view header) {
     print_header(header);
@@ -51,7 +55,8 @@ class Printer {
       index_ = static_cast<int>(i);
       print_move(moves[i]);
       before_ = moves[i].end;
-      machine_before_ = moves[i].end_machine;
+      // what is no motion may tell the place of the tip
+      if (is_motion(moves[i].kind)) machine_before_ = moves[i].end_machine;
     }
     index_ = -1;
     if (moves.empty() || moves.back().kind != MoveKind::end) line("M30");
@@ -215,18 +220,21 @@ class Printer {
     return std::abs(arc.sweep) < std::numbers::pi;
   }
 
-  // F in force for this move, in 1/min under G93, per revolution under G95.
+  // F in force for this move, in 1/min under G93, per revolution under G95. A displaced block may
+  // move X, Y and Z where the path of the original stands.
   double feed_value(const Move& move) const {
+    const AxisWords moved = move.end_machine - machine_before_;
+    const double turned = moved.tail<3>().norm(), own = moved.head<3>().norm();
     const double length = move.s_end - move.s_begin;
-    const bool moves_xyz = move.kind == MoveKind::arc || length > 0.0;
-    if (move.feed_mode == FeedMode::units_per_minute) {
-      return move.feed / (moves_xyz ? mm_per_min : deg_per_min);
+    if (move.feed_mode == FeedMode::inverse_time) {
+      const double way = length > 0.0 ? length : turned > 0.0 ? turned : own;
+      return way > 0.0 ? move.feed * minute / way : 1.0;
     }
+    const bool moves_xyz = move.kind == MoveKind::arc || length > 0.0 || !linear_.is_zero(own / mm);
     if (move.feed_mode == FeedMode::units_per_revolution) {
       return move.value / (moves_xyz ? mm : deg);
     }
-    const double way = moves_xyz ? length : (move.end_machine - machine_before_).tail<3>().norm();
-    return way > 0.0 ? move.feed * minute / way : 1.0;
+    return move.feed / (moves_xyz ? mm_per_min : deg_per_min);
   }
 
   std::string feed_word(const Move& move) {
@@ -277,8 +285,8 @@ class Printer {
   PrintedProgram out_;
   int index_ = -1;
   AxisWords before_ = AxisWords::Zero();  // end of the move before
-  AxisWords machine_before_ = AxisWords::Zero();
-  std::optional<Steps> steps_;  // what was printed for it; nullopt: name all axes
+  AxisWords machine_before_;              // end of the motion before, in the machine
+  std::optional<Steps> steps_;            // what was printed for it; nullopt: name all axes
   std::string work_, tool_, path_, plane_ = "G17", feed_mode_ = "G94", F_, S_ = "0";
   int direction_ = 0;
   int coolant_ = 0;

@@ -77,7 +77,8 @@ ProgramText ProgramText::of_file(const std::string& path) {
 }
 
 ProgramText ProgramText::again() const {
-  return reader_ ? of_file(file_) : of_text(buffer_, file_);
+  if (!reader_) return of_text(buffer_, file_);
+  return reader_->text ? of_shared_text(reader_->text, file_) : of_file(file_);
 }
 
 ProgramText ProgramText::of_source(std::unique_ptr<LineSource> source, std::string file) {

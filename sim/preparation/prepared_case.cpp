@@ -7,7 +7,6 @@
 
 #include "controllers/conversational/conversational.h"
 #include "controllers/gcode/interpreter.h"
-#include "controllers/gcode/printer.h"
 #include "controllers/path/slowed_motion.h"
 #include "controllers/path/travel.h"
 #include "plant/vocabulary/units.h"
@@ -17,6 +16,7 @@
 #include "sim/preparation/estimate.h"
 #include "sim/preparation/plan_cutting.h"
 #include "sim/preparation/preparation_cache.h"
+#include "sim/preparation/rewritten_text.h"
 #include "sim/preparation/stability_check.h"
 #include "sim/run/case_notes.h"
 #include "strategies/gcode.h"
@@ -61,55 +61,6 @@ controllers::ProgramSetup setup_of(const Scenario& scenario, const CaseSpec& spe
 // Title of a rewritten program.
 std::string header_of(const Scenario& scenario, const CaseSpec& spec) {
   return fmt::format("{}, case {}", scenario.title, spec.name);
-}
-
-// What printing may change of a position.
-constexpr double kPrinted = 1e-8;  // m, rad
-
-// The rewritten program is written as text and read like any other; what the text cannot say, the
-// place on the original path, is carried over block by block.
-MoveList through_text(const std::vector<Move>& rewritten, const Scenario& scenario,
-                      const CaseSpec& spec, std::string& text) {
-  controllers::PrintOptions options;
-  options.axes.clear();
-  for (const auto& axis : scenario.machine.chain.layout.axis) {
-    if (axis) options.axes += letter(*axis);
-  }
-  text = controllers::print_program(rewritten, options, header_of(scenario, spec)).text;
-  controllers::ProgramSetup setup =
-      controllers::conversational::gcode_setup(text_of(scenario.program), setup_of(scenario, spec));
-  setup.reader = controllers::Reader::linuxcnc;  // for which it is written
-  controllers::Interpreter interpreter(
-      text, fmt::format("{} as rewritten for case {}", scenario.program.file, spec.name), setup);
-  MoveList read;
-  auto original = rewritten.begin();
-  const auto next_motion = [&] {
-    return std::find_if(original, rewritten.end(),
-                        [](const Move& move) { return is_motion(move.kind); });
-  };
-  while (const Move* next = interpreter.next()) {
-    Move move = *next;
-    if (!is_motion(move.kind)) {
-      read.push_back(move);
-      continue;
-    }
-    original = next_motion();
-    if (original == rewritten.end()) throw std::logic_error("a rewritten program gained a block");
-    if ((move.end_machine - original->end_machine).cwiseAbs().maxCoeff() > kPrinted) {
-      throw InputError(
-          {scenario.program.file, original->line},
-          fmt::format("case {}: cannot be rewritten in work coordinates that are tilted, "
-                      "turned or shifted by the program (G52, G92, G10)",
-                      spec.name));
-    }
-    move.line = original->line;
-    move.s_begin = original->s_begin;
-    move.s_end = original->s_end;
-    read.push_back(move);
-    ++original;
-  }
-  if (next_motion() != rewritten.end()) throw std::logic_error("a rewritten program lost a block");
-  return read;
 }
 
 // Where the key stands that a strategy's complaint names first; the strategy if it is not given.
@@ -262,6 +213,14 @@ class Preparation {
     });
   }
 
+  // A rewritten program is G-code for LinuxCNC, whatever it was before.
+  controllers::ProgramSetup setup_of_rewritten() const {
+    controllers::ProgramSetup setup = controllers::conversational::gcode_setup(
+        text_of(scenario_.program), setup_of(scenario_, spec_));
+    setup.reader = controllers::Reader::linuxcnc;
+    return setup;
+  }
+
   // Tells where a strategy that corrects tip and tool axis leaves much of them.
   std::shared_ptr<const RewrittenProgram> rewritten(const SharedMoves& moves,
                                                     const SharedStrategy& strategy) const {
@@ -272,9 +231,11 @@ class Preparation {
     add(key, setup_of(scenario_, spec_));
     add(key, scenario_.machine.chain.layout);
     return cache_.rewritten.get(key, [&] {
-      RewrittenProgram out{moves, strategy, {}, {}};
-      out.moves = through_text(rewrite(*strategy, moves->all()), scenario_, spec_, out.text);
-      return out;
+      RewrittenText written =
+          through_text(rewrite(*strategy, moves->all()),
+                       {scenario_.program.file, spec_.name, header_of(scenario_, spec_),
+                        scenario_.machine.chain.layout, setup_of_rewritten()});
+      return RewrittenProgram{moves, strategy, std::move(written.moves), std::move(written.text)};
     });
   }
 

@@ -50,5 +50,27 @@ TEST(Gcode, CorrectsReversalForTheDirectionOfTravel) {
   }
 }
 
+// C turns alone, X waits; the next block stands on the path of the program (F500 is in degrees for
+// it) and brings X to where the error at that angle wants it: 500 mm/min, not 8727.
+TEST(Gcode, BringsAWaitingAxisToItsPlaceWithTheProgrammedFeed) {
+  plant::ErrorModel errors;
+  errors.component("EXC"_err) = plant::harmonic(10e-6, 360.0 * deg);
+  Belief belief = belief_in(errors);
+  belief.reference.setZero();
+  Move turn;
+  turn.kind = MoveKind::feed;
+  turn.feed = 500.0 * deg_per_min;
+  turn.end_machine[index_of(Axis::C)] = 90.0 * deg;
+  turn.end = turn.end_machine;
+  const Entry entry = gcode_entry();
+  const std::vector<Move> out =
+      entry.make(default_parameters(entry), Sign::correct, belief)->rewrite({turn, turn});
+  ASSERT_EQ(out.size(), 2U);
+  EXPECT_EQ(out[0].end_machine[0], 0.0);
+  EXPECT_NEAR(out[0].feed, 500.0 * deg_per_min, 1e-12);
+  EXPECT_GT(out[1].end_machine.head<3>().norm(), 1e-6);
+  EXPECT_NEAR(out[1].feed, 500.0 * mm_per_min, 1e-12);
+}
+
 }  // namespace
 }  // namespace servomill::strategies

@@ -106,6 +106,48 @@ TEST(Printer, RefusesToolOffsetsOutsideTheTable) {
   }
 }
 
+Move feed_to(const AxisWords& end, double feed, FeedMode mode) {
+  Move move;
+  move.end = move.end_machine = end;
+  move.feed = feed;
+  move.feed_mode = mode;
+  return move;
+}
+
+std::string line_of(const std::vector<Move>& moves, std::size_t index, const AxisWords& start) {
+  PrintOptions options;
+  options.start = start;
+  const PrintedProgram printed = print_program(moves, options, "");
+  const auto found = std::find(printed.move_of_line.rbegin(), printed.move_of_line.rend(),
+                               static_cast<int>(index));
+  std::size_t line = static_cast<std::size_t>(printed.move_of_line.rend() - found) - 1;
+  std::string_view text = printed.text;
+  for (; line > 0; --line) text.remove_prefix(text.find('\n') + 1);
+  return std::string(text.substr(0, text.find('\n')));
+}
+
+// 60 deg in 2 s: F30 in 1/min. The message tells the place of the tip, which no axis has moved to.
+TEST(Printer, MeasuresTheWayOfABlockFromTheMotionBefore) {
+  Move turn = feed_to(axes(1, 0, 0, 60, 0, 0), 30 * deg, FeedMode::inverse_time);
+  Move message;
+  message.kind = MoveKind::message;
+  message.end_machine = axes(7, 8, 9, 0, 0, 0);
+  const std::vector<Move> moves = {feed_to(axes(0, 0, 0, 0, 0, 0), 1, FeedMode::units_per_minute),
+                                   message, turn};
+  EXPECT_EQ(line_of(moves, 2, AxisWords::Zero()), "G1 X1 A60 F30");
+  // the same as the first block of a program that begins at 0 deg and at 30 deg
+  EXPECT_EQ(line_of({turn}, 0, AxisWords::Zero()), "G1 X1 Y0 Z0 A60 B0 C0 F30");
+  turn.feed = 15 * deg;
+  EXPECT_EQ(line_of({turn}, 0, axes(1, 0, 0, 30, 0, 0)), "G1 X1 Y0 Z0 A60 B0 C0 F30");
+}
+
+// X moves where the path of the original stands: F is in mm/min.
+TEST(Printer, GivesTheFeedOfAnAxisThatMovesBesideThePathInMillimetres) {
+  const Move moves =
+      feed_to(axes(0.01, 0, 0, 0, 0, 0), 500 * mm_per_min, FeedMode::units_per_minute);
+  EXPECT_EQ(line_of({moves}, 0, AxisWords::Zero()), "G1 X0.01 Y0 Z0 A0 B0 C0 F500");
+}
+
 TEST(Printer, RoundTripOfEveryFeature) {
   expect_round_trip(
       "(MSG,hello #1)\nS500\nM3\nM3\nM7\nM8\nM9\nM9\nT3 M6\nM4\nG61\nG0 X1\nG61.1 G1 Y2 F100\nG64\n"

@@ -1,0 +1,34 @@
+/// Rewritten programs as the text that leaves the simulation.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "controllers/gcode/program_setup.h"
+#include "plant/vocabulary/axes.h"
+#include "plant/vocabulary/move.h"
+#include "plant/vocabulary/move_list.h"
+
+namespace servomill::sim {
+
+struct RewrittenText {
+  std::string text;
+  MoveList moves;  // as read back; lines and arc lengths are those of the original
+};
+
+struct RewrittenTextRequest {
+  std::string program_file;  // of the original
+  std::string case_name;
+  std::string header;  // comments, one a line
+  JointLayout layout;
+  controllers::ProgramSetup setup;
+};
+
+/// Writes what a strategy has made of a program, and reads it like any other. Every motion, dwell,
+/// tool change, stop and end must come back, in its order, with its position, feed, path mode,
+/// work system, tool length, spindle and coolant; what the text cannot say, the position on the
+/// original path, is carried over block by block.
+/// @throws InputError where it does not
+RewrittenText through_text(const std::vector<Move>& rewritten, const RewrittenTextRequest& request);
+
+}  // namespace servomill::sim
