@@ -151,6 +151,12 @@ class DialectPrinter {
   void begin_smoothing();
   void end_smoothing();
 
+  /// False if no manual says how the control writes blocks with '/'.
+  virtual bool has_optional_blocks() const { return true; }
+  /// Blocks with '/' are between these. Behind them is unknown whatever they have changed.
+  virtual void begin_optional() {}
+  virtual void end_optional() {}
+
   /// The whole text, numbered.
   virtual std::string text() const = 0;
   /// Things that the operator has to make sure of, one clause each.

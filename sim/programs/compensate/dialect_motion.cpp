@@ -60,6 +60,8 @@ void DialectWriter::write_reference(const Move& move, const Block& block, bool i
                     settings_.retract_Z / mm));
   }
   height_.reset();
+  has_optional_height_ = false;
+  is_optional_[static_cast<std::size_t>(index_of(Axis::Z))] = writes_optional_;
   if (!is_at_reference) height_ = settings_.retract_Z;
   out_known_[static_cast<std::size_t>(index_of(Axis::Z))] = false;
   walk_.arrive_elsewhere(move);
@@ -169,8 +171,10 @@ DialectWriter::Words DialectWriter::words_of(const Step& step, const AxisWords& 
     const double unit = printer_->unit(axis), grid = std::pow(10.0, -printer_->decimals(axis));
     const bool is_feed = step.move->kind != MoveKind::rapid;
     const double still = is_feed && !step.is_place ? kStill : 0.5 * grid * unit;
-    const bool moves =
-        out_known_[k] ? std::abs(target[i] - at[i]) > still : step.is_commanded[k] || is_feed;
+    const bool differs = std::abs(target[i] - at[i]) > still;
+    const bool moves = !out_known_[k]                            ? step.is_commanded[k] || is_feed
+                       : is_optional_[k] && step.is_commanded[k] ? true
+                                                                 : differs;
     if (moves && walk_.has(axis)) out.emplace_back(axis, target[i] / unit);
   }
   return out;
@@ -247,9 +251,9 @@ void DialectWriter::write_rapid(DialectMotion motion, double height) {
   DialectMotion up = motion;
   up.words = {*Z};
   motion.words.erase(Z);
-  const bool rises = height_ && height > *height_;
-  printer_->motion(rises ? up : motion);
-  printer_->motion(rises ? motion : up);
+  const bool is_up = rises(height);
+  printer_->motion(is_up ? up : motion);
+  printer_->motion(is_up ? motion : up);
 }
 
 // Both words of the plane, so that a circle has an end, too.
@@ -376,7 +380,9 @@ void DialectWriter::write_step(const Block& block, const Step& given) {
       const auto k = static_cast<std::size_t>(index_of(axis));
       out_known_[k] = true;
       is_lost_[k] = false;
+      is_optional_[k] = writes_optional_;
       system_[k] = motion.is_place ? 0 : motion.work_system;
+      if (axis == Axis::Z) has_optional_height_ = false;
       if (axis == Axis::Z) height_ = target[index_of(Axis::Z)] + origin[index_of(Axis::Z)];
     }
     if (motion.arc) printer_->turn_by_angle(motion, begin, at);

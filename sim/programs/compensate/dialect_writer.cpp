@@ -130,16 +130,6 @@ void DialectWriter::check_codes(const Block& block) {
   }
 }
 
-// The blocks behind are written for the state that this one leaves: the operator's switch must not
-// decide about it.
-void DialectWriter::refuse_slash(const Block& block) const {
-  if (block.request == nullptr) return;
-  for (const LinePiece& piece : line_pieces(block)) {
-    if (piece.kind != PieceKind::block_delete) continue;
-    throw InputError({file_, block.line, static_cast<int>(piece.begin) + 1}, std::string(kSlash));
-  }
-}
-
 void DialectWriter::note_what_became_numbers(const Block& block) {
   for (const LinePiece& piece : line_pieces(block)) {
     if (piece.kind == PieceKind::o_word) summary_.unrolled = true;
@@ -180,7 +170,11 @@ void DialectWriter::write(const Block& block) {
   if (is_skipped(block)) summary_.unrolled = true;
   says_path_ =
       says_path_ || (block.request != nullptr && block.request->code(Group::g_path_control) >= 0);
-  refuse_slash(block);
+  if (has_slash(block)) return write_optional(block);
+  write_always(block);
+}
+
+void DialectWriter::write_always(const Block& block) {
   note_what_became_numbers(block);
   check_codes(block);
   note_unit(block);
@@ -238,6 +232,7 @@ void DialectWriter::write_other(const Move& move, const Block& block, std::size_
       coolant_ = move.number;
       if (ends && M < 0) return;
       known_coolant_ = coolant_;
+      skipped_coolant_ = coolant_;
       return printer_->coolant(M == 70 || M == 80 ? M / 10 : 9);
     }
     case MoveKind::dwell:
@@ -262,20 +257,21 @@ void DialectWriter::write_stop(int number) {
   printer_->end_smoothing();
   if (number == kPalletStop) printer_->message("exchange the pallets (M60)");
   printer_->stop(number == 1 ? 1 : 0);
-  if (coolant_ != 0) known_coolant_.reset();
+  if (coolant_ != 0 || skipped_coolant_ != 0) known_coolant_.reset();
   forget_positions();
   is_lost_.fill(true);
   if (number != kPalletStop) return;
   has_pallets_ = true;
   printer_->retract();
   height_ = settings_.retract_Z;
+  has_optional_height_ = false;
 }
 
 void DialectWriter::write_end() {
   if (has_ended_) return;
   has_ended_ = true;
   printer_->end_smoothing();
-  if (known_coolant_ != 0) printer_->coolant(9);
+  if (known_coolant_ != 0 || skipped_coolant_ != 0) printer_->coolant(9);
   printer_->retract();
   printer_->spindle(0, 0.0, true);
   printer_->end();
@@ -286,10 +282,11 @@ void DialectWriter::change_tool(int number, const Block& block) {
   tool_ = number;
   printer_->end_smoothing();
   printer_->tool(number, rpm_, block.state->work_system);
-  if (coolant_ != 0) known_coolant_.reset();
+  if (coolant_ != 0 || skipped_coolant_ != 0) known_coolant_.reset();
   path_.clear();
   forget_positions();
   height_.reset();
+  has_optional_height_ = false;
   is_lost_.fill(true);
 }
 
@@ -300,9 +297,7 @@ void DialectWriter::forget_positions() {
 
 void DialectWriter::restate_spindle_and_coolant() {
   if (!printer_->is_spindle_known()) printer_->spindle(direction_, rpm_, true);
-  if (known_coolant_ == coolant_) return;
-  if ((coolant_ & controllers::kMist) != 0) printer_->coolant(7);
-  if ((coolant_ & controllers::kFlood) != 0) printer_->coolant(8);
+  if (known_coolant_ != coolant_) restate_coolant();
   known_coolant_ = coolant_;
 }
 

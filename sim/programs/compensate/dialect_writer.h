@@ -42,6 +42,8 @@ class DialectWriter final : public ProgramWriter {
 
   void check_codes(const Block& block);
   void refuse_slash(const Block& block) const;
+  void write_always(const Block& block);
+  void write_optional(const Block& block);
   void note_what_became_numbers(const Block& block);
   void note_unit(const Block& block);
 
@@ -53,6 +55,8 @@ class DialectWriter final : public ProgramWriter {
   void change_tool(int number, const Block& block);
   void forget_positions();
   void restate_spindle_and_coolant();
+  void restate_coolant();
+  bool rises(double height) const;
 
   // motion
   void write_reference(const Move& move, const Block& block, bool is_last);
@@ -84,6 +88,13 @@ class DialectWriter final : public ProgramWriter {
   AxisFlags is_lost_{};  // axes that a tool change or a stop may have moved, not named since
   /// In which coordinates an axis has been written last. 0: those of the machine
   std::array<int, kAxisWords> system_{};
+  /// Axes that blocks with '/' have moved: where they are is the operator's word. Named, they are
+  /// written.
+  AxisFlags is_optional_{};
+  std::optional<double> skipped_height_;  // m: height_ without the blocks with '/'
+  bool writes_optional_ = false;          // a block with '/'
+  bool has_optional_height_ = false;      // those have moved Z
+  int skipped_coolant_ = 0;               // coolant_ without the blocks with '/'
   int tool_ = 0, coolant_ = 0, direction_ = 0;
   std::optional<int> known_coolant_ = 0;
   double rpm_ = 0.0;

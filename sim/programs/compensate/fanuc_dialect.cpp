@@ -129,6 +129,20 @@ class Fanuc final : public IsoDialect {
     rotary_ = {};
   }
   // X of G4 counts revolutions under G95 where DWL, No. 3405#1, is 1 (M)
+  void end_optional() override {
+    IsoDialect::end_optional();
+    if (normal_axis_ != normal_before_) {
+      throw Unsayable{"leaves another plane behind blocks with '/'; write arcs in G17 there"};
+    }
+    for (std::size_t i = 0; i < rotary_.size(); ++i) {
+      if (rotary_[i] != rotary_before_[i]) rotary_[i].reset();
+    }
+  }
+  void begin_optional() override {
+    IsoDialect::begin_optional();
+    rotary_before_ = rotary_;
+    normal_before_ = normal_axis_;
+  }
   void dwell(double seconds) override {
     if (seconds > kLongestDwell) {
       throw Unsayable{fmt::format("dwells for {:g} s, more than {:g} s", seconds, kLongestDwell)};
@@ -150,8 +164,8 @@ class Fanuc final : public IsoDialect {
     const std::size_t step = blocks > kMostNumbered ? 1000 : 1;
     std::size_t n = 0;
     for (const std::string& line : lines_) {
-      if (is_numbered(line) && n++ % step == 0) out += fmt::format("N{} ", (n - 1) / step + 1);
-      out += line + "\n";
+      const bool has_number = is_numbered(line) && n++ % step == 0;
+      out += has_number ? numbered(line, fmt::format("N{}", (n - 1) / step + 1)) : line + "\n";
     }
     return out + "%\n";
   }
@@ -266,8 +280,9 @@ class Fanuc final : public IsoDialect {
   }
   std::string speed(double rpm) const override { return fmt::format("{:.0f}", std::round(rpm)); }
 
-  int normal_axis_ = 2;                          // of the plane in force
-  std::array<std::optional<double>, 3> rotary_;  // deg of the machine, as written last
+  int normal_axis_ = 2, normal_before_ = 2;  // of the plane in force; before '/'
+  // deg of the machine, as written last; before '/'
+  std::array<std::optional<double>, 3> rotary_, rotary_before_;
 };
 
 }  // namespace

@@ -138,6 +138,7 @@ class Heidenhain final : public DialectPrinter {
     direction_ = direction;
   }
   bool is_spindle_known() const override { return direction_.has_value(); }
+  bool has_optional_blocks() const override { return false; }
   void coolant(int code) override {
     if (code == 7)
       throw Unsayable{

@@ -40,6 +40,38 @@ void IsoDialect::forget_modes() {
   modes_.length.reset();
 }
 
+void IsoDialect::Modes::join(const Modes& before) {
+  const auto keep = [](auto& now, const auto& then) {
+    if (now != then) now.reset();
+  };
+  keep(code, before.code);
+  keep(F, before.F);
+  keep(S, before.S);
+  keep(feed_mode, before.feed_mode);
+  keep(direction, before.direction);
+  keep(work_system, before.work_system);
+  keep(length, before.length);
+}
+
+void IsoDialect::begin_optional() {
+  before_optional_ = modes_;
+  first_optional_ = lines_.size();
+}
+
+// Comments stay as they are.
+void IsoDialect::end_optional() {
+  for (std::size_t i = first_optional_; i < lines_.size(); ++i) {
+    const char first = lines_[i].front();
+    if (first != '(' && first != ';' && first != '/') lines_[i].insert(0, "/");
+  }
+  modes_.join(before_optional_);
+}
+
+std::string IsoDialect::numbered(const std::string& line, const std::string& number) {
+  const bool is_optional = line.front() == '/';
+  return fmt::format("{}{} {}\n", is_optional ? "/" : "", number, line.substr(is_optional ? 1 : 0));
+}
+
 void IsoDialect::add_feed_mode(const DialectMotion& motion, std::string& text) {
   if (motion.is_rapid || modes_.feed_mode == motion.feed_mode) return;
   const auto mode = motion.feed_mode;

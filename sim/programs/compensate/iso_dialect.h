@@ -23,6 +23,8 @@ class IsoDialect : public DialectPrinter {
   void coolant(int code) override { put("M" + std::to_string(code)); }
   void stop(int code) override;
   void end() override { put("M30"); }
+  void begin_optional() override;
+  void end_optional() override;
 
  protected:
   /// nullopt: unknown.
@@ -32,6 +34,9 @@ class IsoDialect : public DialectPrinter {
     std::optional<int> direction = 0;  // of the spindle
     std::optional<int> work_system = std::nullopt;
     std::optional<int> length = 0;  // number of the tool in force
+
+    /// Forgets what is not the same as it was.
+    void join(const Modes& before);
   };
 
   /// G0 or G1, feed mode, positions, feed: of these what is not in force, behind the prefix.
@@ -41,6 +46,8 @@ class IsoDialect : public DialectPrinter {
   virtual std::string arc_words(const DialectArc& arc) const;
   /// Everything that a tool change may have changed. The spindle has been off before.
   void forget_modes();
+  /// A line with its number, which stands behind the '/'.
+  static std::string numbered(const std::string& line, const std::string& number);
   virtual std::string number(std::string text) const { return text; }
   virtual std::string position_word(Axis axis, double value);
   virtual int feed_decimals() const { return 3; }
@@ -49,6 +56,9 @@ class IsoDialect : public DialectPrinter {
   Modes modes_;
 
  private:
+  Modes before_optional_;
+  std::size_t first_optional_ = 0;  // of the lines
+
   void add_feed_mode(const DialectMotion& motion, std::string& text);
 };
 

@@ -1,6 +1,15 @@
 #include "sim/programs/compensate/line_pieces.h"
 
+#include <algorithm>
+
 namespace servomill::sim {
+
+bool has_slash(const controllers::ExecutedBlock& executed) {
+  return executed.block != nullptr &&
+         std::any_of(
+             executed.block->pieces.begin(), executed.block->pieces.end(),
+             [](const controllers::Piece& piece) { return piece.kind == PieceKind::block_delete; });
+}
 
 std::vector<LinePiece> line_pieces(const controllers::ExecutedBlock& executed) {
   std::vector<LinePiece> out;

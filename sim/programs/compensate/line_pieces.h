@@ -21,6 +21,9 @@ struct LinePiece {
   std::string_view of(std::string_view line) const { return line.substr(begin, end - begin); }
 };
 
+/// True if the operator's switch decides about the block.
+bool has_slash(const controllers::ExecutedBlock& executed);
+
 /// Pieces that tile the line of a block; none of one that O-words skip.
 std::vector<LinePiece> line_pieces(const controllers::ExecutedBlock& block);
 

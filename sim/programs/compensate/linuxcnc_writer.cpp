@@ -23,6 +23,7 @@ using controllers::Group;
 
 namespace {
 
+constexpr const char* kUnknownCode = "?";
 constexpr double kStanding = 1e-12;  // m, rounding of offsets
 
 // Whether a feed of the block moves rotary axes and no linear one.
@@ -124,6 +125,16 @@ void LinuxCncWriter::put(const WovenLine& line) {
   if (!text.empty() || line.text.empty()) put(text);
 }
 
+// One more line for the same block: the operator's switch decides about it, too.
+void LinuxCncWriter::put_beside(const WovenLine& line, std::string_view text) {
+  put(fmt::format("{}{}", has_slash(line) ? "/" : "", text));
+}
+
+// Behind a block with '/' the operator knows the code in force.
+void LinuxCncWriter::forget_motion_code(const WovenLine& line) {
+  if (has_slash(line)) motion_ = kUnknownCode;
+}
+
 // A '%' opens the program if it is its first line.
 bool LinuxCncWriter::take_percent(const Block& block) {
   if (block.block == nullptr || !block.block->percent) return false;
@@ -223,7 +234,7 @@ void LinuxCncWriter::release(WovenLine& line) {
     put(line);
   }
   line.is_released = true;
-  if (!line.behind.empty()) put(line.behind);
+  if (!line.behind.empty()) put_beside(line, line.behind);
   line.behind.clear();
 }
 
@@ -243,10 +254,11 @@ void LinuxCncWriter::move(const Block& block) {
       has_moved = true;
       move(one, block, is_place);
     } else if (has_moved && cycles) {  // everything else the line says
-      put_cycle_step(one, block);
+      put_cycle_step(one, block, waiting_.back());
     }
   }
   if (!has_moved && !waiting_.back().is_motion) note_motion_code(waiting_.back());
+  forget_motion_code(waiting_.back());
 }
 
 // Before the next block that does something.
@@ -259,7 +271,7 @@ void LinuxCncWriter::note_path_mode(const Block& block) {
 }
 
 // The rapid to the height of R keeps the mode of the program.
-void LinuxCncWriter::begin_exact_path(const Move& one, const Block& block) {
+void LinuxCncWriter::begin_exact_path(const Move& one, const Block& block, const WovenLine& line) {
   const controllers::ModalState& state = *block.state;
   if (one.path_mode != PathMode::exact_path || state.path_mode == PathMode::exact_path) return;
   if (!path_behind_cycle_.empty()) return;
@@ -273,7 +285,7 @@ void LinuxCncWriter::begin_exact_path(const Move& one, const Block& block) {
         fmt::format(" Q{}", controllers::significant_text(naive_cam_tolerance_ / state.unit));
   }
   assumes_G64_ = assumes_G64_ || !says_path_;
-  put("G61");
+  put_beside(line, "G61");
 }
 
 void LinuxCncWriter::end_exact_path() {
@@ -288,13 +300,13 @@ std::vector<std::string> LinuxCncWriter::assumptions() const {
       "RS274NGC_STARTUP_CODE): it is restored behind canned cycles"};
 }
 
-void LinuxCncWriter::put_cycle_step(const Move& one, const Block& block) {
+void LinuxCncWriter::put_cycle_step(const Move& one, const Block& block, const WovenLine& line) {
   if (one.kind == MoveKind::dwell) {
-    put(controllers::dwell_block(one.value));
+    put_beside(line, controllers::dwell_block(one.value));
   } else if (one.kind == MoveKind::spindle) {
-    put(one.direction > 0 ? "M3" : one.direction < 0 ? "M4" : "M5");
+    put_beside(line, one.direction > 0 ? "M3" : one.direction < 0 ? "M4" : "M5");
   } else if (one.kind == MoveKind::stop && block.request->code(Group::m_stop) < 0) {  // of G88
-    put(fmt::format("M{}", one.number));
+    put_beside(line, fmt::format("M{}", one.number));
   }
 }
 
@@ -303,15 +315,19 @@ void LinuxCncWriter::move(const Move& one, const Block& block, bool is_place) {
                                  [&](const WovenLine& line) { return line.number == one.line; });
   if (waits) release_until(one.line);
   WovenLine& line = waits ? waiting_.front() : waiting_.back();
-  if (line.is_cycle) begin_exact_path(one, block);
+  if (line.is_cycle) begin_exact_path(one, block, line);
   const Step step = walk_.next(one, block);
-  if (step.is_corrected) return write_step(step, line, waits && !line.is_released);
+  if (step.is_corrected) {
+    write_step(step, line, waits && !line.is_released);
+    return forget_motion_code(line);
+  }
   // the words of the line are those of the move
   walk_.arrive(step, step.programmed.frame.machine(step.blocks.back().end));
   if (is_place) return;
   note_motion_code(line);
   if (motion_ != "G0") insert(line, "G0");
   motion_ = "G0";
+  forget_motion_code(line);
 }
 
 void LinuxCncWriter::write_step(const Step& step, WovenLine& line, bool is_woven_in) {
@@ -350,14 +366,14 @@ void LinuxCncWriter::write_step(const Step& step, WovenLine& line, bool is_woven
       put(line);
       line.is_released = true;
     } else {
-      put(words.text(needs_code));
+      put_beside(line, words.text(needs_code));
     }
     motion_ = words.code;
     at = printer.end();
   }
   if (leaves_inverse) {
-    put(fmt::format("G94 F{}",
-                    controllers::significant_text(line.feed_linear * minute / line.unit)));
+    put_beside(line, fmt::format("G94 F{}", controllers::significant_text(line.feed_linear *
+                                                                          minute / line.unit)));
   }
   walk_.arrive(step, step.programmed.frame.machine(at));
 }

@@ -42,12 +42,14 @@ class LinuxCncWriter final : public ProgramWriter {
 
   void put(std::string_view text);
   void put(const WovenLine& line);
+  void put_beside(const WovenLine& line, std::string_view text);
+  void forget_motion_code(const WovenLine& line);
   bool take_percent(const Block& block);
   void move(const Block& block);
   void move(const Move& one, const Block& block, bool is_place);
-  void put_cycle_step(const Move& one, const Block& block);
+  void put_cycle_step(const Move& one, const Block& block, const WovenLine& line);
   void note_path_mode(const Block& block);
-  void begin_exact_path(const Move& one, const Block& block);
+  void begin_exact_path(const Move& one, const Block& block, const WovenLine& line);
   void end_exact_path();
   void release_until(int line);
   void release(WovenLine& line);

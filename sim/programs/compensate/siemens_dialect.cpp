@@ -108,6 +108,16 @@ class Siemens final : public IsoDialect {
     IsoDialect::stop(code);
     counts_.fill({});
   }
+  void begin_optional() override {
+    IsoDialect::begin_optional();
+    counts_before_ = counts_;
+  }
+  void end_optional() override {
+    IsoDialect::end_optional();
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+      if (counts_[i] != counts_before_[i]) counts_[i].reset();
+    }
+  }
   void dwell(double seconds) override { put("G4 F" + rate(seconds, 4, "dwell")); }
 
   std::string text() const override {
@@ -117,9 +127,9 @@ class Siemens final : public IsoDialect {
     const std::size_t step = blocks > kMostNumbered ? 1000 : 1;
     std::size_t n = 0;
     for (const std::string& line : lines_) {
-      if (line.front() != ';' && n++ % step == 0)
-        out += fmt::format("N{} ", 10 * ((n - 1) / step + 1));
-      out += line + "\n";
+      const bool has_number = line.front() != ';' && n++ % step == 0;
+      out +=
+          has_number ? numbered(line, fmt::format("N{}", 10 * ((n - 1) / step + 1))) : line + "\n";
     }
     return out;
   }
@@ -235,8 +245,10 @@ class Siemens final : public IsoDialect {
 
   struct Count {
     double machine = 0.0, offset = 0.0;  // deg; of the work system that it was written in
+    bool operator==(const Count&) const = default;
   };
-  std::array<std::optional<Count>, 3> counts_{};  // of A, B, C as written last
+  // of A, B, C as written last; before '/'
+  std::array<std::optional<Count>, 3> counts_{}, counts_before_{};
   bool is_of_machine_ = false;
   bool stops_at_ends_ = false;                         // G60
   Eigen::Vector3d through_ = Eigen::Vector3d::Zero();  // of an arc outside XY, half way along

@@ -92,8 +92,12 @@ bool changes_what_follows(const WovenLine& line) {
   for (std::size_t i = 0; i < line.pieces.size(); ++i) {
     const LinePiece& piece = line.pieces[i];
     if (piece.kind == PieceKind::assignment) return true;
-    if (piece.kind == PieceKind::word && piece.letter != 'M' && piece.letter != 'S') return true;
-    if (line.codes[i] != nullptr && line.codes[i]->group == Group::m_tool) return true;
+    if (piece.kind == PieceKind::word && piece.letter == 'T') return true;
+    const Code* code = line.codes[i];
+    if (code == nullptr) continue;
+    // a program that ends there is not written on
+    const bool ends = code->group == Group::m_stop && (code->tenths == 20 || code->tenths == 300);
+    if (ends || code->group == Group::m_tool) return true;
   }
   return false;
 }
@@ -153,6 +157,11 @@ void refuse_slash(const WovenLine& line) {
     throw InputError({line.file, line.number, static_cast<int>(line.pieces[i].begin) + 1},
                      std::string(kSlash));
   }
+}
+
+bool has_slash(const WovenLine& line) {
+  return std::any_of(line.pieces.begin(), line.pieces.end(),
+                     [](const LinePiece& piece) { return piece.kind == PieceKind::block_delete; });
 }
 
 void drop_o_words(WovenLine& line) {

@@ -54,6 +54,7 @@ struct MotionWords {
 /// A block as it stands, expressions replaced by numbers and messages by what they said.
 WovenLine line_of(const controllers::ExecutedBlock& block, Summary& summary);
 
+bool has_slash(const WovenLine& line);
 bool has_o_word(const WovenLine& line);
 bool is_empty(const WovenLine& line);
 bool is_motion_word(const WovenLine& line, std::size_t i);

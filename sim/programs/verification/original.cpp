@@ -25,6 +25,15 @@ bool names(const ExecutedBlock& block, int i) {
          (i < 2 && block.request->has_polar());
 }
 
+// One with '/'; it counts as such if it is run, too.
+bool is_optional(const ExecutedBlock& block) {
+  if (block.block == nullptr || block.block->deleted) return false;
+  const auto& pieces = block.block->pieces;
+  return std::any_of(pieces.begin(), pieces.end(), [](const controllers::Piece& piece) {
+    return piece.kind == controllers::PieceKind::block_delete;
+  });
+}
+
 // The tool whose length is in force, or else that in the spindle.
 Eigen::Vector3d working_tool(const controllers::ModalState& state,
                              const controllers::ToolTable& tools) {
@@ -92,6 +101,7 @@ const OriginalAction* Original::next() {
 void Original::take(const ExecutedBlock& block) {
   text_ = block.text;
   line_ = block.line;
+  has_optional_blocks_ = has_optional_blocks_ || is_optional(block);
   if (block.request != nullptr && block.request->code(Group::g_path_control) >= 0) {
     has_path_mode_ = true;
   }

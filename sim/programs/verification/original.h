@@ -65,6 +65,8 @@ class Original {
   const OriginalAction* next();
   const std::string& line_text() const { return text_; }  // of the block run last
   int line() const { return line_; }
+  /// True if the operator's switch decides about a block that has run.
+  bool has_optional_blocks() const { return has_optional_blocks_; }
 
  private:
   void take(const controllers::ExecutedBlock& block);
@@ -80,7 +82,7 @@ class Original {
   AxisWords position_;
   AxisFlags6 known_{}, ever_known_{};
   AuxiliaryState auxiliary_;
-  bool has_path_mode_ = false;
+  bool has_path_mode_ = false, has_optional_blocks_ = false;
   std::string text_;
   int line_ = 0;
 };

@@ -18,6 +18,9 @@ namespace {
 
 using controllers::MachineAction;
 
+constexpr std::string_view kRemedy =
+    "take the slash away where they shall run, or leave them out by --block-delete";
+
 std::string line_of(std::string_view text, int number) {
   for (int line = 1; !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -41,13 +44,12 @@ class Verifier {
   }
 
   VerificationReport run() {
-    if (has_slash(written_)) {
-      for (const bool skips : {false, true}) {
-        if (skips == request_.setup.block_delete || original_runs(skips)) run_with_switch(skips);
-      }
-    } else {
+    decides_ = has_slash(written_) || (!request_.setup.block_delete && original_has_slash());
+    if (!decides_) {
       run_with_switch(request_.setup.block_delete);
+      return report_;
     }
+    for (const bool skips : {false, true}) run_with_switch(skips);
     return report_;
   }
 
@@ -57,22 +59,36 @@ class Verifier {
     return text.starts_with('/') || text.find("\n/") != std::string_view::npos;
   }
 
-  // A program that cannot run with the switch in one position has no meaning there.
-  bool original_runs(bool skips_blocks) const {
-    controllers::ProgramSetup setup = request_.setup;
-    setup.block_delete = skips_blocks;
+  bool original_has_slash() const {
+    Original original(text(), request_.setup, options_);
+    while (original.next() != nullptr) throw_if_interrupted();
+    return original.has_optional_blocks();
+  }
+
+  // A program that cannot run with the switch in one position is not written for it.
+  void require_original(const controllers::ProgramSetup& setup) const {
     try {
       Original original(text(), setup, options_);
       while (original.next() != nullptr) throw_if_interrupted();
-    } catch (const InputError&) {
-      return false;
+    } catch (const InputError& error) {
+      Fault fault = error.faults().front();
+      fault.message += remedy(setup.block_delete);
+      throw InputError({std::move(fault)});
     }
-    return true;
+  }
+
+  // Where the operator's switch decides.
+  std::string remedy(bool skips_blocks) const {
+    if (!decides_) return {};
+    return fmt::format("; that is with the blocks with '/' {}: {}",
+                       skips_blocks ? "left out" : "run", kRemedy);
   }
 
   void run_with_switch(bool skips_blocks) {
     controllers::ProgramSetup setup = request_.setup;
     setup.block_delete = skips_blocks;
+    skips_ = skips_blocks;
+    if (decides_) require_original(setup);
     if (request_.dialect == Dialect::linuxcnc) return run_linuxcnc(setup);
     controllers::ControlSetup control = request_.control;
     control.skips_blocks = skips_blocks;
@@ -124,9 +140,10 @@ class Verifier {
       const Fault& fault = error.faults().front();
       throw InputError(
           {request_.original_file},
-          fmt::format("the program written for {} cannot be verified ({}): its line {}, \"{}\": {}",
-                      dialect(), settings_, fault.place.line, line_of(written_, fault.place.line),
-                      fault.message));
+          fmt::format(
+              "the program written for {} cannot be verified ({}): its line {}, \"{}\": {}{}",
+              dialect(), settings_, fault.place.line, line_of(written_, fault.place.line),
+              fault.message, remedy(skips_)));
     }
   }
 
@@ -162,10 +179,11 @@ class Verifier {
                                   ? "its end"
                                   : fmt::format("its line {}, \"{}\"", difference.written_line,
                                                 line_of(written_, difference.written_line));
-    throw InputError({request_.original_file, line},
-                     fmt::format("the program written for {} would do something else than \"{}\": "
-                                 "{} ({}; {})",
-                                 dialect(), here, difference.why, there, settings_));
+    throw InputError(
+        {request_.original_file, line},
+        fmt::format("the program written for {} would do something else than \"{}\": "
+                    "{} ({}; {}){}",
+                    dialect(), here, difference.why, there, settings_, remedy(skips_)));
   }
 
   std::string original_line(int number) const {
@@ -191,6 +209,7 @@ class Verifier {
   OriginalOptions options_;
   VerificationReport report_;
   std::string settings_;
+  bool decides_ = false, skips_ = false;  // the switch for '/': it matters; its position
 };
 
 }  // namespace

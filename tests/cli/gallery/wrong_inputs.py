@@ -61,7 +61,7 @@ COMPENSATE = [
                 AT_ZERO + " --tool-length 50", COMPENSATE_IT.replace("out.ngc", "my-part.h") + " --dialect heidenhain"),
     compensated("unknown positions for another control", "G21 G90\nG91 G0 Z5\nM2\n", FOR_FANUC),
     compensated("a feed behind a stop", CUT.replace("G1", "M0\nG1"), FOR_FANUC),
-    compensated("a move that the operator may leave out", CUT.replace("G1", "/ G0 X5\nG1"), FOR_FANUC),
+    compensated("a tool change that the operator may leave out", CUT.replace("G1", "/ T1 M6\nG1"), FOR_FANUC),
     compensated("a program in two units for a control that changes its offsets with the unit",
                 CUT.replace("G1", "G20\nG1"), FOR_FANUC),
 ]

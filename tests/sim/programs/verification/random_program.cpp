@@ -54,6 +54,8 @@ RandomProgram::RandomProgram(std::uint32_t seed, const Options& options)
                                     &RandomProgram::switch_unit,
                                     &RandomProgram::machine_feed,
                                     &RandomProgram::saved_state,
+                                    &RandomProgram::optional_cut,
+                                    &RandomProgram::optional_cut,
                                     &RandomProgram::spelling};
   for (int i = 0; i < 3; ++i) steps.push_back(seldom[pick(static_cast<unsigned>(seldom.size()))]);
   if (options.has_rotary_axes) {

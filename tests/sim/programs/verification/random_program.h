@@ -84,6 +84,7 @@ class RandomProgram {
   void machine_feed();
   void saved_state();
   void spelling();
+  void optional_cut();
   void rotate_far();
   void rotate_with_all();
 

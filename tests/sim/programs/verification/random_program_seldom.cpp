@@ -217,4 +217,20 @@ void RandomProgram::rotate_with_all() {
   line(text + " F" + number(900));
 }
 
+// A cut that the operator may leave out; behind it every axis is named again.
+void RandomProgram::optional_cut() {
+  if (is_incremental_) line("G90");
+  is_incremental_ = false;
+  line("G0" + axis(2, uniform(15, 25)));
+  line("/G0" + axis(0, uniform(10, 90)) + axis(1, uniform(10, 90)));
+  line("/G1" + axis(2, uniform(-3, 3)) + " F" + number(250));
+  if (one_in(2)) line("/M8");
+  if (one_in(2)) line("/G1" + axis(0, uniform(10, 90)));
+  if (one_in(3)) line("/G4 P0.4");
+  line("/G0" + axis(2, uniform(15, 25)));
+  line("G0" + axis(0, uniform(10, 90)) + axis(1, uniform(10, 90)));
+  line("G0" + axis(2, uniform(5, 10)));
+  line("G1" + axis(2, uniform(-3, 3)) + " F" + number(400));
+}
+
 }  // namespace servomill::sim

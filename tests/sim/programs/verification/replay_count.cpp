@@ -9,7 +9,13 @@ namespace {
 
 constexpr std::size_t kLongestReason = 100;
 
+// The user can act on it: blocks behind '/' leave something else than they find.
+bool is_of_the_switch(const std::string& message) {
+  return message.find("with the blocks with '/' left out") != std::string::npos;
+}
+
 bool is_of_verification(const std::string& message) {
+  if (is_of_the_switch(message)) return false;
   return message.find("would do something else") != std::string::npos ||
          message.find("cannot be verified") != std::string::npos;
 }
