@@ -309,6 +309,7 @@ VerificationReport verify(const CompensateRequest& request, Preparation& prepare
       is_linuxcnc ? std::pow(10.0, -decimals_for(request.tolerance)) * mm : resolution_of(request);
   limits.grid_turn = is_linuxcnc ? kTurnDecimals : resolution_of(request) / mm * deg;
   limits.corrects_rapids = options.splits_rapids;
+  if (request.dialect == Dialect::heidenhain) limits.time_digit = 1e-3;  // FT has three decimals
   limits.is_linuxcnc = is_linuxcnc;
   limits.retract = request.retract_Z ? request.retract_Z : prepared.described.retract_Z;
   return verify_program(written, out, prepared.correction);

@@ -18,7 +18,7 @@ using controllers::Group;
 
 namespace {
 
-constexpr double kShortestShare = 1e-3;     // of a move, for the time of blocks that lead to it
+constexpr double kShortestShare = 1e-4;     // of a move, for the time of blocks that lead to it
 constexpr double kLeastSweep = 1e-3 * deg;  // of an arc, and of what it lacks of a full circle
 constexpr double kSamePlace = 1e-9;         // m: the same digits
 constexpr double kStill = 1e-12;            // m, rad: the same number
@@ -113,9 +113,12 @@ void DialectWriter::set_feed(DialectMotion& motion, const Step& step,
                             ? (step.programmed.end - step.programmed.begin).tail<3>().norm()
                             : 0.0;
   const double length = step.programmed.length();
-  const bool has_linear = std::any_of(motion.words.begin(), motion.words.end(),
-                                      [](const auto& word) { return is_linear(word.first); });
-  if (turned > 0.0 && (has_linear || move.feed_mode == FeedMode::inverse_time)) {
+  const auto is_of_linear = [](const auto& word) { return is_linear(word.first); };
+  const bool has_linear = std::any_of(motion.words.begin(), motion.words.end(), is_of_linear);
+  const bool has_rotary = !std::all_of(motion.words.begin(), motion.words.end(), is_of_linear);
+  const bool by_time = turned > 0.0 && (has_linear || move.feed_mode == FeedMode::inverse_time);
+  // rotary axes that carry the correction of a straight move have no feed of their own
+  if (by_time || (has_linear && has_rotary && length > 0.0)) {
     if (move.feed_mode == FeedMode::units_per_revolution) {
       throw Unsayable{"feeds rotary axes per revolution of the spindle (G95); write G94 or G93"};
     }

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "controllers/gcode/number_text.h"
 
 namespace servomill::sim {
@@ -111,7 +114,11 @@ std::string IsoDialect::motion_text(const DialectMotion& motion, std::string_vie
   if (motion.arc) add_word(text, arc_words(*motion.arc));
   if (!motion.is_rapid) {
     const bool is_per_revolution = motion.feed_mode == FeedMode::units_per_revolution;
-    const int digits = feed_decimals() + (is_per_revolution || is_inch_ ? 1 : 0);
+    const bool is_by_time = motion.feed_mode == FeedMode::inverse_time;
+    const bool is_finer = is_per_revolution || (is_inch_ && !is_by_time);
+    // a number has at most eight digits (B-63844EN/02, appendix of command ranges; M)
+    const int whole = std::max(1, static_cast<int>(std::floor(std::log10(motion.feed))) + 1);
+    const int digits = std::clamp(8 - whole, 0, feed_decimals() + (is_finer ? 1 : 0));
     const std::string F = number(rate(motion.feed, digits, "F"));
     if (modes_.F != F || motion.feed_mode == FeedMode::inverse_time) add_word(text, "F" + F);
     modes_.F = F;

@@ -13,6 +13,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/programs/compensate/motion_printer.h"
+#include "sim/programs/compensate/timed_feed.h"
 #include "sim/programs/compensate/woven_line.h"
 
 namespace servomill::sim {
@@ -24,7 +25,6 @@ using controllers::Group;
 namespace {
 
 constexpr const char* kUnknownCode = "?";
-constexpr double kStanding = 1e-12;  // m, rounding of offsets
 
 // Whether a feed of the block moves rotary axes and no linear one.
 bool turns_alone(const ExecutedBlock& block) {
@@ -333,12 +333,7 @@ void LinuxCncWriter::move(const Move& one, const Block& block, bool is_place) {
 void LinuxCncWriter::write_step(const Step& step, WovenLine& line, bool is_woven_in) {
   const Move& one = *step.move;
   const bool is_rapid = one.kind == MoveKind::rapid;
-  const bool is_inverse = line.feed_mode == FeedMode::inverse_time;
-  const bool only_turns = !is_rapid && !is_inverse && step.programmed.length() < kStanding &&
-                          line.feed_mode == FeedMode::units_per_minute &&
-                          step.programmed.turns_axes();
-  const double angle = (step.programmed.end - step.programmed.begin).tail<3>().norm();
-  bool leaves_inverse = false;
+  TimedFeed feed(step, line);
   AxisWords at = step.begin;
   for (const FittedBlock& block : step.blocks) {
     const bool weaves = is_woven_in && !line.is_released;
@@ -346,22 +341,10 @@ void LinuxCncWriter::write_step(const Step& step, WovenLine& line, bool is_woven
     MotionWords words = printer.print(block, is_rapid, at);
     if (!weaves && !block.arc && words.words.empty()) continue;
     if (weaves && block.arc) keep_radius(line, step, at, std::pow(10.0, -decimals_) * mm, words);
-    const double share = block.t_end - block.t_begin;
-    const bool moves_linear = printer.end().head<3>() != at.head<3>();
-    if (is_inverse && !is_rapid) {
-      const double way = (printer.end() - at).head<3>().norm();
-      printer.feed(words,
-                   share > 0.0 ? line.value('F') / share : one.feed * minute / std::max(way, 1e-9));
-    } else if (only_turns && moves_linear) {
-      words.prefix = "G93";
-      leaves_inverse = true;
-      printer.feed(words, one.feed * minute / (angle * std::max(share, 1e-3)));
-    } else if (leaves_inverse) {
-      printer.feed(words, one.feed * minute / (angle * std::max(share, 1e-3)));
-    }
+    feed.set(words, printer, block, at);
     const bool needs_code = motion_ != words.code;
     if (weaves) {
-      if (step.blocks.size() > 1 || line.is_cycle || leaves_inverse) take_behind(line);
+      if (step.blocks.size() > 1 || line.is_cycle || feed.is_changed()) take_behind(line);
       weave(line, words, needs_code);
       put(line);
       line.is_released = true;
@@ -371,10 +354,7 @@ void LinuxCncWriter::write_step(const Step& step, WovenLine& line, bool is_woven
     motion_ = words.code;
     at = printer.end();
   }
-  if (leaves_inverse) {
-    put_beside(line, fmt::format("G94 F{}", controllers::significant_text(line.feed_linear *
-                                                                          minute / line.unit)));
-  }
+  if (feed.is_changed()) put_beside(line, feed.restored());
   walk_.arrive(step, step.programmed.frame.machine(at));
 }
 

@@ -46,7 +46,16 @@ AxisWords CorrectedCurve::programmed(double t) const {
 
 AxisWords CorrectedCurve::at(double t) const {
   const AxisWords programmed_position = programmed(t);
-  return programmed_position + correction_.at(programmed_position);
+  AxisWords out = programmed_position + correction_.at(programmed_position);
+  for (int i = 0; i < kAxisWords; ++i) {
+    if (is_held_[static_cast<std::size_t>(i)]) out[i] = held_[i];
+  }
+  return out;
+}
+
+void CorrectedCurve::hold(const AxisFlags6& axes, const AxisWords& position) {
+  is_held_ = axes;
+  held_ = position;
 }
 
 Vector3d CorrectedCurve::derivative(double t) const {

@@ -18,6 +18,9 @@ class CorrectedCurve {
   /// @param correction  with the tool of the move; must outlive this
   CorrectedCurve(const OriginalAction& action, const Correction& correction);
 
+  /// Keeps these axes where they are.
+  void hold(const AxisFlags6& axes, const AxisWords& position);
+
   AxisWords programmed(double t) const;
   AxisWords at(double t) const;
 
@@ -45,6 +48,8 @@ class CorrectedCurve {
   AxisWords begin_, end_;
   std::optional<ArcSweep> arc_;
   double length_ = 0.0, angle_ = 0.0;
+  AxisFlags6 is_held_{};
+  AxisWords held_ = AxisWords::Zero();
 };
 
 }  // namespace servomill::sim

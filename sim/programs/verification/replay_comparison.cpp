@@ -262,8 +262,19 @@ void ReplayComparison::match_motion(const OriginalAction& action) {
   has_moved_ = true;
   is_behind_pallets_ = false;
   if (action.is_machine_position) return match_place(action);
-  if (action.move.kind == MoveKind::rapid && !limits_.corrects_rapids) return match_rapid(action);
+  if (action.move.kind == MoveKind::rapid && !is_corrected_rapid(action))
+    return match_rapid(action);
   match_path(action);
+}
+
+// Before every axis has a position, the errors on its way are not known.
+bool ReplayComparison::is_corrected_rapid(const OriginalAction& action) const {
+  if (!limits_.corrects_rapids) return false;
+  for (std::size_t i = 0; i < action.is_known.size(); ++i) {
+    const bool is_there = correction_.layout().joint_of(kAllAxes[i]).has_value();
+    if (is_there && (!action.was_known[i] || !at_[i])) return false;
+  }
+  return true;
 }
 
 void ReplayComparison::finish() {

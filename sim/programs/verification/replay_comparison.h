@@ -22,6 +22,7 @@ struct ComparisonLimits {
   double tolerance_turn = 1e-5;   // rad, of rotary axes
   double grid = 1e-6;             // m: resolution of the numbers in the written program
   double grid_turn = 1e-3;        // rad, of rotary axes
+  double time_digit = 0.0;        // s: resolution of the time of a block
   bool corrects_rapids = false;   // on their way, not at their ends only
   bool is_linuxcnc = false;       // no state is lost at tool changes and stops
   std::optional<double> retract;  // m, machine: Z of the frames; nullopt: reference positions only
@@ -87,6 +88,8 @@ class ReplayComparison {
   bool is_at(std::size_t axis, double target) const;
 
   double path_tolerance(bool is_arc) const;
+  static AxisFlags6 unmoved_axes(const OriginalAction& action);
+  bool is_corrected_rapid(const OriginalAction& action) const;
   void match_path(const OriginalAction& action);
   bool admits(const OriginalAction& action, const Action* one) const;
   void check_piece(const OriginalAction& action, const CorrectedCurve& curve, const Action& one,
