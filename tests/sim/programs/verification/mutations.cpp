@@ -120,7 +120,9 @@ bool swap_lines(Lines& lines, std::size_t i) {
 
 bool wrong_unit(Lines& lines, std::size_t i) {
   return replace(lines[i], "G21", "G20") || replace(lines[i], "G710", "G700") ||
-         replace(lines[i], "G94", "G95") || replace(lines[i], "G90", "G91");
+         replace(lines[i], "G94", "G95") || replace(lines[i], "G90", "G91") ||
+         replace(lines[i], "M137", "M136") || replace(lines[i], "L X", "L IX") ||
+         replace(lines[i], "L Z", "L IZ");
 }
 
 bool other_number(Lines& lines, std::size_t i) {
@@ -138,7 +140,11 @@ bool move_length(Lines& lines, std::size_t i) {
                  word.substr(0, word.size() - 1));
     return true;
   }
-  return false;
+  // Heidenhain: the length changes with the tool
+  const bool calls = lines[i].find("TOOL CALL 1 Z") != std::string::npos ||
+                     lines[i].find("TOOL CALL 2 Z") != std::string::npos;
+  if (calls && i + 1 < lines.size()) std::swap(lines[i], lines[i + 1]);
+  return calls;
 }
 
 bool rapid_for_feed(Lines& lines, std::size_t i) {
@@ -199,6 +205,8 @@ bool repeat_line(Lines& lines, std::size_t i) {
 
 // What is in force before a tool change, kept over it: the restated modes go.
 bool keep_state_over_M6(Lines& lines, std::size_t i) {
+  const bool is_retract = lines[i].find("M91") != std::string::npos;
+  if (!is_retract && replace(lines[i], " R0", "")) return true;
   const bool restates =
       lines[i].find("G90") != std::string::npos && lines[i].find("G54") != std::string::npos;
   return restates && drop(lines, i);
