@@ -100,10 +100,10 @@ class Bounds(unittest.TestCase):
                          (2, "part.ngc: error: takes 108 min in 2 cases and 6.5e+06 rows: 2.9 GB of signals; must be <= "
                              "record.max_size_GB = 1; raise it, or record fewer rows: record.period_ms = 1\n"))
 
-    def first_lines(self, count, *changes):
+    def first_lines(self, count, *changes, output="out.h5"):
         """What a run says first; it is interrupted then."""
         settings = [word for change in changes for word in ("--set", change)]
-        process = subprocess.Popen([SERVOMILL, "run", "scenario.toml", "-o", "out.h5", "--force", *settings],
+        process = subprocess.Popen([SERVOMILL, "run", "scenario.toml", "-o", output, "--force", *settings],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, cwd=self.folder,
                                    preexec_fn=limit_memory)
         said = [process.stderr.readline() for _ in range(count)]
@@ -127,6 +127,25 @@ class Bounds(unittest.TestCase):
         said = self.first_lines(1, "program.feed_override=2e-4")[0]
         self.assertRegex(said, r"^estimate: 108 min of motion, 6\.5e\+06 rows, 2\.9 GB of signals in a file of 0\.4\d GB, "
                          r"0\.\d+ GB of memory, about \d+ (s|min) of computing\n$")
+
+    def test_a_disk_that_is_too_small_is_told_before_it_begins(self):
+        disk, slow = self.path("disk"), "program.feed_override=2e-4"
+        os.mkdir(disk)
+        tmpfs = ["mount", "-t", "tmpfs", "-o", "size=900m", "tmpfs", disk]   # takes memory as it is filled
+        if subprocess.run(tmpfs, stderr=subprocess.DEVNULL, check=False).returncode != 0:
+            self.skipTest("no file system of a chosen size may be mounted here")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        status, said = self.run_here("run", "scenario.toml", "-o", "disk/out.h5", "--set", slow)
+        self.assertEqual(status, 2, said)
+        self.assertRegex(said, r"^estimate: .*\npart\.ngc: error: takes 0\.9\d GB of the disk while it runs; \S+/disk has 0\.94 GB: "
+                         r"lower record\.max_size_GB = 8 or name another file \(--output\)\n$")
+        status, said = self.run_here("budget", "scenario.toml", "--quantity", "tool_deviation", "-o", "disk/out.h5", "--set", slow)
+        self.assertEqual(status, 2, said)
+        self.assertRegex(said, r"^part\.ngc: error: takes 2\.\d GB of the disk while it runs; \S+/disk has 0\.94 GB: lower ")
+        self.assertEqual(os.listdir(disk), [])
+        subprocess.run(["mount", "-o", "remount,size=1100m", disk], check=True)
+        self.first_lines(1, slow, output="disk/out.h5")
+        self.assertNotEqual(os.listdir(disk), [], "the run has begun")
 
     def test_blocks_of_corrected_programs_are_counted_first(self):
         command = ["compensate", "cut.ngc", "--machine", "machine.toml", "--errors", "errors.toml", "--work-offset",
