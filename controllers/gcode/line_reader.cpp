@@ -331,7 +331,7 @@ void LineReader::parse(std::string_view& line, const std::string& file, int numb
   tolerant_.applied.clear();
   try {
     parser_.parse(line, file, number, block, extent);
-    if (!has_rule(reader_, ReaderRule::fan_code) || !has_fan_code(block)) return;
+    if (!reads_fan_codes_ || !has_fan_code(block)) return;
     tolerant_ = tolerant_line(line, reader_);
   } catch (const InputError& error) {
     const int column = error.faults().front().place.column;

@@ -29,7 +29,10 @@ std::string other_language(std::string_view line, int column);
 /// Parses lines as LinuxCNC does and, where it refuses one, as the rules of the reader say.
 class LineReader {
  public:
-  LineReader(bool block_delete, Reader reader) : parser_(block_delete), reader_(reader) {}
+  LineReader(bool block_delete, Reader reader)
+      : parser_(block_delete),
+        reader_(reader),
+        reads_fan_codes_(has_rule(reader, ReaderRule::fan_code)) {}
 
   void keep_pieces(bool keep) { parser_.keep_pieces(keep); }
   Reader reader() const { return reader_; }
@@ -46,6 +49,7 @@ class LineReader {
  private:
   Parser parser_;
   Reader reader_;
+  bool reads_fan_codes_;
   TolerantLine tolerant_;
 };
 

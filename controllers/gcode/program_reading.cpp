@@ -23,11 +23,15 @@ bool Interpreter::Machine::read_block() {
   block_.clear();
   is_rewritten_ = false;
   if (!pending_lines_.empty()) return with_place_of_fault([this] { read_pending_line(); }), true;
-  here_ = {text_, text().mark()};
-  const bool is_there = text().next(line_);
-  for (Fault& one : text().take_warnings()) warnings_.push_back(std::move(one));
+  ProgramText& source = text();
+  here_ = {text_, source.mark()};
+  const bool is_there = source.next(line_);
+  const bool is_generated = source.is_generated();
+  if (is_generated) {
+    for (Fault& one : source.take_warnings()) warnings_.push_back(std::move(one));
+  }
   if (!is_there) return end_of_text(), true;
-  if (text().is_generated()) return read_generated_line(), true;
+  if (is_generated) return read_generated_line(), true;
   if (is_blank(line_)) return true;
   if (flow_.jumps > 0) ++flow_.lines;
   with_place_of_fault([this] { flow_.skip_to ? read_skipped_line() : read_executed_line(); });
@@ -70,9 +74,9 @@ void Interpreter::Machine::read_executed_line() {
   for (const AppliedRule& one : reader_.applied()) tolerates(one.rule, one.column);
   if (block_.percent) return saw_percent();
   const bool is_strict = setup_.reader == Reader::linuxcnc;
-  const bool is_comment = block_.words.empty() && block_.assignments.empty() &&
+  const bool is_comment = !is_strict && block_.words.empty() && block_.assignments.empty() &&
                           block_.o_word.flow == Flow::none && !block_.deleted;
-  if (is_comment && !is_strict && texts_[text_].percent.saw_nothing()) {
+  if (is_comment && texts_[text_].percent.saw_nothing()) {
     texts_[text_].has_title = true;
     return execute();
   }
