@@ -278,6 +278,12 @@ bool contains_word(std::string_view line, std::string_view word) {
   return begins && (end == line.size() || !is_letter(line[end]));
 }
 
+// A line that is skipped is looked at for its label only, and no fault shows that it has one.
+bool begins_with_colon(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  return first != std::string_view::npos && line[first] == ':';
+}
+
 }  // namespace
 
 TolerantLine tolerant_line(std::string_view line, Reader reader) {
@@ -330,6 +336,10 @@ void LineReader::parse(std::string_view& line, const std::string& file, int numb
                        Parser::Extent extent) {
   tolerant_.applied.clear();
   try {
+    if (extent != Parser::Extent::all && begins_with_colon(line)) {
+      tolerant_ = tolerant_line(line, reader_);
+      line = tolerant_.text;
+    }
     parser_.parse(line, file, number, block, extent);
     if (!reads_fan_codes_ || !has_fan_code(block)) return;
     tolerant_ = tolerant_line(line, reader_);

@@ -170,6 +170,7 @@ void Interpreter::Machine::read_skipped_line() {
   }
   texts_[text_].percent.saw_line();
   if (block_.deleted || !may_end_skipping(block_.o_word)) return block_.clear();
+  for (const AppliedRule& one : reader_.applied()) tolerates(one.rule, one.column);
   reader_.parse(line_, file(), line(), block_, Parser::Extent::flow_value);
   execute();
 }
