@@ -91,6 +91,7 @@ void Interpreter::Machine::read_executed_line() {
 
 // What a control reads in another way than LinuxCNC runs as the lines that say it to LinuxCNC.
 void Interpreter::Machine::read_as_control() {
+  reading_.call_again(flow_.turns_left.back() > 0);
   const bool is_other = reading_.read(line_, file(), block_, state_, [this](const Value& value) {
     return evaluate(value, block_, parameters_, file());
   });

@@ -127,6 +127,7 @@ int BlockReading::original_column(std::size_t nth_line, int column) const {
 
 void ReadingStep::run() {
   if (block_.o_word.flow == Flow::m98) return subprograms();
+  if (reading_.calls_again_) drop_words_of_earlier_turn();
   foreign_codes();
   unit_codes();
   decimal_points();

@@ -95,6 +95,8 @@ class BlockReading {
   const std::optional<LocalCall>& local_call() const { return local_call_; }
   /// Column in the line as written.
   int original_column(std::size_t nth_line, int column) const;
+  /// The block that is read next calls again (L of M98 and M97): its other words have acted.
+  void call_again(bool is_again) { calls_again_ = is_again; }
   /// Forgets what the block read last has changed, because it failed.
   void roll_back() { memory_ = before_; }
 
@@ -106,6 +108,7 @@ class BlockReading {
   std::vector<std::string> lines_;
   std::size_t edited_line_ = 0;  // of `lines_`; the others are all the work of a rule
   int cause_column_ = 0;         // of those
+  bool calls_again_ = false;
   std::optional<BlockWords> words_;
   std::vector<AppliedRule> applied_;
   std::vector<ReadingNote> notes_;

@@ -55,6 +55,7 @@ class ReadingStep {
   void laser_power();
   // subprogram_reading.cpp
   void subprograms();
+  void drop_words_of_earlier_turn();
   void call_behind_words();
   void local_call();
   // motion_reading.cpp

@@ -27,6 +27,17 @@ void ReadingStep::subprograms() {
   words.add('L', repeats, P->column);
 }
 
+// G91 X1 M98 P1000 L3: one move, then three calls, for each of which the block is read anew.
+void ReadingStep::drop_words_of_earlier_turn() {
+  if (!words.has_code('M', 980) && !words.has_code('M', 970)) return;
+  for (BlockWord& word : words.all()) {
+    const int tenths = word.letter == 'M' ? tenths_of(word.value) : -1;
+    const bool is_of_call =
+        word.letter == 'P' || word.letter == 'L' || tenths == 980 || tenths == 970;
+    if (!is_of_call) words.erase(word);
+  }
+}
+
 // G0 X1 M98 P1000: the move, then the call.
 void ReadingStep::call_behind_words() {
   BlockWord* code = words.code('M', 980);
