@@ -110,8 +110,8 @@ bool BlockWords::is_changed() const {
                      [](const BlockWord& word) { return word.is_changed; });
 }
 
-void BlockWords::put(std::string_view text, int column) const {
-  runs_.push_back({static_cast<int>(text_.size()) + 1, column});
+void BlockWords::put(std::string_view text, int column, bool is_copied) const {
+  runs_.push_back({static_cast<int>(text_.size()) + 1, column, is_copied});
   text_ += text;
 }
 
@@ -122,7 +122,7 @@ void BlockWords::write() const {
   runs_.clear();
   std::size_t at = 0;
   const auto copy_until = [&](std::size_t end) {
-    if (end > at) put(std::string_view(line_).substr(at, end - at), static_cast<int>(at) + 1);
+    if (end > at) put(std::string_view(line_).substr(at, end - at), static_cast<int>(at) + 1, true);
     at = std::max(at, end);
   };
   for (const BlockWord& word : words_) {
@@ -151,7 +151,7 @@ int BlockWords::original_column(int column) const {
   int out = column;
   for (const Run& run : runs_) {
     if (run.begin > column) break;
-    out = run.column;
+    out = run.column + (run.is_copied ? column - run.begin : 0);
   }
   return out;
 }

@@ -62,9 +62,10 @@ class BlockWords {
   struct Run {
     int begin = 0;   // in text(), from 1
     int column = 0;  // in the line as written
+    bool is_copied = false;
   };
   void write() const;
-  void put(std::string_view text, int column) const;
+  void put(std::string_view text, int column, bool is_copied = false) const;
 
   std::string line_;
   std::vector<BlockWord> words_;
