@@ -87,6 +87,8 @@ bool BlockReading::concerns(const Block& block, const ModalState& state) const {
   }
   const int motion = codes.motion >= 0 ? codes.motion : state.motion;
   if (!codes.are_plain || (letters & kOffsets) != 0 || is_canned_cycle(motion)) return true;
+  const bool has_unit = (codes.groups & 1U << static_cast<unsigned>(Group::g_units)) != 0;
+  if (has_unit && (letters & word_bit('F')) != 0) return true;
   if ((letters & kPlaces) == 0) return codes.motion == 800;
   if ((motion == 20 || motion == 30) && (letters & kCentres) == kCentres) return true;
   const bool lacks_feed = motion > 0 && state.feed_linear == 0.0;
@@ -154,6 +156,7 @@ void ReadingStep::run() {
   feed();
   laser_power();
   frames();
+  feed_beside_unit();
 }
 
 // Words that the control of the reader does not have.

@@ -44,6 +44,7 @@ struct ReadingNote {
 struct KeptCycle {
   std::array<std::optional<double>, 4> values;  // of R, the normal axis, P (s) and Q
   bool is_incremental = false;                  // the mode that they were given in
+  double r_level = 0.0, bottom_level = 0.0;     // of R and the normal axis, program coordinates
 };
 
 /// Modes of a control that LinuxCNC does not have.
@@ -56,6 +57,7 @@ struct ReadingMemory {
   bool has_retract_mode = false;                         // G98 or G99 was read
   std::optional<double> diameter_offset, length_offset;  // D, H before the block that uses them
   PlaneFrame frame;
+  Eigen::Vector3d before_rotation = Eigen::Vector3d::Zero();  // program coordinates; m
   PolarMode polar;
   std::map<int, AxisWords> additional_offsets;  // of G54.1, by P
   int power_changes = 0;                        // feeds that change S without an M code

@@ -42,12 +42,14 @@ void ReadingStep::cycles() {
   if (explicit_code >= 0) begin_cycle(code);
   if (code == kFineBoring) fine_boring();
   const int strict = strict_code(code);
+  cycle_levels(strict);
   cycle_words(strict);
   cycle_dwell(strict);
   cycle_repeats(code);
   if (!words.has_axis()) return;
   retract_mode();
   tapping(strict);
+  leave_at_feed(strict);
 }
 
 void ReadingStep::begin_cycle(int code) {
@@ -93,20 +95,51 @@ void ReadingStep::cycle_words(int code) {
   KeptCycle& kept = memory.cycle;
   const std::array letters = {'R', normal_letter(), 'P', 'Q'};
   const bool is_fresh = state.motion != code;
-  const bool is_same_mode = kept.is_incremental == is_incremental();
   int column = words.all().front().column;
   if (const BlockWord* word = words.code('G', code)) column = word->column;
   for (const std::size_t k : {kR, kBottom, kP, kQ}) {
-    const bool uses = k < kP || (k == kP ? has_dwell(code) : is_pecking(code));
+    const bool uses = k < kP || (k == kP ? has_dwell(code) || is_tapping(code) : is_pecking(code));
     if (!uses || !is_fresh || words.has(letters[k]) || !kept.values[k]) continue;
-    if (k < kP && !is_same_mode) continue;
     if (memory.pending_motion < 0) need(WordRule::cycle_memory, column);
     words.add(letters[k], *kept.values[k], column);
   }
   for (const std::size_t k : {kR, kBottom, kQ}) {
     if (words.has(letters[k])) kept.values[k] = words[letters[k]];
   }
+  const double base = is_incremental() ? initial_level() : 0.0;
+  if (words.has('R')) kept.r_level = words['R'] + base;
+  const double bottom_base = is_incremental() ? kept.r_level : 0.0;
+  const bool moves_bottom = words.has(letters[kBottom]) || (words.has('R') && is_incremental());
+  if (moves_bottom && kept.values[kBottom]) {
+    kept.bottom_level = *kept.values[kBottom] + bottom_base;
+  }
   kept.is_incremental = is_incremental();
+}
+
+// Z of the tool before the row of cycles.
+double ReadingStep::initial_level() const {
+  const int n = normal_axis();
+  Eigen::Vector3d p = state.programmed().head<3>();
+  if (state.cycle.has_level) p[n] = state.cycle.level * state.unit;
+  return memory.frame.from_work(p)[n] / state.unit;
+}
+
+// G90 G81 X1 Z-2 R1, then G91 X1: the hole is as deep as the one before.
+void ReadingStep::cycle_levels(int code) {
+  const KeptCycle& kept = memory.cycle;
+  const bool is_kept = kept.values[kR] && kept.values[kBottom];
+  const char bottom = normal_letter();
+  const bool lacks = !words.has('R') || !words.has(bottom);
+  if (!is_kept || !lacks || !words.has_axis() || kept.is_incremental == is_incremental()) return;
+  const int column = words.all().front().column;
+  const bool goes_on = state.motion == code;
+  if (goes_on && choose(WordDifference::cycle_distance, column) == 0) return;
+  if (!goes_on && memory.pending_motion < 0) need(WordRule::cycle_memory, column);
+  const double base = is_incremental() ? initial_level() : 0.0;
+  if (!words.has('R')) words.add('R', kept.r_level - base, column);
+  if (!words.has(bottom)) {
+    words.add(bottom, kept.bottom_level - (is_incremental() ? words['R'] + base : 0.0), column);
+  }
 }
 
 // In seconds.
@@ -147,15 +180,32 @@ void ReadingStep::cycle_repeats(int code) {
 // Where no G98 or G99 was read, and the tool is above R.
 void ReadingStep::retract_mode() {
   if (memory.has_retract_mode || !words.has('R')) return;
-  const int n = normal_axis();
-  const double level =
-      state.cycle.has_level ? state.cycle.level : state.programmed()[n] / state.unit;
+  const double level = initial_level();
   const double R = words['R'] + (is_incremental() ? level : 0.0);
   constexpr double kSameLevel = 1e-9;
   if (level <= R + kSameLevel) return;
   const int column = words.column('R');
   memory.has_retract_mode = true;
   if (choose(WordDifference::retract_level, column) == 1) words.add('G', 98.0, column);
+}
+
+// Cycles that leave the hole at feed do so up to R, and go on to the initial level of G98 at
+// rapid; in LinuxCNC all of it is at feed.
+void ReadingStep::leave_at_feed(int code) {
+  const bool is_of_control = options.reader == Reader::fanuc || options.reader == Reader::haas;
+  const bool is_r_level =
+      words.has_code('G', 990) || (!words.has_code('G', 980) && state.retracts_to_r);
+  const bool repeats = words.has('L') && words['L'] > 1.0;
+  if (!is_of_control || !(is_tapping(code) || code == 890) || is_r_level || repeats) return;
+  const double level = initial_level();
+  const double rise = level - memory.cycle.r_level;
+  if (memory.frame.is_active() || !(rise > 0.0)) return;
+  if (BlockWord* G98 = words.code('G', 980)) words.erase(*G98);
+  words.add('G', 99.0, words.all().front().column);
+  behind.push_back("G0 " + word_text(normal_letter(), is_incremental() ? rise : level));
+  behind.emplace_back("G98");
+  memory.pending_motion = code;
+  memory.is_pending_known = true;
 }
 
 void ReadingStep::tapping(int code) {

@@ -46,8 +46,41 @@ void ReadingStep::polar_mode() {
     need(WordRule::polar_coordinates, code->column);
     memory.polar = {};
     memory.polar.is_on = tenths == 160;
+    if (memory.polar.is_on) polar_origin(code->column);
     words.erase(*code);
   }
+}
+
+// Of Fanuc that of the work system, of Mach where the tool stands.
+void ReadingStep::polar_origin(int column) {
+  const int n = normal_axis();
+  const Eigen::Vector3d now = memory.frame.from_work(state.programmed().head<3>());
+  const Eigen::Vector2d here(now[(n + 1) % 3], now[(n + 2) % 3]);
+  if (here.isZero() || choose(WordDifference::polar_centre, column) == 0) return;
+  if (is_incremental()) fail(column, "G16 under G91 is no known mode of Mach; use G90");
+  memory.polar.origin = here;
+}
+
+// G51 X2 Y2: of Mach the words are factors, which act from the origin of the work system.
+void ReadingStep::scale_inputs(BlockWord& code) {
+  PlaneFrame& frame = memory.frame;
+  for (const char letter : {'P', 'I', 'J', 'K'}) {
+    if (!words.has(letter)) continue;
+    fail(words.column(letter),
+         fmt::format("{} beside G51: the factors of Mach are X, Y and Z", letter));
+  }
+  need(WordRule::scaling, code.column);
+  for (int i = 0; i < 3; ++i) {
+    const char axis = "XYZ"[i];
+    if (words.has(axis) && words[axis] == 0.0) {
+      fail(words.column(axis), fmt::format("G51 {}0", axis));
+    }
+    if (words.has(axis)) frame.scale[i] = words[axis];
+    words.erase(axis);
+  }
+  frame.scale_centre.setZero();
+  frame.is_scaled = true;
+  words.erase(code);
 }
 
 // G51 X Y Z P, or I J K for each axis; G50.
@@ -64,6 +97,7 @@ void ReadingStep::scaling() {
   BlockWord* on = words.code('G', 510);
   if (on == nullptr) return;
   refuse_frame_change(*on);
+  if (options.reader == Reader::mach) return scale_inputs(*on);
   const bool has_factors = words.has('I') || words.has('J') || words.has('K');
   if (!words.has('P') && !has_factors) {
     fail(on->column,
@@ -117,6 +151,27 @@ void ReadingStep::mirror() {
   }
 }
 
+// G68 A12 B25 R45: of Mach, A is X and B is Y of the centre.
+void ReadingStep::centre_of_mach(const BlockWord& code) {
+  const bool is_mach = options.reader == Reader::mach;
+  const bool can_be = is_mach || options.reader == Reader::any;
+  for (const auto& [letter, axis] : {std::pair{'A', 'X'}, std::pair{'B', 'Y'}}) {
+    if (is_mach && words.has(axis)) {
+      fail(words.column(axis), fmt::format("{} beside G68: the centre of Mach is A and B", axis));
+    }
+    if (!words.has(letter)) continue;
+    const int column = words.column(letter);
+    if (!can_be || words.has(axis) || is_incremental() || normal_axis() != 2) {
+      fail(column, fmt::format("{} beside {}: the {} of the centre for Mach, in G17 and G90, a "
+                               "rotary axis for others",
+                               letter, code_name('G', tenths_of(code.value)), axis));
+    }
+    const double value = words[letter];
+    words.erase(letter);
+    words.add(axis, value, column);
+  }
+}
+
 // G68 X Y R, about the point X Y of the plane.
 void ReadingStep::rotation() {
   PlaneFrame& frame = memory.frame;
@@ -134,6 +189,7 @@ void ReadingStep::rotation() {
   }
   if (frame.is_rotated) fail(on->column, "G68 under G68; G69 first");
   need(WordRule::rotation, on->column);
+  centre_of_mach(*on);
   const int n = normal_axis();
   const Eigen::Vector3d now = frame.from_work(state.programmed().head<3>());
   Eigen::Vector3d centre = now;
@@ -149,6 +205,7 @@ void ReadingStep::rotation() {
   frame.angle = words['R'] * deg;
   frame.normal_axis = n;
   frame.is_rotated = true;
+  memory.before_rotation = now;
   words.erase('R');
   words.erase(*words.code('G', 680));
 }
@@ -201,8 +258,7 @@ void ReadingStep::polar_words() {
   }
   const Eigen::Vector3d now = memory.frame.from_work(state.programmed().head<3>());
   if (words.has(radius)) {
-    polar.centre =
-        is_incremental() ? Eigen::Vector2d(now[first], now[second]) : Eigen::Vector2d::Zero();
+    polar.centre = is_incremental() ? Eigen::Vector2d(now[first], now[second]) : polar.origin;
     polar.radius = words[radius] * unit();
     polar.has_radius = true;
   }
@@ -221,6 +277,34 @@ void ReadingStep::polar_words() {
   const int column = words.has(radius) ? words.column(radius) : words.column(angle);
   words.set(radius, target.x() / unit(), column);
   words.set(angle, target.y() / unit(), column);
+}
+
+// G0 X5, G68 X0 Y0 R90, X10: where Y is then is a parameter of the control, until a block names
+// both.
+void ReadingStep::refuse_lone_axis(const Eigen::Vector3d& now) {
+  const int n = memory.frame.normal_axis, first = (n + 1) % 3, second = (n + 2) % 3;
+  const bool has_first = words.has("XYZ"[first]), has_second = words.has("XYZ"[second]);
+  if (!memory.frame.is_rotated || !(has_first || has_second)) return;
+  Eigen::Vector3d& known = memory.before_rotation;
+  if (is_incremental()) {
+    for (int i = 0; i < 3; ++i) {
+      if (words.has("XYZ"[i])) known[i] += words["XYZ"[i]] * unit();
+    }
+    return;
+  }
+  constexpr double kSame = 1e-9;  // m
+  const int other = has_first ? second : first;
+  if (has_first != has_second && std::abs(now[other] - known[other]) > kSame) {
+    const char named = "XYZ"[has_first ? first : second];
+    fail(words.column(named),
+         fmt::format("{} alone behind G68: whether {} stays where it is or keeps its coordinate "
+                     "from before G68 is a parameter of the control (Fanuc 11600#5); name both",
+                     named, "XYZ"[other]));
+  }
+  known = now;
+  for (const int i : {first, second}) {
+    if (words.has("XYZ"[i])) known[i] = words["XYZ"[i]] * unit();
+  }
 }
 
 void ReadingStep::frame_words() {
@@ -248,6 +332,7 @@ void ReadingStep::frame_words() {
   const int n = normal_axis();
   const Eigen::Vector3d work = state.programmed().head<3>();
   const Eigen::Vector3d now = frame.from_work(work);
+  refuse_lone_axis(now);
   Eigen::Vector3d target = now;
   for (int i = 0; i < 3; ++i) {
     if (!words.has("XYZ"[i]) || (is_cycle && i == n)) continue;

@@ -35,6 +35,7 @@ struct PolarMode {
   double radius = 0.0;  // m
   double angle = 0.0;   // rad
   bool has_radius = false, has_angle = false;
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();  // of absolute coordinates
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  // in the plane, program coordinates; m
 };
 

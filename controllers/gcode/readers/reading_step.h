@@ -37,7 +37,9 @@ class ReadingStep {
   void foreign_codes();
   // words_reading.cpp
   void decimal_points();
+  bool is_polar_angle(char letter) const;
   void unit_codes();
+  void feed_beside_unit();
   void repeated_groups();
   void machine_functions();
   void smoothing();
@@ -71,22 +73,29 @@ class ReadingStep {
   void cycles();
   void begin_cycle(int code);
   void cycle_words(int code);
+  void cycle_levels(int code);
+  double initial_level() const;
   void cycle_dwell(int code);
   void cycle_repeats(int code);
   void fine_boring();
   void retract_mode();
   void tapping(int code);
+  void leave_at_feed(int code);
   char normal_letter() const;
   // frame_reading.cpp
   void frame_codes();
   void frames();
   void polar_mode();
+  void polar_origin(int column);
   void scaling();
+  void scale_inputs(BlockWord& code);
   void mirror();
   void rotation();
+  void centre_of_mach(const BlockWord& code);
   void additional_offset();
   void refuse_frame_change(const BlockWord& code) const;
   void polar_words();
+  void refuse_lone_axis(const Eigen::Vector3d& now);
   void frame_words();
   void frame_centre();
 

@@ -51,6 +51,11 @@ std::string name_of(const BlockWord& word) { return code_name(word.letter, tenth
 
 }  // namespace
 
+bool ReadingStep::is_polar_angle(char letter) const {
+  const bool is_polar = words.has_code('G', 160) || memory.polar.is_on;
+  return is_polar && !words.has_code('G', 150) && letter == "XYZ"[(normal_axis() + 2) % 3];
+}
+
 // X1000 without a point: 1000 mm, or 1000 increments of 0.001 mm (0.0001 inch, 0.001 deg).
 void ReadingStep::decimal_points() {
   const bool depends = options.reader == Reader::fanuc || options.reader == Reader::haas;
@@ -60,7 +65,8 @@ void ReadingStep::decimal_points() {
   for (BlockWord& word : words.all()) {
     const bool is_length = kLengths.find(word.letter) != std::string_view::npos;
     const bool is_angle = kAngles.find(word.letter) != std::string_view::npos ||
-                          (word.letter == 'R' && words.has_code('G', 680));
+                          (word.letter == 'R' && words.has_code('G', 680)) ||
+                          is_polar_angle(word.letter);
     if (!(is_length || is_angle) || word.has_point || !word.is_literal || word.value == 0.0)
       continue;
     if ((is_dwell && word.letter == 'X') || (is_cycle && word.letter == 'K')) continue;
@@ -82,6 +88,17 @@ void ReadingStep::unit_codes() {
     code->value = tenths == 700 ? 20.0 : 21.0;
     code->is_changed = true;
   }
+}
+
+// G20 G1 X1 F10: the unit first, then the feed.
+void ReadingStep::feed_beside_unit() {
+  BlockWord* code = words.code('G', unit() == mm ? 210 : 200);
+  const BlockWord* F = words.find('F');
+  const bool is_rate = !words.has_code('G', 930) && state.feed_mode != FeedMode::inverse_time;
+  if (code == nullptr || F == nullptr || unit() == state.unit || !is_rate) return;
+  if (choose(WordDifference::feed_beside_unit, F->column) == 0) return;
+  before.push_back(fmt::format("G{}", code->value));
+  words.erase(*code);
 }
 
 // Of G codes of one group the last one counts.
