@@ -1,0 +1,103 @@
+/// Examples of dwells, arcs, homing, feeds, subprograms and codes without effect. Private to
+/// rule_examples_test.cpp.
+#pragma once
+
+#include "rule_examples.h"
+
+namespace servomill::controllers {
+
+inline const std::string kFormats15i = "Fanuc B-63324EN/03 p. 759",
+                         kSpiral15i = "Fanuc B-63324EN/01, section 4.4",
+                         kHome15i = "Fanuc B-63784EN/01 p. 183",
+                         kCall0i = "Fanuc B-64124EN/01 p. 136 and 137",
+                         kCallHaas = "Haas 96-8000 p. 217", kMemory = "from memory";
+
+inline std::vector<RuleExample> motion_examples() {
+  const Given increments = {.decimal_point = DecimalPoint::increments};
+  const Given homes = {.has_homes = true}, fed = {.feed = 100.0};
+  return {
+      {WordRule::dwell_word, Reader::fanuc, "G0 X1.\nG4 X2.5\nX2.\nM2\n",
+       "R 1 0 0 | W 2.5 | R 2 0 0", "p.nc:2:4", kFormats15i},
+      {WordRule::dwell_word, Reader::any, "G20 G0 X1.\nG91 G04 U1.5\nM2\n", "R 25.4 0 0 | W 1.5",
+       "p.nc:2:9", kMemory},
+      {WordRule::dwell_word, Reader::fanuc, "G4 X1500\nM2\n", "W 1.5", "p.nc:1:4", kMemory,
+       increments},
+      {WordRule::given_feed, Reader::any, "G1 X1.\nY1.\nM2\n", "F 1 0 0 f100 | F 1 1 0", "p.nc:1:1",
+       kMemory, fed},
+      {WordRule::given_feed, Reader::mach, "G20\nG91 G2 X.2 I.1\nG1 X1. F10\nM2\n",
+       "CW 5.08 0 0 o 2.54 0 0 f100 | F 30.48 0 0 f254", "p.nc:2:5", kMemory, fed},
+      // radii of 5.04 and 4.96 mm about X5.04
+      {WordRule::arc_radii, Reader::fanuc, "G2 X10. Y0. I5.04 F100.\nG1 X0.\nM2\n",
+       "CW 10 0 0 o 5.04 0 0 f100 | F 0 0 0", "p.nc:1:1", kSpiral15i},
+      {WordRule::arc_radii, Reader::any, "G91 G18 G3 X10. I5.04 F100.\nG1 Z1.\nM2\n",
+       "CCW18 10 0 0 o 5.04 0 0 f100 | F 10 0 1", "p.nc:1:9", kSpiral15i},
+      {WordRule::arc_radii, Reader::fanuc, "G19 G2 Y10. Z0. J5.04 X3. F100.\nM2\n",
+       "CW19 3 10 0 o 3 5.04 0 f100", "p.nc:1:5", kSpiral15i},
+      // radii of 5.1308 and 5.0292 mm
+      {WordRule::arc_radii, Reader::haas, "G20 G2 X.4 I.202 F10.\nM2\n",
+       "CW 10.16 0 0 o 5.1308 0 0 f254", "p.nc:1:5", kMemory},
+      {WordRule::repeated_group, Reader::fanuc, "G90 G17 G18 G17 G0 X1.\nX2.\nM2\n",
+       "R 1 0 0 | R 2 0 0", "p.nc:1:9", kMemory},
+      {WordRule::repeated_group, Reader::fanuc, "G0 G1 X1. F100.\nX2.\nM2\n",
+       "F 1 0 0 f100 | F 2 0 0", "p.nc:1:4", kMemory},
+      {WordRule::repeated_group, Reader::fanuc, "G0 X1.\nG90 G91 X1.\nX1.\nM2\n",
+       "R 1 0 0 | R 2 0 0 | R 3 0 0", "p.nc:2:5", kMemory},
+      // by way of X1 to machine zero; G0 stays in force
+      {WordRule::home_with_motion, Reader::fanuc, "G0 G28 X1.\nX2.\nM2\n",
+       "R 1 0 0 | R -10 0 0 | R 2 0 0", "p.nc:1:1", kHome15i, homes},
+      {WordRule::home_with_motion, Reader::fanuc,
+       "G1 X5. Y5. Z8. F100.\nG91 G1 G28 Z2.\nG90 X7.\nM2\n",
+       "F 5 5 8 f100 | R 5 5 10 | R 5 5 -30 | F 7 5 -30", "p.nc:2:5", kHome15i, homes},
+      {WordRule::home_with_motion, Reader::haas, "G0 X5.\nG1 G92 X1. F100.\nX2.\nM2\n",
+       "R 5 0 0 | F 6 0 0 f100", "p.nc:2:1", kMemory},
+      {WordRule::second_home_number, Reader::fanuc, "G30 P2 X1. Y1.\nG0 X3.\nM2\n",
+       "R 1 1 0 | R -1 -2 0 | R 3 -2 0", "p.nc:1:5", kHome15i, homes},
+      {WordRule::second_home_number, Reader::fanuc, "G0 Z5.\nG91 G30 P2 Z0.\nG90 G0 Z1.\nM2\n",
+       "R 0 0 5 | R 0 0 -3 | R 0 0 1", "p.nc:2:9", kHome15i, homes},
+      // Z first whatever the order of the words, whose values do not count
+      {WordRule::homing_cycle, Reader::any, "G0 X1. Y2. Z3.\nG28.2 X0. Z5.\nX4.\nM2\n",
+       "R 1 2 3 | R 1 2 0 | R 0 2 0 | R 4 2 0", "p.nc:2:1", "TinyG wiki, TinyG Homing"},
+      {WordRule::homing_cycle, Reader::any, "G91 G0 X1. Y2.\nG28.2 Y0.\nY4.\nM2\n",
+       "R 1 2 0 | R 1 0 0 | R 1 4 0", "p.nc:2:1", "TinyG wiki, TinyG Homing"},
+      // five times 1002 is the manual's example
+      {WordRule::subprogram_repeats, Reader::fanuc,
+       "G91 G0\nM98 P51002\nY1.\nM2\nO1002\nX1.\nM99\n",
+       "R 1 0 0 | R 2 0 0 | R 3 0 0 | R 4 0 0 | R 5 0 0 | R 5 1 0", "p.nc:2:5", kCall0i},
+      {WordRule::subprogram_repeats, Reader::fanuc,
+       "G0 X1.\nM98 P00021002\nX3.\nM30\nO1002\nG91 Y1.\nG90\nM99\n",
+       "R 1 0 0 | R 1 1 0 | R 1 2 0 | R 3 2 0", "p.nc:2:5", kMemory},
+      // X1000.0 M98 P1200: called behind the move of X
+      {WordRule::call_with_words, Reader::fanuc, "G0 X2. M98 P1200\nX9.\nM2\nO1200\nY1.\nM99\n",
+       "R 2 0 0 | R 2 1 0 | R 9 1 0", "p.nc:1:8", kCall0i},
+      {WordRule::call_with_words, Reader::haas, "G91 G0 X2. M98 P100 L2\nM2\nO100\nY1.\nM99\n",
+       "R 2 0 0 | R 2 1 0 | R 2 2 0", "p.nc:1:12", kCallHaas},
+      // the manual's example, in millimetres, twice, for a tool of 10 mm
+      {WordRule::local_subprogram,
+       Reader::haas,
+       "T1 M06\nG00 G90 G54 X0. Y0. S1000 M03\nG43 H01 Z1.\nG01 Z0. F20.\nM97 P1000 L2\n"
+       "G00 G90 Z1.\nM30\nN1000 (runs behind M97 P1000)\nG01 G91 Z-0.1\nG90 X2.\nG91 Z-0.1\n"
+       "G90 X0.\nM99\n",
+       "T1 | S+1000 | R 0 0 11 | F 0 0 10 f20 | F 0 0 9.9 | F 2 0 9.9 | F 2 0 9.8 | F 0 0 9.8 | "
+       "F 0 0 9.7 | F 2 0 9.7 | F 2 0 9.6 | F 0 0 9.6 | R 0 0 11",
+       "p.nc:5:1",
+       kCallHaas,
+       {.has_tools = true}},
+      {WordRule::local_subprogram, Reader::any, "M97 P7\nG0 Y1.\nM2\nN7 G0 X1.\nM99\n",
+       "R 1 0 0 | R 1 1 0", "p.nc:1:1", kCallHaas},
+      {WordRule::local_subprogram, Reader::haas, "G91 G0 X2. M97 P7 L2\nM2\nN7 Y1.\nM99\n",
+       "R 2 0 0 | R 2 1 0 | R 2 2 0", "p.nc:1:12", kCallHaas},
+      {WordRule::smoothing, Reader::fanuc,
+       "G5.1 Q1\nG05 P10000\nG8 P1\nG0 X1.\nG5.1 Q0\nG1 X2. F100.\nM2\n", "R 1 0 0 | F 2 0 0 f100",
+       "p.nc:1:1", kMemory},
+      {WordRule::smoothing, Reader::haas, "G187 P1 E0.01\nG0 X1.\nG187\nX2.\nM2\n",
+       "R 1 0 0 | R 2 0 0", "p.nc:1:1", "helmancnc.com, Haas address codes (E)"},
+      {WordRule::machine_function, Reader::haas, "S100 M3\nM88\nG0 X1.\nM89\nM19 P90\nX2.\nM2\n",
+       "S+100 | R 1 0 0 | S0 | R 2 0 0", "p.nc:2:1", kMemory},
+      {WordRule::machine_function, Reader::fanuc, "M10\nG0 X1.\nM11\nM29 S100\nM2\n", "R 1 0 0",
+       "p.nc:1:1", kMemory},
+      {WordRule::unit_codes, Reader::mach, "G70\nG0 X1.\nG91 X1.\nG71 X1.\nM2\n",
+       "R 25.4 0 0 | R 50.8 0 0 | R 51.8 0 0", "p.nc:1:1", kMemory},
+  };
+}
+
+}  // namespace servomill::controllers

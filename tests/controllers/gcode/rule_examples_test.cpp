@@ -1,0 +1,136 @@
+// Programs in the words of other controls against moves worked out by hand from their manuals: one
+// or more for each rule, and for each reading of each word that two controls read differently.
+#include "rule_examples.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "plant/vocabulary/move_curve.h"
+#include "rule_examples_cycles.h"
+#include "rule_examples_differences.h"
+#include "rule_examples_frames.h"
+#include "rule_examples_lines.h"
+#include "rule_examples_motion.h"
+
+namespace servomill::controllers {
+namespace {
+
+std::vector<RuleExample> rule_examples() {
+  std::vector<RuleExample> all;
+  for (const auto& family : {line_examples(), motion_examples(), cycle_examples(),
+                             offset_examples(), frame_examples()}) {
+    all.insert(all.end(), family.begin(), family.end());
+  }
+  return all;
+}
+
+std::string name_of(Reader reader) {
+  return std::string(kReaders[static_cast<std::size_t>(reader)]);
+}
+
+// The programs are short: many hold no decimal point at all.
+std::vector<Fault> of_rules(std::vector<Fault> warnings) {
+  std::erase_if(warnings, [](const Fault& one) {
+    return one.message.starts_with("no length of the program has a decimal point");
+  });
+  return warnings;
+}
+
+TEST(RuleExamples, MoveAsTheManualsSay) {
+  for (const RuleExample& one : rule_examples()) {
+    SCOPED_TRACE(name_of(one.reader) + ": " + one.program);
+    const Reading found = read(one.program, one.reader, one.given);
+    EXPECT_EQ(found.moves, one.moves) << one.source;
+  }
+}
+
+TEST(RuleExamples, AreWarnedOfOnceWhereTheRuleIsFirstNeeded) {
+  for (const RuleExample& one : rule_examples()) {
+    SCOPED_TRACE(name_of(one.reader) + ": " + one.program);
+    std::vector<std::string> found, wanted;
+    for (const Fault& warning : of_rules(read(one.program, one.reader, one.given).warnings)) {
+      if (warning.message.starts_with(sentence(one.rule))) {
+        found.push_back(to_string(warning.place));
+      }
+    }
+    if (!one.place.empty()) wanted.push_back(one.place);
+    EXPECT_EQ(found, wanted);
+  }
+}
+
+TEST(RuleExamples, AreNotReadInSilenceByLinuxCnc) {
+  for (const RuleExample& one : rule_examples()) {
+    if (one.place.empty()) continue;
+    SCOPED_TRACE(one.program);
+    const std::string strict = read(one.program, Reader::linuxcnc, one.given).moves;
+    EXPECT_NE(strict.find(": error: "), std::string::npos) << strict;
+  }
+}
+
+TEST(RuleExamples, CoverEveryRule) {
+  const std::vector<RuleExample> all = rule_examples();
+  for (const ReaderRuleEntry& rule : reader_rules()) {
+    EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const RuleExample& one) {
+      return one.rule == rule.rule && !one.moves.empty();
+    })) << rule.found;
+  }
+  for (const RuleExample& one : all) EXPECT_FALSE(one.source.empty()) << one.program;
+}
+
+TEST(DifferenceExamples, MoveAsTheManualsSay) {
+  for (const DifferenceExample& one : difference_examples()) {
+    SCOPED_TRACE(name_of(one.reader) + ": " + one.program);
+    EXPECT_EQ(read(one.program, one.reader, one.given).moves, one.moves) << one.source;
+    const auto of_reader = reading_of(one.difference, one.reader);
+    EXPECT_EQ(of_reader.value_or(one.reading), one.reading);
+  }
+}
+
+// Of each reading that a reader or an option gives.
+TEST(DifferenceExamples, CoverEveryReading) {
+  const std::vector<DifferenceExample> all = difference_examples();
+  for (const WordDifferenceEntry& entry : word_differences()) {
+    for (int k = 0; k < 2; ++k) {
+      const WordReading& reading = entry.readings[static_cast<std::size_t>(k)];
+      const bool can_be_chosen = reading.readers != 0 || !entry.option.empty();
+      const auto is_of_it = [&](const DifferenceExample& one) {
+        return one.difference == entry.difference && one.reading == k;
+      };
+      EXPECT_EQ(std::any_of(all.begin(), all.end(), is_of_it), can_be_chosen)
+          << entry.found << ": " << reading.text;
+    }
+  }
+}
+
+// Fanuc 11600#5 decides where the axis that is not named goes, from memory.
+TEST(RuleExamples, ALoneAxisBehindARotationIsRefusedWhereItMatters) {
+  EXPECT_EQ(read("G0 X5. Y0.\nG68 X0. Y0. R90.\nX10.\nM2\n", Reader::fanuc, {}).moves,
+            "p.nc:3:1: error: X alone behind G68: whether Y stays where it is or keeps its "
+            "coordinate from before G68 is a parameter of the control (Fanuc 11600#5); name both");
+  EXPECT_EQ(read("G68 X0. Y0. R90.\nG0 X10.\nY5.\nM2\n", Reader::fanuc, {}).moves,
+            "R 0 10 0 | R -5 10 0");
+}
+
+TEST(RuleExamples, WordsOfG51AndG68ThatTwoControlsHaveAreRefused) {
+  EXPECT_EQ(read("G51 X2. Y2. P3.\nM2\n", Reader::mach, {}).moves,
+            "p.nc:1:13: error: P beside G51: the factors of Mach are X, Y and Z");
+  EXPECT_EQ(read("G68 X1. Y2. R90.\nM2\n", Reader::mach, {}).moves,
+            "p.nc:1:5: error: X beside G68: the centre of Mach is A and B");
+  EXPECT_EQ(read("G68 A1. B2. R90.\nM2\n", Reader::haas, {}).moves,
+            "p.nc:1:5: error: A beside G68: the X of the centre for Mach, in G17 and G90, a rotary "
+            "axis for others");
+}
+
+// The radius changes in proportion to the angle: 5.04, 5.00, 4.96 mm (Fanuc B-63324EN/01, section
+// 4.4).
+TEST(RuleExamples, ASpiralIsHalfwayBetweenItsRadiiInTheMiddle) {
+  const auto moves =
+      interpret("G2 X10. Y0. I5.04 F100.\nM2\n", "p.nc", setup_of({}, Reader::fanuc));
+  const AxisWords middle = MoveCurve(AxisWords::Zero(), moves[0]).at(0.5);
+  EXPECT_NEAR(middle[0], 5.04 * mm, 1e-15);
+  EXPECT_NEAR(middle[1], 5.00 * mm, 1e-15);
+}
+
+}  // namespace
+}  // namespace servomill::controllers
