@@ -36,6 +36,20 @@ inline std::vector<RuleExample> motion_examples() {
       // radii of 5.1308 and 5.0292 mm
       {WordRule::arc_radii, Reader::haas, "G20 G2 X.4 I.202 F10.\nM2\n",
        "CW 10.16 0 0 o 5.1308 0 0 f254", "p.nc:1:5", kMemory},
+      // a feed without F is an alarm, so that it is a rapid
+      {WordRule::rapid_at_start, Reader::fanuc, "Z5.\nG91 X1.\nG1 Y1. F100.\nM2\n",
+       "R 0 0 5 | R 1 0 5 | F 1 1 5 f100", "p.nc:1:1", kMemory},
+      {WordRule::rapid_at_start, Reader::grbl, "G20X1\nM2\n", "R 25.4 0 0", "p.nc:1:1",
+       "grbl 1.1, gcode.c, gc_init()"},
+      // words of the centre are taken for the axes of the plane, others are thrown away
+      {WordRule::centre_off_plane, Reader::grbl, "G2X2I1J0K0F100\nG1X0\nM2\n",
+       "CW 2 0 0 o 1 0 0 f100 | F 0 0 0", "p.nc:1:9", "grbl 1.1, gcode.c, step 3"},
+      {WordRule::centre_off_plane, Reader::grbl, "G91G18G3X2J0I1K0F100\nG1Z1\nM2\n",
+       "CCW18 2 0 0 o 1 0 0 f100 | F 2 0 1", "p.nc:1:11", "grbl 1.1, gcode.c, step 3"},
+      {WordRule::circular_pocket, Reader::mach, "G91 G0 X1. Y2.\nG13 I5. F100.\nX1.\nM2\n",
+       "R 1 2 0 | F 6 2 0 f100 | CCW 6 2 0 o 1 2 0 | F 1 2 0 | R 2 2 0", "p.nc:2:1", kMemory},
+      {WordRule::circular_pocket, Reader::mach, "G20\nG12 I.1 F10.\nM2\n",
+       "F 2.54 0 0 f254 | CW 2.54 0 0 o 0 0 0 | F 0 0 0", "p.nc:2:1", kMemory},
       {WordRule::repeated_group, Reader::fanuc, "G90 G17 G18 G17 G0 X1.\nX2.\nM2\n",
        "R 1 0 0 | R 2 0 0", "p.nc:1:9", kMemory},
       {WordRule::repeated_group, Reader::fanuc, "G0 G1 X1. F100.\nX2.\nM2\n",
