@@ -34,7 +34,7 @@ const Kind& kind_of(const HeidenhainBlock& block) {
 
 }  // namespace
 
-// LEN15, R+10, CCA180 and whatever positioning words follow them.
+// Reads LEN15, R+10, CCA180; positioning words may follow.
 Run Translator::read_run(Words& words, std::string_view name) {
   Run run;
   run.place = place_;

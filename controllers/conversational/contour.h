@@ -41,21 +41,21 @@ std::optional<Element> tangential_arc(const Point& begin, const Point& along, co
 std::optional<Element> arc_of_radius(const Point& begin, const Point& end, double radius,
                                      double sign, bool is_large);
 
-/// The element shifted to its left (`distance` > 0) or right; nullopt where an arc has no such
-/// parallel because its radius would vanish.
+/// The element offset to its left (`distance` > 0) or right; nullopt where the radius of an arc
+/// would vanish.
 std::optional<Element> parallel(const Element& element, double distance);
 
-/// The point where two elements meet, each taken as endless, nearest to `near`.
+/// Intersection of two elements, each extended without limit, nearest to `near`.
 std::optional<Point> meeting_point(const Element& a, const Element& b, const Point& near);
 
-/// The foot of the perpendicular from a point to an element, taken as endless.
+/// Foot of the perpendicular from a point to an element, extended without limit.
 Point foot(const Element& element, const Point& point);
 
-/// How far along an element a point on it lies: 0 at its begin, 1 at its end. On arcs the same
-/// point lies at several places, a turn apart: the one nearest to `near` is meant.
+/// Fraction of an element at which a point on it is located: 0 at its start, 1 at its end. A point
+/// on an arc has several such values, one turn apart; the one nearest to `near` is returned.
 double position_on(const Element& element, const Point& point, double near);
 
-/// The element from or to another point on it.
+/// The element with another start or end point on it.
 Element cut_at_begin(Element element, const Point& begin);
 Element cut_at_end(Element element, const Point& end);
 

@@ -55,7 +55,7 @@ double unit_of(const HeidenhainBlock& begin) {
   return !begin.words.empty() && begin.words.back().text == "INCH" ? inch : mm;
 }
 
-// TOOL DEF 5 L+12.5 R+5, where the table has no such tool.
+// Reads TOOL DEF 5 L+12.5 R+5, unless the table has such a tool.
 void add_tool(const HeidenhainBlock& block, double unit, ToolTable& tools) {
   if (block.words.size() < 3) return;
   const auto number = integer_of(block.words[2].text);

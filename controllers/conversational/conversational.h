@@ -1,6 +1,5 @@
-/// Heidenhain conversational programs for whoever runs G-code: recognised, and handed out as lines
-/// in G-code that mean the same. Places of faults and moves are those of the conversational
-/// program.
+/// Heidenhain conversational programs: recognised and translated to equivalent lines of G-code.
+/// Faults and moves refer to lines of the conversational program.
 #pragma once
 
 #include <set>
@@ -13,11 +12,11 @@
 
 namespace servomill::controllers::conversational {
 
-/// A reading that is warned of where a program needs it.
+/// Interpretation on which controls differ; a program that depends on it gets a warning.
 struct Reading {
-  std::string_view found;     // in the program
-  std::string_view reading;   // how it is read
-  std::string_view controls;  // and how else
+  std::string_view found;     // as written in the program
+  std::string_view reading;   // interpretation chosen here
+  std::string_view controls;  // interpretation by other controls
   std::string_view source;    // manual, or "from memory"
 };
 std::span<const Reading> readings();
@@ -26,19 +25,19 @@ std::span<const Reading> readings();
 /// reader takes such programs: `any` and `heidenhain`. The latter takes every text for one.
 bool is_conversational(ProgramText& text, Reader reader);
 
-/// The lines in G-code.
-/// @param setup  receives the tools that the program defines; loses its Q parameters, which are no
-///               parameters of G-code
+/// Lines of G-code that are equivalent to the program.
+/// @param setup  receives the tools that the program defines; its Q parameters are removed, since
+///               G-code does not have them
 ProgramText as_gcode(ProgramText text, ProgramSetup& setup);
 
-/// The setup in which G-code runs that was written from a program: itself, unless that program is
-/// conversational.
+/// The setup for running G-code that was written from a program: `setup` itself, unless that
+/// program is conversational.
 ProgramSetup gcode_setup(ProgramText text, ProgramSetup setup);
 
 /// Returns true for "Q5", "QL2", "QR7".
 bool is_parameter_name(std::string_view name);
 
-/// The programs that it calls, by name without folder and extension.
+/// Programs that a conversational program calls, by name without folder and extension.
 std::set<std::string> called_programs(ProgramText text);
 
 }  // namespace servomill::controllers::conversational

@@ -1,4 +1,4 @@
-// CYCL DEF and CYCL CALL: which cycle is meant, and those that act when they are defined.
+// CYCL DEF and CYCL CALL: selects the cycle, and executes the cycles that act on definition.
 #include <fmt/format.h>
 
 #include <algorithm>

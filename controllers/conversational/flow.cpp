@@ -32,7 +32,7 @@ void Translator::go_to(const std::string& label) {
   program().go_to(*mark);
 }
 
-// LBL 0 ends a subprogram; where none was called it is passed.
+// LBL 0 ends a subprogram; it has no effect where none was called.
 void Translator::label(const HeidenhainBlock& block) {
   const std::span<const HeidenhainWord> all(block.words);
   const std::string name = label_of(block.words.size() > 1 ? all.subspan(1) : all);
@@ -59,7 +59,7 @@ void Translator::call(const HeidenhainBlock& block) {
   call_label(name, words.subspan(end));
 }
 
-// REP 5, REP5, REP 5/5: the rest behind the stroke is what the control has left to do.
+// REP 5, REP5, REP 5/5: the number after the slash counts the repeats the control has left to do.
 void Translator::call_label(const std::string& label, std::span<const HeidenhainWord> rest) {
   if (label == "0") fail("LBL 0 cannot be called");
   if (rest.empty()) {
@@ -107,7 +107,7 @@ void Translator::call_program(std::span<const HeidenhainWord> words) {
   file_ = called;
 }
 
-// A program that runs at its begin: one that was called before, unless it is on the way.
+// Opens a program at its start. A file read before is used again, unless it is still running.
 std::size_t Translator::file_of_program(ProgramText& text, const std::string& name,
                                         const Place& place) {
   for (std::size_t i = 1; i < files_.size(); ++i) {
@@ -141,7 +141,7 @@ void Translator::assign(const QName& name, double value) {
   }
 }
 
-// Q200=2 Q201=-20 behind CYCL DEF.
+// Q200=2 Q201=-20 after CYCL DEF.
 void Translator::assign_words(Words& words) {
   while (const HeidenhainWord* word = words.take_next()) {
     const std::size_t equals = word->text.find('=');

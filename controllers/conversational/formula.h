@@ -22,8 +22,8 @@ struct Jump {
   std::string label;  // number, or name in quotation marks
 };
 
-/// Evaluates the words behind the head of a formula or of a function. Angles are in degrees.
-/// @param words  of a formula: all of the block; of a function: those behind "FN 4:"
+/// Evaluates the words after the head of a formula or of a function. Angles are in degrees.
+/// @param words  of a formula: all of the block; of a function: those after "FN 4:"
 /// @throws InputError
 Assignment evaluate_formula(std::span<const HeidenhainWord> words, const QParameters& parameters);
 /// @param number  0 ... 8, 13

@@ -25,13 +25,14 @@ struct Frame {
 
   Point to_work(const Point& program) const;
   Point to_program(const Point& work) const;
-  /// One axis, where the plane is not coupled.
+  /// One axis, where its position does not depend on a second one.
   double to_work(std::size_t axis, double program) const;
   double to_program(std::size_t axis, double work) const;
   /// An increment of one axis.
   double increment(std::size_t axis, double program) const;
 
-  /// Why the order of programming decides what the cycles make together, or empty.
+  /// Reason why the result depends on the order in which the cycles were programmed; empty if it
+  /// does not.
   std::string ambiguity() const;
 };
 

@@ -1,5 +1,5 @@
-/// Lines in G-code that conversational blocks become: LinuxCNC's language, so that everything that
-/// reads G-code reads them. Numbers are mm, degrees, mm/min.
+/// Lines of G-code translated from conversational blocks. They are written in LinuxCNC's language,
+/// so that every reader of G-code accepts them. Numbers are in mm, degrees and mm/min.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ struct Feed {
 struct Motion {
   Values words;                    // end, in the coordinates in which G-code moves
   bool is_incremental = false;     // `words` are distances
-  bool is_machine = false;         // M91
+  bool is_machine = false;         // machine coordinates (M91)
   int normal = 2;                  // of the plane of contours: 0 YZ, 1 ZX, 2 XY
   std::optional<Element> element;  // in that plane, where both ends are known and differ
   Feed feed;
@@ -36,7 +36,7 @@ struct Motion {
   Place place;
 };
 
-/// A line and the block that it comes from.
+/// A line of G-code and the block from which it was translated.
 struct GcodeLine {
   std::string text;
   Place place;

@@ -9,7 +9,7 @@
 namespace servomill::controllers::conversational {
 namespace {
 
-constexpr double kShortest = 1e-9;  // mm; a shorter line is none
+constexpr double kShortest = 1e-9;  // mm; a shorter line is dropped
 
 bool is_rotary_only(const Positioning& p) { return !p.target[0] && !p.target[1] && !p.target[2]; }
 
@@ -90,7 +90,7 @@ double Translator::tool_radius(const Place& place) const {
   return tool->diameter / 2.0 / mm + delta_radius_;
 }
 
-// Keeps the position, and hands the motion on with the side of the tool.
+// Stores the end position and passes the motion on with the side of the tool.
 void Translator::add(Motion motion) {
   motion.side = frame_.is_mirrored_in_plane() ? -side_ : side_;
   const auto axes = plane_axes(motion.normal);
@@ -165,8 +165,8 @@ void Translator::retract(const Positioning& p) {
 
 // --------------------------------------------------------------------------------- polar, corners
 
-// PR and PA about the pole, in program coordinates; what is left out stays. Increments count from
-// the position: [530] p. 231.
+// PR and PA about the pole, in program coordinates; a coordinate left out keeps its value.
+// Increments count from the position: [530] p. 231.
 std::optional<Point> Translator::polar_point(const Positioning& p, int normal) const {
   if (!pole_) fail("no CC before the polar coordinates, or its frame has changed");
   const auto now = program_point(normal);

@@ -1,4 +1,4 @@
-// Words of positioning blocks, and where they lead.
+// Words of positioning blocks and the end points that follow from them.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 
 char letter_of(std::size_t axis) { return letter(kAllAxes[axis]); }
 
-// Place of the axis of an address such as X, IX; nullopt: none.
+// Index of the axis of an address such as X, IX; nullopt: none.
 std::optional<std::size_t> axis_of_address(std::string_view address, bool& is_increment) {
   is_increment = address.size() == 2 && address.front() == 'I';
   if (is_increment) address.remove_prefix(1);
@@ -156,7 +156,7 @@ std::optional<Point> Translator::program_point(int normal) const {
   return Point(frame_.to_program(axes[0], work->x()), frame_.to_program(axes[1], work->y()));
 }
 
-// As if both coordinates had been written.
+// Sets both coordinates of the plane as if they had been programmed.
 void Translator::set_program_point(Positioning& p, int normal, const Point& point) const {
   const auto axes = plane_axes(normal);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -191,7 +191,7 @@ void Translator::ends_in_plane(const Positioning& p, Values& end, bool& is_incre
   end[1] = to.y();
 }
 
-// Ends of the axes that the block names. An increment from an unknown position stays one.
+// End positions of the axes in the block. An increment from an unknown position stays an increment.
 Values Translator::ends(const Positioning& p, bool& is_incremental) {
   Values end;
   is_incremental = false;

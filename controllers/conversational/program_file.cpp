@@ -30,7 +30,7 @@ std::string program_name(std::string_view text) {
 
 ProgramFile::ProgramFile(std::string text, std::string file)
     : text_(std::move(text)), file_(std::move(file)) {
-  // what transfers leave behind the last line
+  // characters that file transfers append after the last line
   while (!text_.empty() && (text_.back() == '\0' || text_.back() == '\x1a')) text_.pop_back();
   index();
 }

@@ -1,4 +1,4 @@
-/// A conversational program in a file: its text, and where its labels are.
+/// A conversational program in a file: its text and the positions of its labels.
 #pragma once
 
 #include <map>
@@ -10,15 +10,15 @@
 
 namespace servomill::controllers::conversational {
 
-/// A place in the text: before a block.
+/// Position in the text at the start of a block.
 struct BlockMark {
   std::size_t offset = 0;
   int line = 0;  // number of the line before
   bool operator==(const BlockMark&) const = default;
 };
 
-/// Hands out the blocks of a program, and goes to any of them. The text is held: a jump may go
-/// anywhere.
+/// Reads the blocks of a program in order and jumps to any of them. The whole text is kept, since a
+/// jump may lead anywhere.
 class ProgramFile {
  public:
   ProgramFile(std::string text, std::string file);
@@ -26,19 +26,19 @@ class ProgramFile {
   /// The next block, nullopt at the end of the text.
   /// @throws InputError
   std::optional<HeidenhainBlock> next();
-  /// The first block with words, from the begin of the text.
+  /// The first block with words, from the start of the text.
   std::optional<HeidenhainBlock> begin();
   BlockMark mark() const { return at_; }
   void go_to(const BlockMark& mark) { at_ = mark; }
-  /// Behind the block LBL of that label; nullptr: there is none.
+  /// Position after the LBL block of that label; nullptr if there is none.
   const BlockMark* find_label(const std::string& label) const;
   const std::string& file() const { return file_; }
   int line() const { return at_.line; }
-  /// Labels that stand twice, and control characters: every fault that needs no run.
+  /// Faults found without running the program: labels that appear twice, control characters.
   const std::vector<Fault>& faults() const { return faults_; }
   /// Blocks TOOL DEF with numbers only, which define a tool in the program.
   const std::vector<HeidenhainBlock>& tool_definitions() const { return tool_definitions_; }
-  /// The programs that it calls, as they are named.
+  /// Programs that it calls, by the names written in the blocks.
   const std::vector<std::string>& called_programs() const { return called_; }
 
  private:
@@ -53,7 +53,7 @@ class ProgramFile {
   std::vector<std::string> called_;
 };
 
-/// The label of the words behind LBL: a number without leading zeros, or a name in quotation marks.
+/// The label in the words after LBL: a number without leading zeros, or a name in quotation marks.
 std::string label_of(std::span<const HeidenhainWord> words);
 
 /// The name of a program without folder and extension: "TNC:\PARTS\HOLE.H" is HOLE.

@@ -32,8 +32,8 @@ struct Operand {
   Place place;
 };
 
-/// Values of Q parameters. One that nothing has assigned has no value: the control keeps what the
-/// program before left there.
+/// Values of Q parameters. A parameter that has not been assigned has no value: on the control it
+/// still holds the one assigned by an earlier program.
 class QParameters {
  public:
   void set(const QName& name, double value) { values_[{name.kind, name.number}] = value; }

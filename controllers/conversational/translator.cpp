@@ -18,7 +18,7 @@ struct Refusal {
   std::string_view why;
 };
 
-// Blocks that are known, and not read.
+// Blocks of the language that are not supported.
 constexpr auto kRefusals = std::to_array<Refusal>({
     {"FL", "free contour programming (FK) is not read; let the control convert it to L and C"},
     {"FLT", "free contour programming (FK) is not read; let the control convert it to L and C"},
@@ -64,7 +64,7 @@ Translator::Translator(std::string text, std::string file, const ProgramSetup& s
   preset_ = setup_.work_system;
 }
 
-// Lines of blocks before a fault come before it.
+// Returns the lines of all blocks before a fault, then throws.
 std::optional<GcodeLine> Translator::next() {
   while (lines_.is_empty()) {
     if (error_) {
@@ -80,7 +80,7 @@ std::optional<GcodeLine> Translator::next() {
       has_ended_ = true;
       try {
         path_.flush();
-      } catch (const InputError&) {  // it follows from the first
+      } catch (const InputError&) {  // caused by the first fault
       }
     }
   }
@@ -95,7 +95,7 @@ void Translator::run_block() {
   const auto block = program().next();
   if (!block) return end_of_file({program().file(), program().line(), 0});
   place_ = block->place;
-  constexpr long kMostBlocks = 10;  // behind the first jump, for each that is allowed
+  constexpr long kMostBlocks = 10;  // after the first jump, for each jump allowed
   if (jumps_ > 0 && ++blocks_ / kMostBlocks > setup_.most_jumps)
     jumps_ = setup_.most_jumps, count_jump();
   if (block->words.empty() || (block->is_optional && setup_.block_delete)) return;

@@ -1,19 +1,19 @@
-/// A conversational program, block by block, as lines in G-code.
+/// Translates a conversational program, block by block, to lines of G-code.
 ///
-/// Units: what a program says is kept as it is said, in mm and degrees (a program in INCH is
-/// converted on reading). Positions are those in which the lines move: coordinates of the work
-/// system, of the tilted plane under PLANE.
+/// Units: values stay in mm and degrees, as programmed (a program in INCH is converted on reading).
+/// Positions are given in the coordinate system in which the lines move: the work coordinate
+/// system, or that of the tilted plane under PLANE.
 ///
 /// Rules that hold throughout, with their sources ([530] is the user's manual of the iTNC 530,
 /// 60642x-04; [640] that of the TNC 640, 34059x-05; [407] TNC 407/425/426, 280 580; M from memory):
-///  (1) L, C, ... act from the position programmed last; increments count from there. [407] p. 1-13
+///  (1) L, C, ... start at the position programmed last; increments count from it. [407] p. 1-13
 ///  (2) FMAX acts in its block only, F until the next F or TOOL CALL with F. M
 ///  (3) M3, M4, M8, M13, M14, M91, M126 ... M129, M136, M137 act at the start of a block, M0, M1,
-///  M2,
-///      M5, M6, M9, M30, M99 at its end. M
-///  (4) TOOL CALL takes the length of the tool at once: all positions are those of the tip. [407]
-///  4-13 (5) A parameter, position or mode that nobody has set is unknown, and refused where it
-///  matters.
+///      M2, M5, M6, M9, M30, M99 at its end. M
+///  (4) TOOL CALL activates the tool length at once: all positions are those of the tip.
+///      [407] p. 4-13
+///  (5) A parameter, position or mode that has not been set is unknown; a block that depends on it
+///      is refused.
 #pragma once
 
 #include <array>
@@ -55,7 +55,7 @@ struct Positioning {
   bool has(int function) const;
 };
 
-/// Drilling cycle in force, by number; its values are Q parameters, or those of the old form.
+/// Drilling cycle in force, by number; its values are Q parameters or, in the old form, `values`.
 struct Cycle {
   int number = 0;
   std::vector<double> values;  // of CYCL DEF 1.1, 1.2, ...
@@ -67,12 +67,12 @@ class Translator {
  public:
   Translator(std::string text, std::string file, const ProgramSetup& setup);
 
-  /// The next line; nullopt behind the end of the program.
-  /// @throws InputError at a block with an error; the lines of the blocks before it come first
+  /// The next line; nullopt after the end of the program.
+  /// @throws InputError at a block with an error, after the lines of all blocks before it
   std::optional<GcodeLine> next();
-  /// Readings since the last call that other controls might not share.
+  /// Blocks read since the last call that other controls may interpret differently.
   std::vector<Fault> take_warnings() { return std::exchange(warnings_, {}); }
-  /// The file of the line handed out last.
+  /// File of the line returned last.
   const std::string& file() const { return current_file_; }
 
  private:
@@ -212,7 +212,7 @@ class Translator {
     std::string name;
   };
   std::vector<Return> returns_;
-  std::map<std::pair<std::size_t, std::size_t>, long> repeats_;  // by file and place of CALL LBL
+  std::map<std::pair<std::size_t, std::size_t>, long> repeats_;  // by file and position of CALL LBL
   long jumps_ = 0, blocks_ = 0;                                  // blocks: since the first jump
   BlockMark block_mark_;                                         // of the block that runs
 
@@ -222,14 +222,14 @@ class Translator {
   QParameters parameters_;
   std::vector<Fault> warnings_;
   std::set<std::string> warned_;
-  std::optional<InputError> error_;  // waits until the lines before it are out
+  std::optional<InputError> error_;  // thrown once the lines before it have been returned
   Place place_;                      // of the block
   bool has_begun_ = false, has_ended_ = false, is_skipping_ = false;
   bool is_inch_ = false;
 
   Values work_;  // position programmed last
   Frame frame_;
-  bool is_beside_ = false;     // left beside the contour by a block with R0 and without X, Y
+  bool is_beside_ = false;     // still offset: R0 was in a block without X and Y
   std::optional<Point> pole_;  // in program coordinates
   int pole_normal_ = 2;
   std::optional<Element> last_element_;  // in program coordinates, for CT

@@ -10,7 +10,7 @@
 namespace servomill::controllers::conversational {
 namespace {
 
-// Addresses that a number may follow behind a blank.
+// Addresses that may be separated from their number by a blank.
 constexpr auto kNumbered = std::to_array<std::string_view>(
     {"X",   "Y",   "Z",   "A",   "B",   "C",   "U",    "V",     "W",  "IX", "IY", "IZ",  "IA",
      "IB",  "IC",  "PR",  "PA",  "IPR", "IPA", "F",    "S",     "M",  "R",  "L",  "DL",  "DR",

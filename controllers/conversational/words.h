@@ -1,4 +1,4 @@
-/// Words of a conversational block, taken out one by one: what is left is refused by name.
+/// Words of a conversational block, taken one by one; a word left over is refused by name.
 #pragma once
 
 #include <optional>
@@ -12,23 +12,24 @@
 
 namespace servomill::controllers::conversational {
 
-/// The words of a block behind its keyword. Blanks between an address and its number ("X +10", "F
-/// MAX") are taken out first.
+/// The words of a block after its keyword. Blanks between an address and its number ("X +10", "F
+/// MAX") are removed first.
 class Words {
  public:
   explicit Words(std::span<const HeidenhainWord> words);
 
-  /// Takes the word with exactly this text.
+  /// Takes the word that reads exactly `text`; nullptr if the block has none.
   const HeidenhainWord* take(std::string_view text);
-  /// Takes the word with this address and a number or Q parameter behind it.
-  /// @throws InputError if what follows is neither
+  /// Takes the word with this address and returns its number or Q parameter; nullopt if the block
+  /// has no such word.
+  /// @throws InputError if the address is followed by neither
   std::optional<Operand> take_number(std::string_view address);
-  /// Takes the next word, whatever it is; nullptr behind the last.
+  /// Takes the next word; nullptr after the last.
   const HeidenhainWord* take_next();
-  /// The next word, which stays.
+  /// The next word, which is not taken.
   const HeidenhainWord* peek() const;
   bool is_empty() const { return peek() == nullptr; }
-  /// @throws InputError that names the first word left
+  /// @throws InputError naming the first word that was not taken
   void refuse_rest(std::string_view block) const;
 
  private:
@@ -40,7 +41,7 @@ class Words {
 /// @throws InputError
 Operand operand_of(std::string_view text, const Place& place);
 
-/// An integer in a word: number of a label, a tool, a cycle.
+/// The integer that a word holds: the number of a label, a tool or a cycle.
 std::optional<long> integer_of(std::string_view text);
 
 }  // namespace servomill::controllers::conversational

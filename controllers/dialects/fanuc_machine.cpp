@@ -12,7 +12,7 @@ FanucMachine::FanucMachine(const std::string& file, const ControlSetup& setup,
     : file_(file), setup_(setup), settings_(settings), rules_(rules), position_(setup.start) {
   take_absent_functions();
   if (rules.modes_are_unknown_at_start) return;
-  // a wrong rule: what the manuals call the state at power-on
+  // a wrong rule: the state that the manuals give for power-on
   modes_ = {.motion = 0,
             .normal_axis = 2,
             .is_incremental = false,
@@ -128,8 +128,8 @@ void FanucMachine::run_coolant(int M) {
 
 void FanucMachine::forget_positions() { position_ = {}; }
 
-// A macro of the machine builder's moves axes and leaves modes behind. The unit, rotation, scaling,
-// mirror images and shifts stay: nothing was found that a macro changes them.
+// A macro of the machine builder moves axes and changes modes. The unit, rotation, scaling, mirror
+// images and shifts are taken to stay: no source was found for a macro that changes them.
 void FanucMachine::change_tool() {
   if (!selected_) fail(M_.column, "M6 while no T is known");
   tool_ = selected_;

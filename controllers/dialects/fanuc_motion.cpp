@@ -126,7 +126,7 @@ void FanucMachine::run_reference_return() {
   move_to(home);
 }
 
-// Machine coordinate that a word of the block leads to.
+// Machine coordinate commanded by a word of the block.
 double FanucMachine::target(int axis, const FanucWord& word) {
   const bool is_linear = axis < kLinearJoints;
   const double value = dimension(word, is_linear);
@@ -153,8 +153,9 @@ double FanucMachine::target(int axis, const FanucWord& word) {
   return (*offset)[axis] + value + (axis == 2 ? acting_length(word.column) : 0.0);
 }
 
-// Where an absolute position of a rotary axis leads that rolls over: to the same angle by the
-// shorter way (B-63534EN/02 p. 531). From an unknown position the count of turns begins there.
+// Position to which an absolute command moves a rotary axis with roll-over: the commanded angle,
+// approached in the direction of the shorter distance (B-63534EN/02 p. 531). If the present
+// position is unknown, turns are counted from the commanded one.
 double FanucMachine::within_a_turn(int axis, double machine, double offset, int column) const {
   constexpr double kTurn = 360.0 * deg;
   const auto& before = position_[static_cast<std::size_t>(axis)];

@@ -13,12 +13,12 @@ namespace servomill::controllers {
 /// One word: "X+10", "IPA-90", "FMAX", "Q339=+1". Words end at white space.
 struct HeidenhainWord {
   std::string text;
-  std::string address;  // the letters that it begins with
-  std::string rest;     // what follows them
+  std::string address;  // letters at its start
+  std::string rest;     // characters after the address
   Place place;
 };
 
-/// One block: a line with the lines that continue it.
+/// One block: a line and its continuation lines.
 struct HeidenhainBlock {
   Place place;  // of its first word, or of its line
   std::optional<long> number;
@@ -26,8 +26,8 @@ struct HeidenhainBlock {
   std::vector<HeidenhainWord> words;
 };
 
-/// Hands out the blocks of a text one by one. Empty lines are none; a block of a comment only has
-/// no words.
+/// Splits a text into blocks, one at a time. An empty line is not a block; a block that consists of
+/// a comment has no words.
 class HeidenhainBlocks {
  public:
   /// @param text        must outlive this
@@ -36,9 +36,9 @@ class HeidenhainBlocks {
   /// The next block, nullopt at the end.
   /// @throws InputError for a control character, for a continuation without a next line
   std::optional<HeidenhainBlock> next();
-  /// Line handed out last, from 1.
+  /// Number of the line read last, from 1.
   int line() const { return line_; }
-  /// What has not been handed out.
+  /// Text not yet read.
   std::string_view rest() const { return rest_; }
 
  private:

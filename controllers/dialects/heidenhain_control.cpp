@@ -181,7 +181,7 @@ Positioning Control::read_words(const HeidenhainBlock& block, std::size_t first)
   Positioning p;
   for (std::size_t at = first; at < block.words.size(); ++at) {
     const HeidenhainWord& word = block.words[at];
-    if (word.text == "R0") continue;  // looked at where it acts
+    if (word.text == "R0") continue;  // checked where it acts
     if (word.text == "RL" || word.text == "RR" || word.text == "R+" || word.text == "R-") {
       fail(word.place, fmt::format("'{}': cutter radius compensation is not covered by the "
                                    "verification",

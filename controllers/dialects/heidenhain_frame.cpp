@@ -23,9 +23,9 @@ void Control::forget_positions() {
   state_.position.fill(std::nullopt);
 }
 
-// Every transformation that may be left from the program before must have been reset or set. M91
-// is not allowed in a tilted plane ([472] p. 122) nor with M128 ([530] p. 290); that cycles 8, 10
-// and 11 leave it alone was not found in a manual.
+// Every transformation that an earlier program may have left active must have been reset or set.
+// M91 is not allowed in a tilted plane ([472] p. 122) nor with M128 ([530] p. 290); that cycles 8,
+// 10 and 11 leave it alone was not found in a manual.
 void Control::require_frame(const Place& place, bool is_machine_position) const {
   const State& s = state_;
   if (!s.is_tilted || !s.is_tcp_control) {

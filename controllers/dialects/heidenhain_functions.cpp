@@ -72,7 +72,7 @@ void Control::act_at_start(const Positioning& p) {
   }
 }
 
-// A stop or an end comes after what else ends with the block.
+// Stops and program ends act after all other functions at the end of the block.
 void Control::act_at_end(const Positioning& p) {
   constexpr std::array<int, 5> kLast = {0, 1, 2, 6, 30};
   for (const bool is_last : {false, true}) {

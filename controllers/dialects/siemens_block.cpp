@@ -75,7 +75,7 @@ constexpr CodeEntry kCodes[] = {
     {"STOPRE", SiemensGroup::without_effect},
 };
 
-// Words of the language that the reader does not follow, with what they do.
+// Words of the language that the reader does not support, with their function.
 constexpr std::pair<std::string_view, std::string_view> kNotRead[] = {
     {"G41", "compensates the cutter radius"},
     {"G42", "compensates the cutter radius"},

@@ -7,8 +7,8 @@
 
 namespace servomill::controllers {
 
-/// machine = R program + offset + length, R a rotation about Z. Each part is looked up where an
-/// axis needs it, so that an axis is not refused because of what concerns another.
+/// machine = R program + offset + length, R a rotation about Z. Each part is evaluated for the axis
+/// that needs it, so that an unknown offset of one axis does not refuse another.
 class SiemensFrame {
  public:
   SiemensFrame(const SiemensState& state, const SiemensBlock& block, const SiemensContext& context);

@@ -12,7 +12,7 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr double kLeastSweep = 1e-3 * deg;  // below, rounding decides between none and a turn
+constexpr double kLeastSweep = 1e-3 * deg;  // below, rounding decides between 0 and a full turn
 constexpr double kSamePoint = 1.0 * nm;     // a tenth of the last digit that programs have
 // Rise of CIP along the normal of a plane of two axes. Taken as linear, it is off by at most 0.11
 // of that, the largest of |a / pi - (1 - cos a) / 2|.
@@ -23,7 +23,7 @@ std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
 char name_of(int axis) { return letter(kAllAxes[at(axis)]); }
 bool is_linear_axis(int axis) { return axis < 3; }
 
-// Modes that every motion depends on.
+// Modes required by every motion.
 void check_modes(const SiemensState& state, const SiemensBlock& block,
                  const SiemensContext& context) {
   const auto fail = [&](int column, std::string message) {
@@ -125,7 +125,7 @@ class Motion {
     }
   }
 
-  // [P] p. 198: which of I1, J1 and K1 may be left out is told for the value 0 only.
+  // [P] p. 198 allows I1, J1 and K1 to be omitted only where their value is 0.
   void check_through_words() const {
     if (frame_.is_of_machine()) fail("SUPA with CIP is not read");
     if (frame_.rotation() != 0.0) fail("CIP under a rotated work offset is not read");
@@ -140,7 +140,7 @@ class Motion {
   }
 
   // [W1] p. 13: a new tool length acts with the first motion of its axis, which must be a line.
-  // @param still  axis that the block moves only if it names it
+  // @param still  axis that moves only if it is programmed in the block
   void refuse_new_length(int still) const {
     for (int a = 0; a < 3; ++a) {
       if (!has(a) && a == still) continue;

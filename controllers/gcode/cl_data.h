@@ -1,4 +1,4 @@
-/// Cutter location (CL) data: what a CAM system says of the tool before any machine is chosen.
+/// Cutter location (CL) data: tool positions from a CAM system, independent of any machine.
 ///
 /// Two forms are read.
 ///
@@ -32,7 +32,7 @@
 
 namespace servomill::controllers {
 
-/// One thing to do. Beside `rapid` and `feed` the kinds and their fields are those of `Move`.
+/// One record. Kinds other than `rapid` and `feed`, and their fields, are those of `Move`.
 struct ClRecord {
   MoveKind kind = MoveKind::feed;
   int line = 0;
@@ -44,7 +44,7 @@ struct ClRecord {
   std::string text;    // message
 };
 
-/// Something odd that was read all the same.
+/// A questionable record that was read nevertheless.
 struct Warning {
   Place place;
   std::string message;
@@ -63,8 +63,8 @@ struct ClData {
   const ClRecord* first_without_tool() const;
 };
 
-/// @param file        name for messages; its ending tells the form
-/// @param of_refused  where a fault ends it: receives the warnings
+/// @param file        name for messages; its extension selects the form
+/// @param of_refused  receives the warnings if the file is refused
 /// @throws InputError with every fault: among them a tool axis without a direction, a file without
 /// a location
 ClData read_cl_data(std::string_view text, const std::string& file,

@@ -1,4 +1,4 @@
-/// Texts with the places of their characters, and the base of the readers of CL data.
+/// Text with the position of each character in its file, and the base class of readers of CL data.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ struct Spot {
   int line = 0, column = 0;
 };
 
-/// A text and where each of its characters stood.
+/// A text and the position of each of its characters in the file.
 struct PlacedText {
   std::string text;
   std::vector<Spot> spots;  // one for each character
@@ -32,28 +32,28 @@ struct PlacedText {
     text.clear();
     spots.clear();
   }
-  /// The characters from `from` to before `to` without blanks at the ends.
+  /// The characters in [from, to), without blanks at the ends.
   PlacedText trimmed(std::size_t from, std::size_t to) const;
   Spot spot() const { return spots.empty() ? Spot{} : spots.front(); }
 };
 
-/// The parts, trimmed, between the characters `at`, from `from` on.
+/// The parts between the separators `at`, trimmed, starting at `from`.
 std::vector<PlacedText> split(const PlacedText& whole, std::size_t from, char at);
 
 std::string in_capitals(std::string text);
 
-/// The number that a text is; none if it is not one or not finite.
+/// The text as a number; nullopt if it is not a finite number.
 std::optional<double> signed_number_in(std::string_view text);
 
-/// What readers of both forms of CL data share: the result, and everything that is said about the
-/// file.
+/// Base class of the readers of both forms of CL data: collects the result, the warnings and the
+/// faults of one file.
 class ClReader {
  public:
   ClReader(const std::string& file, std::vector<Warning>* of_refused)
       : file_(file), of_refused_(of_refused) {}
 
  protected:
-  static constexpr std::size_t kMostFaults = 100;  // a file of another kind has one a line
+  static constexpr std::size_t kMostFaults = 100;  // a file of another format has one per line
 
   Place place(Spot spot) const { return {file_, spot.line, spot.column}; }
   [[noreturn]] void fail(Spot spot, std::string message) const {
@@ -64,10 +64,10 @@ class ClReader {
   }
 
   double number(const PlacedText& word) const;
-  /// The unit vector along k; warns where its length is not 1.
+  /// The unit vector along k; warns if the length of k is not 1.
   Eigen::Vector3d unit_axis(const Eigen::Vector3d& k, Spot spot);
 
-  /// Runs what may refuse a statement; the reading goes on behind it.
+  /// Reads one statement; if it is refused, its faults are stored and reading continues after it.
   template <class Read>
   void guarded(Read read) {
     try {
@@ -77,7 +77,7 @@ class ClReader {
     }
   }
 
-  /// What was read. @throws InputError with all faults
+  /// The data read from the file. @throws InputError with all faults
   ClData finish();
 
   const std::string& file_;
