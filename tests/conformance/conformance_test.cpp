@@ -11,7 +11,7 @@
 #include "controllers/gcode/canon_json.h"
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::conformance_test {
 namespace {
 
 constexpr double kLengthTol =
@@ -177,4 +177,4 @@ INSTANTIATE_TEST_SUITE_P(Programs, Conformance, testing::ValuesIn(programs()),
                          [](const auto& tested) { return tested.param.stem().string(); });
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::conformance_test

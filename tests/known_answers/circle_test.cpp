@@ -9,7 +9,7 @@
 
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::circle_test {
 namespace {
 
 constexpr double kRadius = 50000.0;  // um
@@ -159,4 +159,4 @@ TEST(Line, WithUnequalKvRunsBesideItself) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::circle_test

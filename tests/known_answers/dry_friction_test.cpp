@@ -10,7 +10,7 @@
 #include "sim/metrology/circular_test.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::dry_friction_test {
 namespace {
 
 constexpr double kRadius = 50.0;  // mm
@@ -298,4 +298,4 @@ TEST(Standing, TheDeadBandOfAProportionalLoopIsBreakawayOverItsStiffness) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::dry_friction_test

@@ -8,7 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::encoders_test {
 namespace {
 
 constexpr double kKv = 500.0 / 6.0;  // 1/s, of the machine file
@@ -241,4 +241,4 @@ TEST(EncoderInput, StopsTheMachineWhenTheSignalsAreTooFast) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::encoders_test

@@ -16,7 +16,7 @@
 #include "strategies/pose_compensation.h"
 #include "tests/sim/five_axis_program.h"
 
-namespace servomill::sim {
+namespace servomill::sim::five_axis_lag_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -161,4 +161,4 @@ TEST(FiveAxisFeedback, LagsAsTheClosedFormSaysAndIsLed) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::five_axis_lag_test

@@ -7,7 +7,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::integrator_test {
 namespace {
 
 // nm; asked for is 1. A sub-step of the propagator may err by 2e-3; measured are 5e-5 in all.
@@ -89,4 +89,4 @@ TEST(ExactAndCvode, AgreeOnAVirtualEncoder) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::integrator_test

@@ -8,7 +8,7 @@
 
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::lag_test {
 namespace {
 
 constexpr double kSlope = 10.0;              // um/mm of the imposed straightness EYX
@@ -151,4 +151,4 @@ TEST(SignalDelay, MakesTheTrueAxisLead) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::lag_test

@@ -12,7 +12,7 @@
 #include "plant/kinematics/nonlinear_error.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill {
+namespace servomill::li2024_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -392,4 +392,4 @@ TEST(Li2024, PointsAreInsertedOnlyWhereTheModelExceedsTheTolerance) {
 }
 
 }  // namespace
-}  // namespace servomill
+}  // namespace servomill::li2024_test

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace servomill::reference_problem {
+namespace servomill::reference_problem::reference_problem_test {
 namespace {
 
 // nm. The reference itself is good to 2e-5; servomill turns by exact rotations where the reference
@@ -72,4 +72,4 @@ TEST(ReferenceProblem, GivesTheSameBitsAloneAndAmongOthers) {
 }
 
 }  // namespace
-}  // namespace servomill::reference_problem
+}  // namespace servomill::reference_problem::reference_problem_test

@@ -7,7 +7,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::perfect_belief_test {
 namespace {
 
 constexpr double kResidualTol = 1e-3;  // um: 1 nm
@@ -166,4 +166,4 @@ TEST(PerfectBelief, TableLeavesItsInterpolationError) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::perfect_belief_test

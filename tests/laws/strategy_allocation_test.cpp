@@ -4,7 +4,7 @@
 #include "tests/counting_new.h"
 #include "tests/strategies/beliefs.h"
 
-namespace servomill::strategies {
+namespace servomill::strategies::strategy_allocation_test {
 namespace {
 
 TEST(EveryStrategy, DoesNotAllocateInARun) {
@@ -47,4 +47,4 @@ TEST(EveryStrategy, DoesNotAllocateInARun) {
 }
 
 }  // namespace
-}  // namespace servomill::strategies
+}  // namespace servomill::strategies::strategy_allocation_test

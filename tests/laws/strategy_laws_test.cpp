@@ -4,7 +4,7 @@
 #include "plant/vocabulary/move_curve.h"
 #include "tests/strategies/beliefs.h"
 
-namespace servomill::strategies {
+namespace servomill::strategies::strategy_laws_test {
 namespace {
 
 // A displacement of 10 um is a difference of coordinates of 0.3 m, twice rounded.
@@ -325,4 +325,4 @@ TEST(EveryStrategyOfAllAxes, LeavesNothingOfTipAndToolAxis) {
 }
 
 }  // namespace
-}  // namespace servomill::strategies
+}  // namespace servomill::strategies::strategy_laws_test

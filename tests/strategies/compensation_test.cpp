@@ -5,7 +5,7 @@
 
 #include "tests/strategies/beliefs.h"
 
-namespace servomill::strategies {
+namespace servomill::strategies::compensation_test {
 namespace {
 
 constexpr double kAmplitude = 100.0 * um, kPeriod = 60.0 * mm;
@@ -87,4 +87,4 @@ TEST(FeedbackDisplacement, PutsTheAxesWhereTheSetPointDoes) {
 }
 
 }  // namespace
-}  // namespace servomill::strategies
+}  // namespace servomill::strategies::compensation_test

@@ -9,7 +9,7 @@
 #include "strategies/approach_kernel.h"
 #include "tests/strategies/beliefs.h"
 
-namespace servomill::strategies {
+namespace servomill::strategies::feedback_test {
 namespace {
 
 constexpr double kSlope = 0.01;  // m/m: EYX = kSlope x
@@ -364,4 +364,4 @@ TEST(VirtualEncoder, LimitsRotaryAxesOnTheirOwn) {
 }
 
 }  // namespace
-}  // namespace servomill::strategies
+}  // namespace servomill::strategies::feedback_test

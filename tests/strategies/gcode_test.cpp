@@ -5,7 +5,7 @@
 
 #include "tests/strategies/beliefs.h"
 
-namespace servomill::strategies {
+namespace servomill::strategies::gcode_test {
 namespace {
 
 using plant::operator""_err;
@@ -73,4 +73,4 @@ TEST(Gcode, BringsAWaitingAxisToItsPlaceWithTheProgrammedFeed) {
 }
 
 }  // namespace
-}  // namespace servomill::strategies
+}  // namespace servomill::strategies::gcode_test

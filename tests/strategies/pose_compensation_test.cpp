@@ -9,7 +9,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/plant/geometry/random_errors.h"
 
-namespace servomill::strategies {
+namespace servomill::strategies::pose_compensation_test {
 namespace {
 
 constexpr double kSigma0 = 0.02;      // about 1.1 deg
@@ -270,4 +270,4 @@ TEST(Uncorrectable, IsNotAskedOfWhatGeneratesErrors) {
 }
 
 }  // namespace
-}  // namespace servomill::strategies
+}  // namespace servomill::strategies::pose_compensation_test

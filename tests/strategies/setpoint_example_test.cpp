@@ -5,7 +5,7 @@
 
 #include "tests/strategies/beliefs.h"
 
-namespace servomill::strategies {
+namespace servomill::strategies::setpoint_example_test {
 namespace {
 
 Acting with_limit(double max, Sign sign, const Belief& identified) {
@@ -68,4 +68,4 @@ TEST(SetpointExample, ChangesNothingOnAPerfectMachine) {
 }
 
 }  // namespace
-}  // namespace servomill::strategies
+}  // namespace servomill::strategies::setpoint_example_test

@@ -4,7 +4,7 @@
 #include "strategies/straightening.h"
 #include "tests/strategies/beliefs.h"
 
-namespace servomill::strategies {
+namespace servomill::strategies::straightening_test {
 namespace {
 
 constexpr double kRounding = 1e-12;  // m, rad; some products at 1 m
@@ -208,4 +208,4 @@ TEST(Straightening, RefusesLinesWithoutAStraightWay) {
 }
 
 }  // namespace
-}  // namespace servomill::strategies
+}  // namespace servomill::strategies::straightening_test

@@ -10,7 +10,7 @@
 #include "strategies/compensation.h"
 #include "tests/strategies/beliefs.h"
 
-namespace servomill::strategies {
+namespace servomill::strategies::table_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -225,4 +225,4 @@ TEST(Table, KnowsWhereItEnds) {
 }
 
 }  // namespace
-}  // namespace servomill::strategies
+}  // namespace servomill::strategies::table_test

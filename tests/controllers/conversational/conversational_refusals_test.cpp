@@ -4,7 +4,7 @@
 #include "controllers/gcode/interpreter.h"
 #include "moves_text.h"
 
-namespace servomill::controllers::conversational {
+namespace servomill::controllers::conversational::conversational_refusals_test {
 namespace {
 
 struct Refusal {
@@ -188,4 +188,4 @@ TEST(ConversationalRefusals, WarnsOfWhatItReadsOneWay) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers::conversational
+}  // namespace servomill::controllers::conversational::conversational_refusals_test

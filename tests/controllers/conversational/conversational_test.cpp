@@ -5,7 +5,7 @@
 #include "moves_text.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers::conversational {
+namespace servomill::controllers::conversational::conversational_test {
 namespace {
 
 void expect_all(const std::vector<Example>& examples) {
@@ -110,4 +110,4 @@ TEST(Conversational, MovesBeforeAFaultComeFirst) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers::conversational
+}  // namespace servomill::controllers::conversational::conversational_test

@@ -11,7 +11,7 @@
 #include "heidenhain_examples.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::two_readers_test {
 namespace {
 
 constexpr double kPositionTol = 1e-11;  // m, rad: printed with a picometre
@@ -228,4 +228,4 @@ TEST(TwoReaders, AgreeOnRandomProgramsInTheWritersForm) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::two_readers_test

@@ -9,7 +9,7 @@
 #include "tests/controllers/dialects/action_text.h"
 #include "tests/controllers/dialects/fanuc_examples.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::fanuc_reader_test {
 namespace {
 
 ControlSetup setup_of_examples() {
@@ -148,4 +148,4 @@ TEST(FanucReader, FunctionsThatTheControlDoesNotHave) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::fanuc_reader_test

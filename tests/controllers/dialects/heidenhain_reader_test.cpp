@@ -8,7 +8,7 @@
 #include "heidenhain_examples.h"
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::heidenhain_reader_test {
 namespace {
 
 std::string actions_of(const HeidenhainExample& example, bool has_frame,
@@ -138,4 +138,4 @@ TEST(HeidenhainReader, SettingsMatterWhereTheyAct) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::heidenhain_reader_test

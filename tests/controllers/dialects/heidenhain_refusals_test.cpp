@@ -8,7 +8,7 @@
 #include "heidenhain_examples.h"
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::heidenhain_refusals_test {
 namespace {
 
 std::string refusal(const std::string& program, const HeidenhainSettings& settings = {},
@@ -300,4 +300,4 @@ TEST(HeidenhainRefusals, DamagedProgramsEndInAMessage) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::heidenhain_refusals_test

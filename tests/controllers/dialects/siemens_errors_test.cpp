@@ -6,7 +6,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "tests/controllers/dialects/siemens_examples.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::siemens_errors_test {
 namespace {
 
 std::string fault_of(const std::string& program, const SiemensSettings& settings = {}) {
@@ -212,4 +212,4 @@ TEST(SiemensErrors, ArcsThatAreNotDetermined) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::siemens_errors_test

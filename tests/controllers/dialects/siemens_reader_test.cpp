@@ -8,7 +8,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "tests/controllers/dialects/siemens_examples.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::siemens_reader_test {
 namespace {
 
 TEST(SiemensReader, ReadsEveryExampleForEverySettingAsWorkedOut) {
@@ -142,4 +142,4 @@ TEST(SiemensReader, MotionsCarryToolAndLength) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::siemens_reader_test

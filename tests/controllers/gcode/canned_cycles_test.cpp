@@ -6,7 +6,7 @@
 
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::canned_cycles_test {
 namespace {
 
 using Kind = CycleStep::Kind;
@@ -171,4 +171,4 @@ TEST(CannedCycle, WithAFaultChangesNothing) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::canned_cycles_test

@@ -10,7 +10,7 @@
 #include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::cl_data_test {
 namespace {
 
 constexpr double kPrinted = 1e-15;       // m; 17 digits are printed and read, then scaled by mm
@@ -317,4 +317,4 @@ TEST(ClData, WarningsOfWhatIsRefusedAreKept) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::cl_data_test

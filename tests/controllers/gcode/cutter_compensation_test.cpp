@@ -13,7 +13,7 @@
 #include "plant/vocabulary/arc_sweep.h"
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::cutter_compensation_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -532,4 +532,4 @@ TEST(CompensatedProgram, Messages) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::cutter_compensation_test

@@ -1,7 +1,7 @@
 // Every message of the interpreter, as the user sees it.
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::error_gallery_test {
 namespace {
 
 struct Wrong {
@@ -210,4 +210,4 @@ TEST(CheckProgram, GivesEverySyntaxFaultAndTheFirstOther) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::error_gallery_test

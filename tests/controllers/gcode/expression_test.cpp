@@ -3,7 +3,7 @@
 
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::expression_test {
 namespace {
 
 std::string value_of(const std::string& expression) {
@@ -108,4 +108,4 @@ TEST(Message, OnlyDebugAndPrintSubstitute) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::expression_test

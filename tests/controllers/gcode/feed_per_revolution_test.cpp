@@ -5,7 +5,7 @@
 #include "controllers/gcode/printer.h"
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::feed_per_revolution_test {
 namespace {
 
 // The last before M2 stops the spindle.
@@ -67,4 +67,4 @@ TEST(FeedPerRevolution, IsPrintedAndReadAgain) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::feed_per_revolution_test

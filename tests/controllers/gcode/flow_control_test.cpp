@@ -5,7 +5,7 @@
 
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::flow_control_test {
 namespace {
 
 // What a program says with (PRINT,...), blank-separated.
@@ -252,4 +252,4 @@ TEST(Loop, WithoutEndIsStopped) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::flow_control_test

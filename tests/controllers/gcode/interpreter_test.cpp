@@ -8,7 +8,7 @@
 #include "controllers/gcode/modal_state.h"
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::interpreter_test {
 namespace {
 
 using std::numbers::pi;
@@ -275,4 +275,4 @@ TEST(Fuzz, AnyBytesGiveInputErrorOrSuccess) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::interpreter_test

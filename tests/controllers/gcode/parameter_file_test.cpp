@@ -2,7 +2,7 @@
 
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::parameter_file_test {
 namespace {
 
 using Stored = std::map<int, double>;
@@ -70,4 +70,4 @@ TEST(ParameterFile, GivesWayToWhatIsSetForTheRun) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::parameter_file_test

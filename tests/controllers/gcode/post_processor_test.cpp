@@ -10,7 +10,7 @@
 #include "controllers/path/trajectory.h"
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::post_processor_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -492,4 +492,4 @@ TEST(Post, LeavesASingularDirectionOnTheBranchThatArrives) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::post_processor_test

@@ -7,7 +7,7 @@
 
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::printer_test {
 namespace {
 
 // Half a step of the seventh decimal, and the rounding of an arc centre seen from a rounded start.
@@ -202,4 +202,4 @@ TEST(Printer, RoundTripOfRandomPrograms) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::printer_test

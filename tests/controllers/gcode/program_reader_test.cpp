@@ -14,7 +14,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::program_reader_test {
 namespace {
 
 struct Read {
@@ -379,4 +379,4 @@ TEST(TolerantLine, KeepsEveryColumn) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::program_reader_test

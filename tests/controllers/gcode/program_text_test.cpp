@@ -9,7 +9,7 @@
 
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::program_text_test {
 namespace {
 
 class TempFile {
@@ -114,4 +114,4 @@ TEST(ProgramText, SaysThatAFileCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::program_text_test

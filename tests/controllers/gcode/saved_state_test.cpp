@@ -2,7 +2,7 @@
 // they are LinuxCNC's is tested by conformance programs (state_*.ngc).
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::saved_state_test {
 namespace {
 
 TEST(SavedState, RestoresTheModesOfMotion) {
@@ -95,4 +95,4 @@ TEST(RefusedCodes, HaveAReasonEach) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::saved_state_test

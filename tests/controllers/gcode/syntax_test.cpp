@@ -12,7 +12,7 @@
 #include "controllers/gcode/program_text.h"
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::syntax_test {
 namespace {
 
 constexpr int kRandomLines = 100'000;
@@ -105,4 +105,4 @@ TEST(Syntax, ProgramsOfTheRepositoryPrintAsTheyWereRead) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::syntax_test

@@ -5,7 +5,7 @@
 #include "tests/controllers/gcode/program.h"
 #include "tests/controllers/path/tip_programs.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::tip_control_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -302,4 +302,4 @@ TEST(TipControlErrors, ABlockWithAnErrorChangesNothing) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::tip_control_test

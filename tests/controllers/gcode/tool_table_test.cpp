@@ -2,7 +2,7 @@
 
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::tool_table_test {
 namespace {
 
 std::string faults_of(const std::string& text) {
@@ -80,4 +80,4 @@ TEST(ToolTable, FaultsOfG10NameTheWord) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::tool_table_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace servomill::controllers {
+namespace servomill::controllers::barrier_kernel_test {
 namespace {
 
 constexpr std::size_t kBlocks = 3, kCoefficients = 12;
@@ -198,4 +198,4 @@ TEST(BarrierKernel, LosesAllWhereASlackVanishes) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::barrier_kernel_test

@@ -9,7 +9,7 @@
 
 #include "controllers/path/limit_form.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::barrier_store_test {
 namespace {
 
 // Pieces and knots that divide a path in different places, some of which are the same.
@@ -178,4 +178,4 @@ TEST(BarrierStore, GivesTheSameBitsKeptAndFormedAnew) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::barrier_store_test

@@ -10,7 +10,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::fair_spline_test {
 namespace {
 
 constexpr double kTolerance = 10 * um;
@@ -139,4 +139,4 @@ TEST(FairSpline, RefusesWhatHasNoSolution) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::fair_spline_test

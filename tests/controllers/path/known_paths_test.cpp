@@ -3,26 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <numbers>
 
 #include "controllers/path/trajectory.h"
 #include "programs.h"
+#include "tests/counting_new.h"
 
-namespace {
-std::size_t allocations = 0;
-}  // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-
-namespace servomill::controllers::test {
+namespace servomill::controllers::test::known_paths_test {
 namespace {
 
 constexpr double kRounding = 1e-9;  // of the quantity, rounding of sums along the path
@@ -350,4 +337,4 @@ TEST(BlockTime, PassesInEachBlock) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers::test
+}  // namespace servomill::controllers::test::known_paths_test

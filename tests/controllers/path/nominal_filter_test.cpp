@@ -7,7 +7,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::nominal_filter_test {
 namespace {
 
 constexpr double kRounding = 1e-15;  // m, rounding of sums of 0.1 m
@@ -77,4 +77,4 @@ TEST(NominalFilter, ShrinksACircleByTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::nominal_filter_test

@@ -8,7 +8,7 @@
 #include "programs.h"
 #include "tests/counting_new.h"
 
-namespace servomill::controllers::test {
+namespace servomill::controllers::test::plan_memory_test {
 namespace {
 
 // Rows over a curved surface, in chords of that length (m).
@@ -81,4 +81,4 @@ TEST(PlanMemory, OfShortLinesIsBounded) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers::test
+}  // namespace servomill::controllers::test::plan_memory_test

@@ -9,7 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::quicken_test {
 namespace {
 
 constexpr double kRounding = 1e-7;  // of a limit
@@ -113,4 +113,4 @@ TEST(Quicken, LeavesALawThatCannotBeImproved) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::quicken_test

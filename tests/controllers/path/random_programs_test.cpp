@@ -10,7 +10,7 @@
 #include "plant/vocabulary/arc_sweep.h"
 #include "programs.h"
 
-namespace servomill::controllers::test {
+namespace servomill::controllers::test::random_programs_test {
 namespace {
 
 constexpr double kRounding = 1e-7;    // of a limit, rounding of sums over windows
@@ -152,4 +152,4 @@ TEST(RandomPrograms, KeepEveryLimitAndReachTheEnd) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers::test
+}  // namespace servomill::controllers::test::random_programs_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace servomill::controllers {
+namespace servomill::controllers::time_law_test {
 namespace {
 
 constexpr double kRounding = 1e-8;  // of a limit
@@ -101,4 +101,4 @@ TEST(TimeLaw, IsFasterOnAShorterSlowStretch) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::time_law_test

@@ -9,7 +9,7 @@
 
 #include "tip_programs.h"
 
-namespace servomill::controllers::test {
+namespace servomill::controllers::test::tip_motion_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -564,4 +564,4 @@ TEST(TipMotion, WhatLinearAxesCannotReachIsSaidWithTheLine) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers::test
+}  // namespace servomill::controllers::test::tip_motion_test

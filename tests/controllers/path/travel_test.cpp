@@ -6,7 +6,7 @@
 
 #include "programs.h"
 
-namespace servomill::controllers::test {
+namespace servomill::controllers::test::travel_test {
 namespace {
 
 std::vector<std::string> faults(const Program& program) {
@@ -58,4 +58,4 @@ TEST(Travel, SeesTheExtremePointOfAnArc) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers::test
+}  // namespace servomill::controllers::test::travel_test

@@ -15,7 +15,7 @@
 #include "controllers/servo/supervision.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::axis_test {
 namespace {
 
 constexpr double kTp = 0.2e-3;  // s, of the position and the velocity loop
@@ -148,4 +148,4 @@ TEST(Axis, EverythingTogetherFollowsACircleWithinAMicrometre) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::axis_test

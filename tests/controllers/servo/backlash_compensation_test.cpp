@@ -10,7 +10,7 @@
 #include "controllers/servo/cascade.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::backlash_compensation_test {
 namespace {
 
 constexpr double kTp = 0.2e-3;  // s
@@ -153,4 +153,4 @@ TEST(BacklashCompensation, WithTheMotorEncoderRemovesTheGapFromThePosition) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::backlash_compensation_test

@@ -11,7 +11,7 @@
 #include "controllers/servo/cascade.h"
 #include "controllers/servo/current_loop.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::cascade_limits_test {
 namespace {
 
 CascadeParams axis() {
@@ -300,4 +300,4 @@ TEST(CurrentFilters, ANotchQuietensAResonance) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::cascade_limits_test

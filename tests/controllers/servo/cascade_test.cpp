@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace servomill::controllers {
+namespace servomill::controllers::cascade_test {
 namespace {
 
 CascadeParams unit_axis() {
@@ -80,4 +80,4 @@ TEST(CurrentCommand, ActsOnePeriodAfterTheVelocityLoop) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::cascade_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace servomill::controllers {
+namespace servomill::controllers::current_loop_test {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -105,4 +105,4 @@ TEST(CurrentLoop, ComesOutOfTheLimitWithoutOvershoot) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::current_loop_test

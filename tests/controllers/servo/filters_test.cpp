@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace servomill::controllers {
+namespace servomill::controllers::filters_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -192,4 +192,4 @@ TEST(FilterChain, StaysWhereItWasSettled) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::filters_test

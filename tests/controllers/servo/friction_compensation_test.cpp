@@ -8,7 +8,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::friction_compensation_test {
 namespace {
 
 constexpr double kRounding = 1e-13;  // N m, of some thousand factors at 1 N m
@@ -224,4 +224,4 @@ TEST(FrictionCompensation, TooMuchOfItIsWorseThanTheRightAmount) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::friction_compensation_test

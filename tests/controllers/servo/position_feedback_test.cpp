@@ -9,7 +9,7 @@
 #include "controllers/servo/cascade.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::position_feedback_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -114,4 +114,4 @@ TEST(ScaleFeedback, IsTheScaleBitForBit) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::position_feedback_test

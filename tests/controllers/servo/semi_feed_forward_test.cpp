@@ -3,7 +3,7 @@
 
 #include "controllers/servo/cascade.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::semi_feed_forward_test {
 namespace {
 
 constexpr double kTp = 0.2e-3;       // s
@@ -40,4 +40,4 @@ TEST(SemiFeedForward, TradesGainForFeedForward) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::semi_feed_forward_test

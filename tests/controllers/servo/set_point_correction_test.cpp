@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace servomill::controllers {
+namespace servomill::controllers::set_point_correction_test {
 namespace {
 
 constexpr double kTp = 0.2e-3;
@@ -57,4 +57,4 @@ TEST(SetPointCorrection, StaysWhereItWasSettled) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::set_point_correction_test

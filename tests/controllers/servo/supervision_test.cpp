@@ -7,7 +7,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::supervision_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -98,4 +98,4 @@ TEST(Supervision, NamesTheFollowingErrorFirst) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::supervision_test

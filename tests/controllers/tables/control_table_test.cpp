@@ -14,7 +14,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::control_table_test {
 namespace {
 
 constexpr std::array kJointAxes = {Axis::X, Axis::Y, Axis::Z, Axis::C};
@@ -442,4 +442,4 @@ TEST(ControlTable, HeidenhainRefusesRowsAndColumnsThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::control_table_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace servomill::plant {
+namespace servomill::plant::cutter_test {
 namespace {
 
 using testing::ElementsAre;
@@ -45,4 +45,4 @@ TEST(Cutter, tells_every_value_that_no_cutter_has) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::cutter_test

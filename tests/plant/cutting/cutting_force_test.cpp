@@ -8,7 +8,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::plant {
+namespace servomill::plant::cutting_force_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -147,4 +147,4 @@ TEST(Material, typical_coefficients_lie_within_their_plausible_ranges) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::cutting_force_test

@@ -12,7 +12,7 @@
 #include "plant/cutting/machined_surface.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::plant {
+namespace servomill::plant::dense_cut_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -141,4 +141,4 @@ INSTANTIATE_TEST_SUITE_P(all, DenseCut, testing::ValuesIn(kCuts),
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::dense_cut_test

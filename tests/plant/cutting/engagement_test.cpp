@@ -8,7 +8,7 @@
 #include "plant/cutting/stock.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::plant {
+namespace servomill::plant::engagement_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -229,4 +229,4 @@ TEST(Stock, turned_boxes_and_cylinders_hold_what_they_should) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::engagement_test

@@ -7,7 +7,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::plant {
+namespace servomill::plant::machined_surface_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -259,4 +259,4 @@ TEST(MachinedSurface, tells_the_position_that_left_a_point) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::machined_surface_test

@@ -6,7 +6,7 @@
 #include <boost/random/uniform_real_distribution.hpp>
 #include <cmath>
 
-namespace servomill::plant {
+namespace servomill::plant::removed_volume_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -170,4 +170,4 @@ TEST(RemovedVolume, ends_at_the_flutes) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::removed_volume_test

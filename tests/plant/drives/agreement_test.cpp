@@ -17,7 +17,7 @@
 #include "plant/drives/exact_step.h"
 #include "tests/plant/drives/drives.h"
 
-namespace servomill::plant {
+namespace servomill::plant::agreement_test {
 namespace {
 
 constexpr double kAgreementTol = 0.1;  // nm, what the default tolerance of the exact step leaves
@@ -175,4 +175,4 @@ TEST(ExactStepAndCvode, DifferByTheFourthPowerOfTheSubStep) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::agreement_test

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace servomill::plant {
+namespace servomill::plant::cvode_drive_test {
 namespace {
 
 constexpr double kPositionTol = 1e-14;  // m, ways below 1 m at rtol 1e-12 and rounding
@@ -271,4 +271,4 @@ TEST(CvodeDrive, SaysWhatCvodeRefuses) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::cvode_drive_test

@@ -8,7 +8,7 @@
 #include "tests/counting_new.h"
 #include "tests/plant/drives/drives.h"
 
-namespace servomill::plant {
+namespace servomill::plant::drive_allocation_test {
 namespace {
 
 TEST(DriveBank, DoesNotAllocate) {
@@ -36,4 +36,4 @@ TEST(DriveBank, DoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::drive_allocation_test

@@ -8,7 +8,7 @@
 #include "plant/drives/cvode_drive.h"
 #include "tests/plant/drives/drives.h"
 
-namespace servomill::plant {
+namespace servomill::plant::drive_bank_test {
 namespace {
 
 DriveBank bank_of(const FeedDriveParams& p, std::initializer_list<Tick> steps) {
@@ -219,4 +219,4 @@ TEST(DriveBank, LanesWithSmoothFrictionDoSoInSubStepsOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::drive_bank_test

@@ -10,7 +10,7 @@
 #include "plant/drives/drive_bank.h"
 #include "tests/plant/drives/random_drive.h"
 
-namespace servomill::plant {
+namespace servomill::plant::drive_lanes_test {
 namespace {
 
 constexpr double kTick = 10e-6;
@@ -216,4 +216,4 @@ TEST(PreparedDrives, GiveTheSameBankAsThoseMadeForIt) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::drive_lanes_test

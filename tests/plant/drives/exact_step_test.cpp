@@ -9,7 +9,7 @@
 
 #include "tests/plant/drives/drives.h"
 
-namespace servomill::plant {
+namespace servomill::plant::exact_step_test {
 namespace {
 
 constexpr Tick kStep = 20;  // 200 us
@@ -597,4 +597,4 @@ TEST(EveryDrive, WhatCannotBeRepresentedIsRefusedWithTheRate) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::exact_step_test

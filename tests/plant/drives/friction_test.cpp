@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace servomill::plant {
+namespace servomill::plant::friction_test {
 namespace {
 
 FrictionParams asymmetric() {
@@ -57,4 +57,4 @@ TEST(Friction, BristlesCarryTheSlidingForceInSteadyMotion) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::friction_test

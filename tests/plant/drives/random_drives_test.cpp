@@ -11,7 +11,7 @@
 #include "plant/drives/exact_step.h"
 #include "tests/plant/drives/random_drive.h"
 
-namespace servomill::plant {
+namespace servomill::plant::random_drives_test {
 namespace {
 
 constexpr double kAgreementTol = 0.1;  // nm after 60 ms, from the tolerance of the exact step
@@ -47,4 +47,4 @@ TEST(ExactStepAndCvode, AgreeOnDrivesAtRandom) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::random_drives_test

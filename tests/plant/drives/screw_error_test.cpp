@@ -7,7 +7,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::plant {
+namespace servomill::plant::screw_error_test {
 namespace {
 
 constexpr double kRounding = 1e-18;  // m, of errors below 100 um
@@ -112,4 +112,4 @@ TEST(Implausible, NamesWhatNoScrewCanBe) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::screw_error_test

@@ -9,7 +9,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/plant/geometry/random_errors.h"
 
-namespace servomill::plant {
+namespace servomill::plant::error_function_test {
 namespace {
 
 constexpr double kStep = 1e-4;  // m, of the central differences
@@ -115,4 +115,4 @@ TEST(ErrorFunction, FaultsOfATableAreNamed) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::error_function_test

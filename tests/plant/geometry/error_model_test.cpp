@@ -9,7 +9,7 @@
 #include "plant/kinematics/structure.h"
 #include "tests/plant/geometry/random_errors.h"
 
-namespace servomill::plant {
+namespace servomill::plant::error_model_test {
 namespace {
 
 const JointLayout kHsm600u = parse_structure("[w C' B' X b Y Z (C1) t]").layout();
@@ -113,4 +113,4 @@ TEST(ErrorModel, SumsAndMultiplesActOnEveryError) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::error_model_test

@@ -10,7 +10,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/plant/geometry/random_errors.h"
 
-namespace servomill::plant {
+namespace servomill::plant::inclined_axes_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -237,4 +237,4 @@ TEST(InclinedAxes, ManyPosesAreThoseOfEachBitForBit) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::inclined_axes_test

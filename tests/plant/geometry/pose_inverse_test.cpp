@@ -9,7 +9,7 @@
 #include "tests/plant/geometry/random_errors.h"
 #include "tests/plant/kinematics/machine_kinds.h"
 
-namespace servomill::plant {
+namespace servomill::plant::pose_inverse_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -229,4 +229,4 @@ TEST(PoseInverse, PositionOfAMachineThatLacksALinearAxisIsReported) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::pose_inverse_test

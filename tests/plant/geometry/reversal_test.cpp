@@ -7,7 +7,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/plant/geometry/random_errors.h"
 
-namespace servomill::plant {
+namespace servomill::plant::reversal_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -179,4 +179,4 @@ TEST(VolumetricModel, ShowsTheStepsOfACircleWithReversals) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::reversal_test

@@ -14,7 +14,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/plant/geometry/random_errors.h"
 
-namespace servomill::plant {
+namespace servomill::plant::spindle_squareness_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -90,4 +90,4 @@ TEST(SpindleSquareness, IsTakenByTheNonidealInverse) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::spindle_squareness_test

@@ -8,7 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/plant/kinematics/all_structures.h"
 
-namespace servomill::plant {
+namespace servomill::plant::travel_memory_test {
 namespace {
 
 constexpr double kRounding = 1e-12;  // of 1: quotients of travel below 1 m by tens of micrometres
@@ -114,4 +114,4 @@ TEST(TravelMemory, IsNotChangedByBeingAsked) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::travel_memory_test

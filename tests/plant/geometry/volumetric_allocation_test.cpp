@@ -5,7 +5,7 @@
 #include "tests/counting_new.h"
 #include "tests/plant/geometry/random_errors.h"
 
-namespace servomill::plant {
+namespace servomill::plant::volumetric_allocation_test {
 namespace {
 
 TEST(VolumetricModel, DoesNotAllocate) {
@@ -59,4 +59,4 @@ TEST(InverseKinematics, DoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::volumetric_allocation_test

@@ -9,7 +9,7 @@
 #include "plant/geometry/volumetric_evaluation.h"
 #include "tests/plant/geometry/random_errors.h"
 
-namespace servomill::plant {
+namespace servomill::plant::volumetric_lanes_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -369,4 +369,4 @@ TEST(HarmonicInLanes, IsTheSine) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::volumetric_lanes_test

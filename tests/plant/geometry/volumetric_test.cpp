@@ -11,7 +11,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/plant/geometry/random_errors.h"
 
-namespace servomill::plant {
+namespace servomill::plant::volumetric_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -478,4 +478,4 @@ TEST(NonidealInverse, ConvergesQuadratically) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::volumetric_test

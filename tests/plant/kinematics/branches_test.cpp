@@ -4,7 +4,7 @@
 
 #include "tests/plant/kinematics/machine_kinds.h"
 
-namespace servomill::plant {
+namespace servomill::plant::branches_test {
 namespace {
 
 constexpr double kRounding = 1e-12;  // m, rad; some products at 1 m
@@ -70,4 +70,4 @@ TEST(JointAtItsEnd, IsTheOneThatAMotionWouldLeadBeyondItsTravel) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::branches_test

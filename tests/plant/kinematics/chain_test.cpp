@@ -7,7 +7,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/plant/kinematics/all_structures.h"
 
-namespace servomill::plant {
+namespace servomill::plant::chain_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -177,4 +177,4 @@ TEST(Inverse, IsNothingWhereTwoLinearAxesAreParallel) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::chain_test

@@ -8,7 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/plant/kinematics/machine_kinds.h"
 
-namespace servomill::plant {
+namespace servomill::plant::inverse_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -445,4 +445,4 @@ TEST(Unreachable, WhereTwoLinearAxesAreParallel) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::inverse_test

@@ -9,7 +9,7 @@
 #include "plant/kinematics/nonlinear_error.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::plant {
+namespace servomill::plant::straight_tool_path_test {
 namespace {
 
 constexpr double kRounding = 1e-12;  // m, rad; some products at 1 m
@@ -263,4 +263,4 @@ TEST(PostedSegment, ParabolaIsBetterByAnOrderOfTheLength) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::straight_tool_path_test

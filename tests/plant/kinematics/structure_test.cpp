@@ -4,7 +4,7 @@
 
 #include "tests/plant/kinematics/all_structures.h"
 
-namespace servomill::plant {
+namespace servomill::plant::structure_test {
 namespace {
 
 std::string message(std::string_view text) {
@@ -124,4 +124,4 @@ TEST(Structure, FaultsCountColumnsFromThePlaceOfTheString) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::structure_test

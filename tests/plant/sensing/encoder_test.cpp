@@ -10,7 +10,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/counting_new.h"
 
-namespace servomill::plant {
+namespace servomill::plant::encoder_test {
 namespace {
 
 using std::numbers::pi;
@@ -340,4 +340,4 @@ TEST(Encoder, DoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::encoder_test

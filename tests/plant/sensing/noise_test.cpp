@@ -8,7 +8,7 @@
 
 #include "plant/vocabulary/ticks.h"
 
-namespace servomill::plant {
+namespace servomill::plant::noise_test {
 namespace {
 
 using Words = std::array<std::uint32_t, 4>;
@@ -115,4 +115,4 @@ TEST(WhiteNoise, IsTheSameForEver) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::noise_test

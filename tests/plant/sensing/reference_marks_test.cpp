@@ -12,7 +12,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/counting_new.h"
 
-namespace servomill::plant {
+namespace servomill::plant::reference_marks_test {
 namespace {
 
 constexpr double kPeriod = 20 * um;   // LS 486C
@@ -288,4 +288,4 @@ TEST(Implausible, NamesWhatNoTrackCanBe) {
 }
 
 }  // namespace
-}  // namespace servomill::plant
+}  // namespace servomill::plant::reference_marks_test

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace servomill {
+namespace servomill::move_curve_test {
 namespace {
 
 constexpr double kRoundingTol = 1e-15;  // m, a few operations at 0.1 m
@@ -78,4 +78,4 @@ TEST(MoveCurve, ClosestPointIsHeldToTheEnds) {
 }
 
 }  // namespace
-}  // namespace servomill
+}  // namespace servomill::move_curve_test

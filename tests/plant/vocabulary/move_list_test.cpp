@@ -9,7 +9,7 @@
 
 #include "tests/counting_new.h"
 
-namespace servomill {
+namespace servomill::move_list_test {
 namespace {
 
 // Every member differs from move to move now and then, signs of zero included.
@@ -150,4 +150,4 @@ TEST(MoveList, TakesSixtyBytesForALineOfThreeAxes) {
 }
 
 }  // namespace
-}  // namespace servomill
+}  // namespace servomill::move_list_test

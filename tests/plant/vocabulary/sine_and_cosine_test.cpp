@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace servomill {
+namespace servomill::sine_and_cosine_test {
 namespace {
 
 using Two [[gnu::vector_size(16)]] = double;
@@ -93,4 +93,4 @@ TEST(SineAndCosine, AreThoseOfTheLibraryFromTheLargestAngleOn) {
 }
 
 }  // namespace
-}  // namespace servomill
+}  // namespace servomill::sine_and_cosine_test

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace servomill {
+namespace servomill::user_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ TEST_F(UserFile, IsAnInputUnderEveryNameWhileACommandRuns) {
 }
 
 }  // namespace
-}  // namespace servomill
+}  // namespace servomill::user_file_test

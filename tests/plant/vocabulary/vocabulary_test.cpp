@@ -7,7 +7,7 @@
 #include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/ticks.h"
 
-namespace servomill {
+namespace servomill::vocabulary_test {
 namespace {
 
 constexpr std::array<std::string_view, 4> kNames = {"table", "gcode", "feedback", "none"};
@@ -79,4 +79,4 @@ TEST(WholeTicks, AcceptsMultiplesAndRefusesTheRest) {
 }
 
 }  // namespace
-}  // namespace servomill
+}  // namespace servomill::vocabulary_test

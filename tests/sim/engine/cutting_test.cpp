@@ -14,7 +14,7 @@
 #include "tests/counting_new.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::cutting_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -498,4 +498,4 @@ TEST(CuttingKeys, give_coefficients_of_ones_own) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::cutting_test

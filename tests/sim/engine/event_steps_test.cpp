@@ -8,7 +8,7 @@
 #include "sim/engine/set_point.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::event_steps_test {
 namespace {
 
 // A machine in five-axis motion with feedback hardware, tables and a strategy; encoders without
@@ -162,4 +162,4 @@ INSTANTIATE_TEST_SUITE_P(DelayAndModelPeriod, Simulate,
                                          std::pair<Tick, Tick>{1, 1}, std::pair<Tick, Tick>{0, 7}));
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::event_steps_test

@@ -8,7 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::recorder_test {
 namespace {
 
 // Several blocks of the recorder and a rest.
@@ -145,4 +145,4 @@ TEST_F(Recording, KeepsInSinglePrecisionAllButPlaceAndCounts) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::recorder_test

@@ -9,7 +9,7 @@
 
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::servo_axes_test {
 namespace {
 
 constexpr double kStandTol = 1e-6;  // um, of an axis that stands where a formula says
@@ -150,4 +150,4 @@ TEST(ServoAxes, TakeALinearDriveHoweverStiff) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::servo_axes_test

@@ -5,7 +5,7 @@
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::set_point_test {
 namespace {
 
 constexpr double kTp = 200e-6;  // s
@@ -162,4 +162,4 @@ TEST_F(SetPointOf, CorrectionsAddUp) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::set_point_test

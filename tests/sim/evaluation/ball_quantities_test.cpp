@@ -10,7 +10,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::ball_quantities_test {
 namespace {
 
 using plant::operator""_err;
@@ -283,4 +283,4 @@ TEST_F(Bk4, ProvesTheCompensationThatTheRTestFound) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::ball_quantities_test

@@ -8,7 +8,7 @@
 
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::comparison_test {
 namespace {
 
 constexpr double kTol = 1e-9;  // um, %, ms: rounding of values of 100 that are stored in mm
@@ -207,4 +207,4 @@ TEST(Quantities, AreNamedOnceAndExplained) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::comparison_test

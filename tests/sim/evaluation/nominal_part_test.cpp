@@ -12,7 +12,7 @@
 #include "sim/system/base64.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::nominal_part_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -203,4 +203,4 @@ TEST(NominalPart, SaysWhatLeavesItFree) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::nominal_part_test

@@ -12,7 +12,7 @@
 #include "sim/run/store.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::probed_part_test {
 namespace {
 
 constexpr double kPerfect = 0.1;      // um: what a perfect machine may leave
@@ -316,4 +316,4 @@ TEST(ProbedPart, DoesNotDependOnHowMuchOfThePathIsHeld) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::probed_part_test

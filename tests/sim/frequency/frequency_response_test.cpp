@@ -13,7 +13,7 @@
 #include "sim/frequency/stability.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency_response_test {
 namespace {
 
 constexpr int kY = 1;
@@ -317,4 +317,4 @@ TEST(Margins, SeeANarrowResonance) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency_response_test

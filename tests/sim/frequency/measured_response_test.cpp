@@ -12,7 +12,7 @@
 #include "sim/frequency/step_response.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::measured_response_test {
 namespace {
 
 constexpr double kMagnitudeTol = 0.1;  // dB, wanted of a measurement
@@ -210,4 +210,4 @@ TEST(MeasuredResponse, TellsWhatTheEncodersDoNotResolve) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::measured_response_test

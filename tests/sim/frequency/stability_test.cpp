@@ -6,7 +6,7 @@
 #include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::stability_test {
 namespace {
 
 MachineSettings hsm600u() {
@@ -110,4 +110,4 @@ TEST(RunScenario, RefusesGainsThatDiverge) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::stability_test

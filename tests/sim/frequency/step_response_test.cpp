@@ -12,7 +12,7 @@
 #include "sim/frequency/stability.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::step_response_test {
 namespace {
 
 enum class Preset { CC422, CC424 };
@@ -135,4 +135,4 @@ TEST(StepResponse, OfTheVelocityLoopSettlesOnItsCommand) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::step_response_test

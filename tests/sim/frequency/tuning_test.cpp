@@ -10,7 +10,7 @@
 #include "sim/frequency/stability.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tuning_test {
 namespace {
 
 constexpr int kY = 1;
@@ -188,4 +188,4 @@ TEST(Tune, RefusesWhatNoGainHas) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tuning_test

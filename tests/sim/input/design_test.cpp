@@ -9,7 +9,7 @@
 
 #include "sim/input/read_design.h"
 
-namespace servomill::sim {
+namespace servomill::sim::design_test {
 namespace {
 
 using Point = std::vector<std::string>;
@@ -309,4 +309,4 @@ TEST(Range, HasNoDigitsOfRounding) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::design_test

@@ -7,7 +7,7 @@
 
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::key_list_test {
 namespace {
 
 // Read once: the readers go over all specimens each time.
@@ -115,4 +115,4 @@ TEST(KeyList, RefusesASectionThatThereIsNot) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::key_list_test

@@ -5,7 +5,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::machine_override_test {
 namespace {
 
 constexpr const char* kProgram = "G17 G21 G90 G94 F6000\nG1 X50\n(MSG, back)\nG1 X0\nM2\n";
@@ -106,4 +106,4 @@ TEST(MachineOverride, LeavesAloneWhatAllCasesShare) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::machine_override_test

@@ -8,7 +8,7 @@
 
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::read_cutter_test {
 namespace {
 
 Scenario with_tool(const std::string& keys) {
@@ -60,4 +60,4 @@ TEST(CutterOfATool, MayHaveACornerRadiusUpToThatOfABall) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::read_cutter_test

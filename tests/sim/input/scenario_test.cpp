@@ -17,7 +17,7 @@
 #include "sim/run/store.h"
 #include "strategies/registry.h"
 
-namespace servomill::sim {
+namespace servomill::sim::scenario_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -346,4 +346,4 @@ TEST_F(BasedOn, RefusesACircleAndAFileThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::scenario_test

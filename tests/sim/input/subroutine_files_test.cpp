@@ -10,7 +10,7 @@
 #include "sim/model/scenario.h"
 #include "sim/preparation/prepared_case.h"
 
-namespace servomill::sim {
+namespace servomill::sim::subroutine_files_test {
 namespace {
 
 class Folder {
@@ -74,4 +74,4 @@ TEST(SubroutineFiles, AScenarioKeepsTheirTexts) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::subroutine_files_test

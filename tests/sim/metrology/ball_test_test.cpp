@@ -9,7 +9,7 @@
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::ball_test_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -261,4 +261,4 @@ TEST(Readings, OfABarAreAlongIt) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::ball_test_test

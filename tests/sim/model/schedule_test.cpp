@@ -8,7 +8,7 @@
 
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::schedule_test {
 namespace {
 
 // Walks the schedule over several common multiples and notes when each rate was due.
@@ -107,4 +107,4 @@ TEST(ReadScenario, RefusesPeriodsThatHardlyEverMeet) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::schedule_test

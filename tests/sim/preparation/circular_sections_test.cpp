@@ -8,7 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::circular_sections_test {
 namespace {
 
 // R = 28 mm; turns begin and end at speed, on a diagonal where no axis reverses.
@@ -130,4 +130,4 @@ TEST(CircularSections, HaveNoNumberWhereTheMachineDidNotFollow) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::circular_sections_test

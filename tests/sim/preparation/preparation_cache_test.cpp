@@ -16,7 +16,7 @@
 #include "sim/input/scenario_source.h"
 #include "sim/run/run.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation_cache_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -319,4 +319,4 @@ TEST_F(Sharing, ServesManyThreads) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation_cache_test

@@ -12,7 +12,7 @@
 #include "sim/run/run.h"
 #include "sim/system/read_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::post_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -276,4 +276,4 @@ TEST(PostFile, RapidsOfOneToolAxisTurnNoRotaryAxis) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::post_file_test

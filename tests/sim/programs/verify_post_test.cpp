@@ -16,7 +16,7 @@
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::verify_post_test {
 namespace {
 
 using controllers::Approach;
@@ -345,4 +345,4 @@ TEST(VerifyPost, SaysWhatWasCompared) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::verify_post_test

@@ -9,7 +9,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "sim/records/hdf5_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::fixed_dataset_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,4 +92,4 @@ TEST_F(FixedDataset, IsReadWithinItsLength) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::fixed_dataset_test

@@ -10,7 +10,7 @@
 
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::hdf5_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -183,4 +183,4 @@ TEST_F(Hdf5File, RefusesWhatIsNoHdf5File) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::hdf5_file_test

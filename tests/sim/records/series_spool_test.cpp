@@ -8,7 +8,7 @@
 
 #include "sim/system/system_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::series_spool_test {
 namespace {
 
 constexpr std::size_t kChunkRows = 100;
@@ -138,4 +138,4 @@ TEST(EvenChunkRows, LeavesLittleOfTheLastChunkEmpty) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::series_spool_test

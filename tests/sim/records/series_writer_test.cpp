@@ -30,7 +30,7 @@ thread_local std::size_t allocations = 0;  // the writer's thread may allocate
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
-namespace servomill::sim {
+namespace servomill::sim::series_writer_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -308,4 +308,4 @@ TEST_F(SeriesFile, HoldsTheSameAtEveryLevelOfCompression) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::series_writer_test

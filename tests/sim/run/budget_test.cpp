@@ -10,7 +10,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::budget_test {
 namespace {
 
 constexpr double kFeed = 1394.0 / 60.0;  // mm/s
@@ -403,4 +403,4 @@ TEST(Budget, SaysWhyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::budget_test

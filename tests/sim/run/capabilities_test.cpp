@@ -107,7 +107,7 @@ TEST(UnknownFeedbackStrategy, HasTheSameBudget) {
   const Budget known = budget("feedback"), strange = budget("stranger");
   for (std::size_t c = 0; c < kCauses; ++c) {
     EXPECT_EQ(known.parts[c].present, strange.parts[c].present) << c;
-    EXPECT_EQ(known.parts[c].signal, strange.parts[c].signal) << c;
+    EXPECT_EQ(known.parts[c].signal.all(), strange.parts[c].signal.all()) << c;
   }
   for (const Cause cause : {Cause::delay, Cause::saturation, Cause::one_step}) {
     EXPECT_TRUE(strange.parts[static_cast<std::size_t>(cause)].present) << info_of(cause).name;

@@ -8,7 +8,7 @@
 
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::converge_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -215,4 +215,4 @@ TEST_F(Converging, IsRefusedBeforeItRuns) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::converge_test

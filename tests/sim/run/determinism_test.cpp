@@ -4,7 +4,7 @@
 
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::determinism_test {
 namespace {
 
 const std::string kProgram =
@@ -126,4 +126,4 @@ TEST(RunScenario, EndsEarlyWhenAskedTo) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::determinism_test

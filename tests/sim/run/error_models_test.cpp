@@ -4,7 +4,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::error_models_test {
 namespace {
 
 using plant::operator""_err;
@@ -107,4 +107,4 @@ TEST(ErrorModels, LeaveTheirDifferenceWhenTheyAreBelieved) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::error_models_test

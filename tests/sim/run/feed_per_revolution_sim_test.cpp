@@ -1,7 +1,7 @@
 // What a simulation makes of G95.
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::feed_per_revolution_sim_test {
 namespace {
 
 TEST(FeedPerRevolution, RunsAsTheSameFeedPerMinute) {
@@ -27,4 +27,4 @@ TEST(FeedPerRevolution, OfASpindleThatStandsStillIsRefused) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::feed_per_revolution_sim_test

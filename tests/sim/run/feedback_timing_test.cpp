@@ -5,7 +5,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::feedback_timing_test {
 namespace {
 
 constexpr double kSlope = 1e-3;                            // of EXX over X
@@ -51,4 +51,4 @@ TEST(VirtualDisplacement, OfTickNIsReadFromTickNPlus7On) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::feedback_timing_test

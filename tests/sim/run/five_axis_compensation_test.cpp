@@ -7,7 +7,7 @@
 #include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::five_axis_compensation_test {
 namespace {
 
 // All component errors of the five axes, some 20 um and 20 urad each, smooth; all location errors.
@@ -188,4 +188,4 @@ TEST(FiveAxes, FeedbackRefusesAScaleThatIsNotRead) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::five_axis_compensation_test

@@ -9,7 +9,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::hysteresis_test {
 namespace {
 
 // Five targets of X, each approached five times from below and from above as ISO 230-2 asks for,
@@ -224,4 +224,4 @@ TEST(Hysteresis, IsRefusedWhereItCannotBe) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::hysteresis_test

@@ -11,7 +11,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::inclined_machine_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -104,4 +104,4 @@ TEST(MachineFiles, GoWhereTheirJointsSay) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::inclined_machine_test

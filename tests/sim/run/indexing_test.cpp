@@ -4,7 +4,7 @@
 
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::indexing_test {
 namespace {
 
 const std::string kProgram = "G21 G90 G94 G64 P0.001\nG0 X10 Y0\nG1 C30 F300\nG1 X20 F600\nM30\n";
@@ -88,4 +88,4 @@ TEST(Lead, IsThatOfEachAxis) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::indexing_test

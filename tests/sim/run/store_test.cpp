@@ -11,7 +11,7 @@
 #include "tests/sim/records/file_snapshots.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::store_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,4 +162,4 @@ TEST_F(RunFile, HasErrorsOverAllOfTheTravelAndLocationErrors) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::store_test

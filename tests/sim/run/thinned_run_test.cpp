@@ -8,7 +8,7 @@
 #include "sim/records/row_thinning.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::thinned_run_test {
 namespace {
 
 constexpr double kSingle = 1e-6;  // relative: means and rms are kept as float32
@@ -110,4 +110,4 @@ TEST_F(ThinnedRun, IsRefusedWhereThePeriodIsGiven) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::thinned_run_test

@@ -6,7 +6,7 @@
 #include "sim/evaluation/comparison.h"
 #include "tests/sim/five_axis_program.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tip_rewrite_test {
 namespace {
 
 const std::string kFine =
@@ -103,4 +103,4 @@ TEST(RewrittenTipMoves, AreRefusedInTiltedPlanesAndWithASecondTool) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tip_rewrite_test

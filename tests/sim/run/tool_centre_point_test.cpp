@@ -6,7 +6,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tool_centre_point_test {
 namespace {
 
 constexpr double kStraight = 0.5;    // um: chords of the planner at a tolerance of 10 um
@@ -107,4 +107,4 @@ TEST(ToolCentrePoint, SaysWhereTheTravelEnds) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tool_centre_point_test

@@ -4,7 +4,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::uncorrectable_test {
 namespace {
 
 // Pitch of X, 0.2 urad a millimetre: the tool tilts with x, most at the end of line 3. B stands at
@@ -61,4 +61,4 @@ TEST(Uncorrectable, IsRecordedWhereTheScenarioAsksForIt) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::uncorrectable_test

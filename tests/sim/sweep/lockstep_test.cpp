@@ -10,7 +10,7 @@
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/batch.h"
 
-namespace servomill::sim {
+namespace servomill::sim::lockstep_test {
 namespace {
 
 const std::string kScenario = SERVOMILL_SOURCE_DIR "/tests/cli/gallery/scenario.toml";
@@ -196,4 +196,4 @@ TEST(RowsAtOnce, ShareTheMemoryAmongTheThreads) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::lockstep_test

@@ -9,7 +9,7 @@
 
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep_test {
 namespace {
 
 const std::string kScenario = SERVOMILL_SOURCE_DIR "/tests/cli/gallery/scenario.toml";
@@ -223,4 +223,4 @@ TEST(RefuseHopeless, TellsAFaultOfAllOfManyPoints) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep_test

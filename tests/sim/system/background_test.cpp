@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::background_test {
 namespace {
 
 TEST(Background, DoesJobsInOrderInAnotherThread) {
@@ -84,4 +84,4 @@ TEST(ForEachIndex, ThrowsWhatACallThrew) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::background_test

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::memo_test {
 namespace {
 
 template <class... Parts>
@@ -140,4 +140,4 @@ TEST(Memo, GivesEveryThreadItsOwnFailure) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::memo_test

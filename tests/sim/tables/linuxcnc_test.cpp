@@ -13,7 +13,7 @@
 #include "plant/geometry/volumetric.h"
 #include "tests/sim/tables/small_machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::linuxcnc_test {
 namespace {
 
 using plant::operator""_err;
@@ -190,4 +190,4 @@ TEST(Linuxcnc, NamesWhatItCannotHold) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::linuxcnc_test

@@ -11,7 +11,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "tests/sim/tables/small_machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::table_export_test {
 namespace {
 
 using plant::operator""_err;
@@ -328,4 +328,4 @@ TEST(TableExport, HeidenhainTurnsNegativeAnglesIntoOneTurn) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::table_export_test

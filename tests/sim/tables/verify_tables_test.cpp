@@ -12,7 +12,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "tests/sim/tables/small_machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::verify_tables_test {
 namespace {
 
 using plant::operator""_err;
@@ -554,4 +554,4 @@ TEST(VerifyTables, NoTableForAnAxisWithoutError) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::verify_tables_test

@@ -3,7 +3,7 @@
 
 #include "tests/sim/programs/compensate/trial.h"
 
-namespace servomill::sim {
+namespace servomill::sim::compensate_test {
 namespace {
 
 const std::string kNoErrors = "[errors.none]\nEXX = { constant_um = 0.0 }\n";
@@ -191,16 +191,6 @@ TEST(Compensate, RotaryAxesAloneKeepTheirTime) {
   EXPECT_NEAR(minutes, 90.0 / 1800.0, 1e-6);
 }
 
-std::string refusal(const Trial& trial) {
-  try {
-    trial.run();
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    return what.substr(what.find("part.ngc"));
-  }
-  return "taken";
-}
-
 TEST(Compensate, WarnsOfWhatItTakesForGranted) {
   Trial trial("(servomill compensate: part.ngc)\nG21 G90\nG0 X0 Y0 Z0\nM2\n");
   const Compensated done = trial.run();
@@ -368,4 +358,4 @@ TEST(Compensate, ReversalBeforeAnAxisHasMovedIsReported) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::compensate_test

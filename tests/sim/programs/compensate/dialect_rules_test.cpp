@@ -2,7 +2,7 @@
 // each way in which a written program once did what the original does not.
 #include "tests/sim/programs/compensate/dialect_trial.h"
 
-namespace servomill::sim {
+namespace servomill::sim::dialect_rules_test {
 namespace {
 
 const std::string kStart = "G21 G90 G17 G54\nT1 M6\nG43 H1\nS1000 M3\n";
@@ -690,4 +690,4 @@ TEST(DialectRules, WhatNoBlockCanExpressIsAssumedInTheFile) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::dialect_rules_test

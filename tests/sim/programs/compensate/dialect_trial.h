@@ -4,6 +4,7 @@
 #include <regex>
 
 #include "tests/sim/programs/compensate/trial.h"
+#include "tests/text.h"
 
 namespace servomill::sim {
 
@@ -23,16 +24,6 @@ inline Trial linuxcnc_trial(Dialect dialect, const std::string& program) {
   Trial trial = dialect_trial(dialect, program);
   trial.request.inputs.reader = "linuxcnc";
   return trial;
-}
-
-inline std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> out;
-  for (std::size_t from = 0; from < text.size();) {
-    const std::size_t end = std::min(text.find('\n', from), text.size());
-    out.push_back(text.substr(from, end - from));
-    from = end + 1;
-  }
-  return out;
 }
 
 /// The text but for comments of the header, so that a test shows the dialect alone.
@@ -72,15 +63,6 @@ inline std::string body(Dialect dialect, const std::string& program) {
   return body(dialect_trial(dialect, program));
 }
 
-inline std::string refusal(const Trial& trial) {
-  try {
-    trial.run();
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    return what.substr(what.find("plate.ngc"));
-  }
-  return "taken";
-}
 inline std::string refusal(Dialect dialect, const std::string& program) {
   return refusal(dialect_trial(dialect, program));
 }

@@ -6,7 +6,7 @@
 
 #include "tests/sim/programs/compensate/trial.h"
 
-namespace servomill::sim {
+namespace servomill::sim::residual_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -190,4 +190,4 @@ TEST(CompensateResidual, OfAPerfectBeliefIsBelowTheTolerance) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::residual_test

@@ -24,11 +24,13 @@
 
 namespace servomill::sim {
 
+inline const std::string kWrittenPrefix = "compensate_";
+
 inline std::string written(const std::string& name, const std::string& text) {
   // a folder for each test program: they may run beside each other
   const std::string folder = fmt::format("{}trial_{}", testing::TempDir(), getpid());
   std::filesystem::create_directories(folder);
-  const std::string path = folder + "/compensate_" + name;
+  const std::string path = folder + "/" + kWrittenPrefix + name;
   std::ofstream(path, std::ios::binary) << text;
   return path;
 }
@@ -73,6 +75,17 @@ inline std::string without_header(const std::string& text) {
 inline std::vector<Move> moves_of(const std::string& text, const CompensateRequest& request) {
   controllers::ProgramSetup setup = program_setup(request.inputs, request.program_file);
   return controllers::interpret(text, "text", setup);
+}
+
+/// The fault of a program, from the name of its file on as `written` was given it; "taken" if none.
+inline std::string refusal(const Trial& trial) {
+  try {
+    trial.run();
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    return what.substr(what.find(kWrittenPrefix) + kWrittenPrefix.size());
+  }
+  return "taken";
 }
 
 }  // namespace servomill::sim

@@ -5,7 +5,7 @@
 #include "tests/sim/programs/compensate/trial.h"
 #include "tests/sim/programs/verification/replay_count.h"
 
-namespace servomill::sim {
+namespace servomill::sim::conformance_replay_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -48,4 +48,4 @@ INSTANTIATE_TEST_SUITE_P(Dialects, ConformanceReplay,
                          });
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::conformance_replay_test

@@ -8,7 +8,7 @@
 #include "tests/sim/programs/verification/effect.h"
 #include "tests/sim/programs/verification/mutations.h"
 
-namespace servomill::sim {
+namespace servomill::sim::mutation_test {
 namespace {
 
 const std::string kProgram =
@@ -163,4 +163,4 @@ INSTANTIATE_TEST_SUITE_P(Dialects, Mutations,
                          });
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::mutation_test

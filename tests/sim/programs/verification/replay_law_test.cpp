@@ -6,7 +6,7 @@
 #include "tests/sim/programs/verification/random_program.h"
 #include "tests/sim/programs/verification/replay_count.h"
 
-namespace servomill::sim {
+namespace servomill::sim::replay_law_test {
 namespace {
 
 constexpr const char* kNoErrors = "[errors.none]\nEXX = { constant_um = 0.0 }\n";
@@ -74,4 +74,4 @@ INSTANTIATE_TEST_SUITE_P(Dialects, ReplayLaw,
                          });
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::replay_law_test
