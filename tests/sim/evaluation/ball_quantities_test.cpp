@@ -9,6 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
+#include "tests/text.h"
 
 namespace servomill::sim::ball_quantities_test {
 namespace {
@@ -44,14 +45,7 @@ std::vector<ComparisonRow> rows_of(const Scenario& scenario, const std::string& 
 }
 
 std::string faults_of(const std::string& quantities) {
-  try {
-    check_scenario(asking(quantities));
-  } catch (const InputError& error) {
-    std::string out;
-    for (const Fault& fault : error.faults()) out += fault.message + "\n";
-    return out;
-  }
-  return "";
+  return fault_messages([&] { check_scenario(asking(quantities)); });
 }
 
 // A C axis that lies 10 um beside the place where the NC takes it for: the ball goes around a

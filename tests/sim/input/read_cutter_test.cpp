@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/sim/small_scenario.h"
+#include "tests/text.h"
 
 namespace servomill::sim::read_cutter_test {
 namespace {
@@ -17,14 +18,7 @@ Scenario with_tool(const std::string& keys) {
 }
 
 std::string faults_of(const std::string& keys) {
-  try {
-    with_tool(keys);
-  } catch (const InputError& error) {
-    std::string out;
-    for (const Fault& fault : error.faults()) out += fault.message + "\n";
-    return out;
-  }
-  return "";
+  return fault_messages([&] { with_tool(keys); });
 }
 
 constexpr double kRounding = 1e-15;

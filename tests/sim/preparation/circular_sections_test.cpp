@@ -7,6 +7,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
+#include "tests/text.h"
 
 namespace servomill::sim::circular_sections_test {
 namespace {
@@ -37,14 +38,7 @@ Scenario asking(const std::string& quantities,
 }
 
 std::string faults_of(const std::string& quantities) {
-  try {
-    check_scenario(asking(quantities));
-  } catch (const InputError& error) {
-    std::string out;
-    for (const Fault& fault : error.faults()) out += fault.message + "\n";
-    return out;
-  }
-  return "";
+  return fault_messages([&] { check_scenario(asking(quantities)); });
 }
 
 TEST(CircularSections, AreEvaluatedOneByOneOrInPairs) {

@@ -15,6 +15,7 @@
 #include "controllers/gcode/printer.h"
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
+#include "tests/text.h"
 
 namespace servomill::sim::verify_post_test {
 namespace {
@@ -162,19 +163,6 @@ TEST(VerifyPost, RandomLocationsAreVerified) {
   }
   EXPECT_EQ(posted + refused, 4 * kFiles);
   EXPECT_LT(refused, posted / 4);
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> out;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) out.push_back(line);
-  return out;
-}
-
-std::string joined(const std::vector<std::string>& lines) {
-  std::string out;
-  for (const std::string& line : lines) out += line + "\n";
-  return out;
 }
 
 // Lines that change nothing where they are: modes that hold already, a retract at the retract

@@ -3,6 +3,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
+#include "tests/text.h"
 
 namespace servomill::sim::error_models_test {
 namespace {
@@ -16,14 +17,7 @@ Scenario with_errors(const std::string& errors) {
 }
 
 std::string faults_of(const std::string& errors) {
-  try {
-    with_errors(errors);
-  } catch (const InputError& error) {
-    std::string out;
-    for (const Fault& fault : error.faults()) out += fault.message + "\n";
-    return out;
-  }
-  return "";
+  return fault_messages([&] { with_errors(errors); });
 }
 
 const std::string kMachine =

@@ -8,6 +8,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
+#include "tests/text.h"
 
 namespace servomill::sim::hysteresis_test {
 namespace {
@@ -198,14 +199,8 @@ TEST(Hysteresis, LeavesHalfItsWidthToACorrectionThatBelievesTheMean) {
 }
 
 std::string fault_of(const std::string& errors) {
-  try {
-    machine_with_hysteresis(kToAndFro, one_case("ideal", "ideal"), errors);
-  } catch (const InputError& error) {
-    std::string messages;
-    for (const Fault& fault : error.faults()) messages += fault.message + "\n";
-    return messages;
-  }
-  return "none";
+  return fault_messages(
+      [&] { machine_with_hysteresis(kToAndFro, one_case("ideal", "ideal"), errors); });
 }
 
 TEST(Hysteresis, IsRefusedWhereItCannotBe) {

@@ -11,6 +11,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "tests/sim/tables/small_machine.h"
+#include "tests/text.h"
 
 namespace servomill::sim::verify_tables_test {
 namespace {
@@ -161,19 +162,6 @@ TEST(VerifyTables, AnErrorThatDoesNotRepeatIsRefusedForATableThatDoes) {
 }
 
 // --- mutations of written files
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> out;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) out.push_back(line);
-  return out;
-}
-
-std::string joined(const std::vector<std::string>& lines) {
-  std::string out;
-  for (const std::string& line : lines) out += line + "\n";
-  return out;
-}
 
 // Numbers of a line by their place in it.
 struct Number {

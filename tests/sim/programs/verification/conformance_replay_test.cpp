@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "tests/sim/programs/compensate/trial.h"
+#include "tests/sim/programs/verification/each_dialect.h"
 #include "tests/sim/programs/verification/replay_count.h"
 
 namespace servomill::sim::conformance_replay_test {
@@ -40,12 +41,7 @@ TEST_P(ConformanceReplay, ProgramsAreVerifiedOrRefused) {
   EXPECT_GT(count.verified, 50);
 }
 
-INSTANTIATE_TEST_SUITE_P(Dialects, ConformanceReplay,
-                         testing::Values(Dialect::linuxcnc, Dialect::heidenhain, Dialect::fanuc,
-                                         Dialect::siemens),
-                         [](const auto& one) {
-                           return std::string(kDialects[static_cast<std::size_t>(one.param)]);
-                         });
+INSTANTIATE_TEST_SUITE_P(Dialects, ConformanceReplay, each_dialect(), name_of_dialect);
 
 }  // namespace
 }  // namespace servomill::sim::conformance_replay_test

@@ -5,6 +5,7 @@
 #include "sim/input/read_machine.h"
 #include "sim/programs/verification/verification.h"
 #include "tests/sim/programs/compensate/trial.h"
+#include "tests/sim/programs/verification/each_dialect.h"
 #include "tests/sim/programs/verification/effect.h"
 #include "tests/sim/programs/verification/mutations.h"
 
@@ -155,12 +156,7 @@ TEST_P(Mutations, ThatChangeWhatTheControlDoesAreFound) {
   EXPECT_GT(all.found, 150);
 }
 
-INSTANTIATE_TEST_SUITE_P(Dialects, Mutations,
-                         testing::Values(Dialect::linuxcnc, Dialect::heidenhain, Dialect::fanuc,
-                                         Dialect::siemens),
-                         [](const auto& one) {
-                           return std::string(kDialects[static_cast<std::size_t>(one.param)]);
-                         });
+INSTANTIATE_TEST_SUITE_P(Dialects, Mutations, each_dialect(), name_of_dialect);
 
 }  // namespace
 }  // namespace servomill::sim::mutation_test

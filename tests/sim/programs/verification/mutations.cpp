@@ -18,16 +18,6 @@ std::size_t begin_of(const std::string& line) {
 
 }  // namespace
 
-Lines lines_of(const std::string& text) {
-  Lines out;
-  for (std::size_t from = 0; from < text.size();) {
-    const std::size_t end = std::min(text.find('\n', from), text.size());
-    out.push_back(text.substr(from, end - from));
-    from = end + 1;
-  }
-  return out;
-}
-
 // Block numbers of Heidenhain programs count, those of others are only names.
 std::string text_of(const Lines& lines, Dialect dialect) {
   std::string out;

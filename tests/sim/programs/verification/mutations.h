@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "sim/programs/compensate/compensate.h"
+#include "tests/text.h"
 
 namespace servomill::sim {
 
 using Lines = std::vector<std::string>;
 
-Lines lines_of(const std::string& text);
 std::string text_of(const Lines& lines, Dialect dialect);
 bool is_comment(const std::string& line);
 

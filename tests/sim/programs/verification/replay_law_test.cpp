@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "tests/sim/programs/compensate/trial.h"
+#include "tests/sim/programs/verification/each_dialect.h"
 #include "tests/sim/programs/verification/random_program.h"
 #include "tests/sim/programs/verification/replay_count.h"
 
@@ -66,12 +67,7 @@ TEST_P(ReplayLaw, HoldsForRandomPrograms) {
   EXPECT_GT(count.verified, programs / 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Dialects, ReplayLaw,
-                         testing::Values(Dialect::linuxcnc, Dialect::heidenhain, Dialect::fanuc,
-                                         Dialect::siemens),
-                         [](const auto& one) {
-                           return std::string(kDialects[static_cast<std::size_t>(one.param)]);
-                         });
+INSTANTIATE_TEST_SUITE_P(Dialects, ReplayLaw, each_dialect(), name_of_dialect);
 
 }  // namespace
 }  // namespace servomill::sim::replay_law_test
