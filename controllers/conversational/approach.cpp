@@ -34,9 +34,12 @@ const Kind& kind_of(const HeidenhainBlock& block) {
 
 }  // namespace
 
-// Reads LEN15, R+10, CCA180; positioning words may follow.
-Run Translator::read_run(Words& words, std::string_view name) {
+// Reads LEN15, R+10, CCA180 and the positioning words after them.
+std::pair<Run, Positioning> Translator::read_run(const HeidenhainBlock& block, Run::Kind kind,
+                                                 std::string_view name) {
+  Words words(std::span(block.words).subspan(2));
   Run run;
+  run.kind = kind;
   run.place = place_;
   const auto LEN = words.take_number("LEN");
   const auto CCA = words.take_number("CCA");
@@ -53,21 +56,19 @@ Run Translator::read_run(Words& words, std::string_view name) {
     fail(CCA->place, fmt::format("{}: CCA must be in 0 ... 360", name));
   }
   if (R && run.radius == 0.0) fail(R->place, fmt::format("{}: R must not be 0", name));
-  return run;
+  Positioning p = read_positioning(words, name);
+  words.refuse_rest(name);
+  const bool is_line = kind == Run::Kind::LT || kind == Run::Kind::LN;
+  if (is_line && run.length == 0.0) fail(fmt::format("{} without LEN", name));
+  if (!is_line && run.radius == 0.0) fail(fmt::format("{} without R", name));
+  if (kind == Run::Kind::CT && run.angle == 0.0) fail(fmt::format("{} without CCA", name));
+  return {std::move(run), std::move(p)};
 }
 
 void Translator::approach(const HeidenhainBlock& block) {
   const Kind& kind = kind_of(block);
-  Words words(std::span(block.words).subspan(2));
   const std::string name = fmt::format("APPR {}", kind.name);
-  Run run = read_run(words, name);
-  Positioning p = read_positioning(words, name);
-  words.refuse_rest(name);
-  run.kind = kind.kind;
-  const bool is_line = kind.kind == Run::Kind::LT || kind.kind == Run::Kind::LN;
-  if (is_line && run.length == 0.0) fail(fmt::format("{} without LEN", name));
-  if (!is_line && run.radius == 0.0) fail(fmt::format("{} without R", name));
-  if (kind.kind == Run::Kind::CT && run.angle == 0.0) fail(fmt::format("{} without CCA", name));
+  auto [run, p] = read_run(block, kind.kind, name);
   if (kind.kind == Run::Kind::LCT && run.radius < 0.0) fail(fmt::format("{}: R must be > 0", name));
   require_arc(p);
   if (!p.side || *p.side == 0) {
@@ -105,16 +106,8 @@ void Translator::approach(const HeidenhainBlock& block) {
 
 void Translator::depart(const HeidenhainBlock& block) {
   const Kind& kind = kind_of(block);
-  Words words(std::span(block.words).subspan(2));
   const std::string name = fmt::format("DEP {}", kind.name);
-  Run run = read_run(words, name);
-  Positioning p = read_positioning(words, name);
-  words.refuse_rest(name);
-  run.kind = kind.kind;
-  const bool is_line = kind.kind == Run::Kind::LT || kind.kind == Run::Kind::LN;
-  if (is_line && run.length == 0.0) fail(fmt::format("{} without LEN", name));
-  if (!is_line && run.radius == 0.0) fail(fmt::format("{} without R", name));
-  if (kind.kind == Run::Kind::CT && run.angle == 0.0) fail(fmt::format("{} without CCA", name));
+  auto [run, p] = read_run(block, kind.kind, name);
   if (p.target[2]) {
     fail(
         fmt::format("{} with Z: some controls move it with the departure, some behind; write it in "

@@ -152,7 +152,8 @@ class Translator {
   // approach.cpp
   void approach(const HeidenhainBlock& block);
   void depart(const HeidenhainBlock& block);
-  Run read_run(Words& words, std::string_view name);
+  std::pair<Run, Positioning> read_run(const HeidenhainBlock& block, Run::Kind kind,
+                                       std::string_view name);
 
   // functions.cpp: M
   void start_function(int m, const Place& place);
