@@ -14,7 +14,7 @@ constexpr double kConverged = 1e-13;  // m
 constexpr int kMaxIterations = 50;    // contraction by |E'|, of the order of 1e-2
 constexpr LaneFlags kOne = {true};
 
-// Of one run and of eight.
+// Offsets of one run and of eight.
 void find_offset(const Belief& b, const Joints& Q, Eigen::Vector3d& d) {
   d = b.model.joint_offset(Q, b.p_ST);
 }

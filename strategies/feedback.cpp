@@ -252,7 +252,7 @@ class VirtualEncoder final : public FeedbackPart {
     for (std::size_t k = 0; k < kLaneWidth; ++k) held_.pass(k, 1);
   }
 
-  // What periods of one run find that lie side by side.
+  // Evaluates successive periods of one run side by side.
   void find_in_turn(const JointLanes& Q_meas, std::size_t periods, std::size_t run,
                     ShiftLanes& next) {
     LaneFlags lanes = {};

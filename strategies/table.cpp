@@ -182,7 +182,7 @@ class Tables final : public SetPointPart {
   const std::vector<Table>& tables_;
 };
 
-// What tables stand for.
+// The error that the tables approximate.
 class ErrorItself final : public SetPointPart {
  public:
   // @param base  (3; m) taken from it
@@ -274,7 +274,7 @@ std::string name_of(const std::vector<Line>& lines, const JointLayout& layout) {
   return fmt::format("{} over {}", lines.size() == 1 ? "table" : "lattice", name);
 }
 
-// What the NC would refuse, named as its operator would read it.
+// Refuses tables that the NC would refuse, by the names that its operator reads.
 void check_points(const std::vector<Line>& lines, const JointLayout& layout, const Parameters& p) {
   constexpr double kLine = 256, kLattice = 25.0 * 25.0 * 25.0;
   const double usual = lines.size() == 1 ? kLine : kLattice;

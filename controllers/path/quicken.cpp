@@ -99,7 +99,7 @@ class Quickener {
     return std::max(p.v + t * (p.a + 0.5 * t * p.j), kLeastSpeed);
   }
 
-  // Where pieces meet, unless they are short; long ones are divided.
+  // Knots where pieces meet, unless they are short; long pieces are divided.
   void lay_knots() {
     t_.assign(1, r_.s_begin);
     std::size_t phase = r_.first, i = 0;

@@ -366,7 +366,7 @@ class Smoother {
     }
   }
 
-  // Where fairing a run of vertices stands: splines of blocks that overlap.
+  // Progress of fairing a run of vertices: splines of overlapping blocks.
   struct Run {
     std::size_t next = 0, last = 0;  // vertices not yet done
     std::size_t length = kBlock;

@@ -194,7 +194,7 @@ class Tracer {
       last_ = now;
       even_ = chord.is_even ? even_ + 1 : 0;
     }
-    // Of that order, from 1.
+    // Derivative of that order, from 1.
     const Joints& of(std::size_t order) const { return rate_[order]; }
     // Higher orders come from as many chords without a corner between them.
     std::size_t known() const { return std::clamp<std::size_t>(even_, 1, kOrders); }

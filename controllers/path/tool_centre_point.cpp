@@ -101,7 +101,7 @@ Vector3d ToolCentrePoint::axis_between(const Vector3d& k_begin, const Vector3d& 
   return (k_begin * std::cos(t * theta) + n * std::sin(t * theta)).normalized();
 }
 
-// Whether the tool axis keeps to its circle when the joints go linearly to a knot.
+// Returns true if the tool axis keeps to its circle when the joints move linearly to a knot.
 bool ToolCentrePoint::keeps_circle(const RotaryKnot& from, RotaryKnot& to, const Vector3d& k_begin,
                                    const Vector3d& k_end) const {
   const double way = (to.Q - from.Q).cwiseAbs().maxCoeff();

@@ -84,7 +84,7 @@ class Planner {
  private:
   using Chain = Trajectory::Chain;
 
-  // What a move means for the chain.
+  // A move as a part of the chain.
   struct Leg {
     bool rapid = false, rotary_only = false;
     bool stop_after = false, exact_corners = false;
@@ -246,7 +246,7 @@ class Planner {
     return std::max(motion.time, options_.block_time);
   }
 
-  // Whether an arc goes on where another one ended, on the same circle and in the same direction.
+  // Returns true if an arc continues another one, on the same circle and in the same direction.
   static bool is_same_circle(const ArcSweep& one, const ArcSweep& next, const Joints& step) {
     const auto near = [](double a, double b) { return std::abs(a - b) < kSameCircle; };
     const bool is_flat = near(one.along_begin, one.along_end) &&

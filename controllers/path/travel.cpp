@@ -35,7 +35,7 @@ void include_extremes(Range<AxisWords>& range, const Move& move, const AxisWords
   }
 }
 
-// Of a move without tool control.
+// Range of the joints during a move without TCP control.
 Range<Joints> range_of(const Move& move, const Joints& from, const JointLayout& layout) {
   const AxisWords words = layout.words(from);
   Range<AxisWords> range{words, words};

@@ -54,7 +54,7 @@ class Profile {
   double bottom_, corner_;
 };
 
-// Where between a and b, at which `is` differs, it changes.
+// Bisection for the point between a and b at which `is` changes.
 template <class Is>
 double change(double a, double b, double same, Is is) {
   const bool at_a = is(a);

@@ -101,7 +101,7 @@ bool nearer(const Array3d& x, const Node& a, const Node& b) {
   return (2.0 * x - a.low - a.high).square().sum() <= (2.0 * x - b.low - b.high).square().sum();
 }
 
-// Whether a ray beyond `from` may come as near to the box of a node as its radius.
+// Returns true if a ray beyond `from` may come as near to the box of a node as its radius.
 template <class Node>
 bool meets(const Ray& ray, double from, const Node& node) {
   const Array3d x = ray.at(from), d = ray.direction, apart = away(x, node);
@@ -147,7 +147,7 @@ double leave_step(const SweptCutter& step, const Ray& ray) {
   return leave_step(step, ray, {ray.length, 0.5 * ray.length, 0.0});
 }
 
-// Where a ray that leaves it at s came in.
+// Parameter at which a ray that leaves the step at s entered it.
 double enter_step(const SweptCutter& step, const Ray& ray, double s) {
   const Ray back = {ray.at(s), -ray.direction, ray.length};
   return s - std::max(leave_step(step, back, {0.0}), 0.0);

@@ -28,7 +28,7 @@ struct Range {
 constexpr Range kEverything = {-kInfinity, kInfinity};
 constexpr Range kWay = {0.0, 1.0};
 
-// Where |A + u B| <= rho.
+// The range of u with |A + u B| <= rho.
 Range inside_ball(const Vector3d& A, const Vector3d& B, double rho) {
   const double a = B.squaredNorm(), b = A.dot(B), c = A.squaredNorm() - rho * rho;
   if (a < std::numeric_limits<double>::min()) return c <= 0.0 ? kEverything : Range{};
@@ -39,7 +39,7 @@ Range inside_ball(const Vector3d& A, const Vector3d& B, double rho) {
   return {std::min(u, other), std::max(u, other)};
 }
 
-// Where from <= a + u b <= to.
+// The range of u with from <= a + u b <= to.
 Range inside_slab(double a, double b, const Range& heights) {
   if (b == 0.0) return heights.from <= a && a <= heights.to ? kEverything : Range{};
   const double u = (heights.from - a) / b, other = (heights.to - a) / b;
@@ -69,7 +69,7 @@ struct WayPastDisc {
             drho * drho + (1.0 - disc / rho) * (dP.squaredNorm() - drho * drho) + dh * dh};
   }
 
-  // Where on the way, 0 to 1, the disc is nearest.
+  // Fraction of the path, 0 to 1, at which the disc is nearest.
   double nearest(double t) const {
     if (slope(0.0).first >= 0.0) return 0.0;
     if (slope(1.0).first <= 0.0) return 1.0;

@@ -18,10 +18,10 @@
 namespace servomill::plant {
 namespace {
 
-// What CVODE integrates; the way is counted from the beginning of a piece.
+// Unknowns that CVODE integrates; the travel counts from the start of a piece.
 enum Unknown : int { kCurrent, kSpeed, kWindUp, kVelocity, kWay, kBristle, kUnknowns };
 
-// What may end a piece: each is positive until its event.
+// Events that may end a piece: each function is positive until its event.
 enum Event : int {
   kStops,
   kBreaksPositive,

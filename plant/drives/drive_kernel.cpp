@@ -300,7 +300,7 @@ class SubStep {
     return missed_at_most(most, h_ * inverse_mass * h_, h_ * inverse_mass * P(kMemory));
   }
 
-  // What the parabola misses at h/4 and 3h/4, as the displacement (m) that it leaves.
+  // Error of the parabola at h/4 and 3h/4, as the displacement (m) that it causes.
   P error_of(const P& inverse_mass) const {
     const P impulse = h_ * inverse_mass;
     if (kind == FrictionKind::regularised) {
@@ -353,7 +353,7 @@ void store(const Motion<Arch>& from, DriveBlock& s) {
 
 int log2_of(int n) { return 31 - __builtin_clz(static_cast<unsigned>(n)); }
 
-// What eight drives start a step from.
+// State of eight drives at the start of a step.
 template <class Arch>
 struct Start {
   Motion<Arch> at;
@@ -446,7 +446,7 @@ template <class Arch, FrictionKind kind, bool same>
   return others;
 }
 
-// Where the positions of a block at the stops of a step go.
+// Destinations of the positions of a block at the stops of a step.
 struct Positions {
   LaneArray* first;
   std::size_t block, blocks;
@@ -479,7 +479,7 @@ template <class Arch, FrictionKind kind, bool same>
   return static_cast<LaneBits>(good.bits());
 }
 
-// Those that do not take the step in one want sub-steps that are shorter from now on.
+// Drives that did not complete the step in one use shorter sub-steps from now on.
 template <class Arch, FrictionKind kind, bool same>
 LaneBits through_zone_with_stops(DriveBlock& s, const DriveInputBlock& input, const BlockStep& step,
                                  const Positions& positions, LaneBits lanes) {

@@ -58,7 +58,7 @@ int halvings_of(const FeedDriveParams& p, double base_period) {
 
 double direction(SlideMode slide) { return slide == SlideMode::negative ? -1.0 : 1.0; }
 
-// Where a straight line from a to b >= 0 reaches 0, as a fraction.
+// Fraction at which a straight line from a to b >= 0 reaches 0.
 double rise(double a, double b) { return a >= 0.0 ? 0.0 : a / (a - b); }
 
 template <std::size_t n>
@@ -171,7 +171,7 @@ struct ExactStep::Rows {
   }
 };
 
-// Whether the states within a sub-step have a say: for breaking away, for the flanks, for cogging.
+// Returns true if states within a sub-step matter: for breakaway, for the flanks, for cogging.
 bool ExactStep::looks_within(const LaneState& s) const {
   return sticks(s) || params_.gap > 0.0 || params_.cogging.T != 0.0;
 }
@@ -253,7 +253,7 @@ bool ExactStep::collocate(const LaneState& s, double F, double h, const Propagat
   return false;
 }
 
-// What the parabola misses at h/4 and 3h/4, as the displacement (m) that it leaves.
+// Error of the parabola at h/4 and 3h/4, as the displacement (m) that it causes.
 double ExactStep::error_of(double F, double h, const Trial& trial) const {
   const LaneState& first = trial.at[0];
   const LaneState& third = trial.at[2];
@@ -266,7 +266,7 @@ double ExactStep::error_of(double F, double h, const Trial& trial) const {
   return error;
 }
 
-// Whether a state, reached without a change of mode, belongs to another mode.
+// Returns true if a state, reached without a change of mode, belongs to another mode.
 bool ExactStep::happens(const LaneState& s, double F) const {
   if (params_.friction.kind == FrictionKind::set_valued) {
     if (s.slide == SlideMode::sticking) {
@@ -343,7 +343,7 @@ void ExactStep::from_rest(LaneState& s, double F) const {
   s.slide = slide_from_rest(params_.friction, driving_force(params_, s, F));
 }
 
-// Where on the way from s to end the slide stops or breaks away, as a fraction; 1: it does not.
+// Fraction of the step from s to end at which the slide stops or breaks away; 1: it does not.
 double ExactStep::slide_event(const LaneState& s, const LaneState& end, double F) const {
   const FrictionParams& f = params_.friction;
   if (f.kind != FrictionKind::set_valued) return 1.0;
@@ -357,7 +357,7 @@ double ExactStep::slide_event(const LaneState& s, const LaneState& end, double F
   return v1 < 0.0 ? rise(-v0, -v1) : 1.0;
 }
 
-// Where a flank takes hold or lets go, likewise.
+// Fraction of the step at which a flank makes or loses contact; 1: it does not.
 double ExactStep::contact_event(const LaneState& s, const LaneState& end) const {
   const ContactMode next = params_.gap > 0.0 ? contact_after(params_, end) : s.contact;
   if (next == s.contact) return 1.0;

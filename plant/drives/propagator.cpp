@@ -73,7 +73,7 @@ PropagatorSeries::Values PropagatorSeries::at(long double t) const {
   return S;
 }
 
-// What a column of Propagator, of a sub-step of length h, adds to a state.
+// Contribution of a column of Propagator, for a sub-step of length h, to a state.
 long double PropagatorSeries::entry(const Values& S, State state, std::size_t column,
                                     long double h) {
   // The parabolas that are 1 at one of 0, 1/2, 1 and 0 at the others: coefficients of 1, s, s^2.

@@ -7,14 +7,14 @@
 namespace servomill::plant {
 namespace {
 
-// What the formulas leave out of a machine that does not have it.
+// Parts that the formulas omit for a machine that does not have them.
 struct Parts {
   Way way;
   bool angles, levers, constants;
 };
 constexpr Parts kEverything = {Way::general, true, true, true};
 
-// Of half a turn b, with t2 = |b|^2: (R - 1) u = a b x (u + b x u).
+// For a half rotation b, with t2 = |b|^2: (R - 1) u = a b x (u + b x u).
 template <class N>
 SERVOMILL_INLINE N small_half_turn_factor(const N& t2) {
   return fnma(t2, all<N>(8.0 / 6.0), all<N>(2.0));

@@ -65,7 +65,7 @@ Functions functions_of(const ChainAxis& axis, const ErrorModel& errors) {
   return all;
 }
 
-// What an axis has.
+// Geometric errors of one axis.
 struct Faults {
   Vector3d shift, angles;  // location errors
   bool has_functions = false, has_angles = false;

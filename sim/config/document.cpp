@@ -94,7 +94,7 @@ void replace(Value& old, Value by) {
   old = std::move(by);
 }
 
-// What an item of a list of tables is called by: its name, or else its type.
+// Name of an item in a list of tables; its type if it has none.
 std::string_view name_of(const Value& item) {
   if (item.type != Value::Type::table) return {};
   for (const std::string_view key : {"name", "type"}) {

@@ -24,7 +24,7 @@ class Source {
   }
 
   Place place(const toml::source_region& region) const { return place(region.begin); }
-  // Where the text breaks off, the library's position lies beyond the end of its line.
+  // If the text ends early, the library reports a position beyond the end of its line.
   Place place(const toml::source_position& position) const {
     if (position.line == 0 || position.line > lines_.size()) return {name_};
     const auto column = std::min<std::size_t>(position.column, characters(position.line) + 1);

@@ -129,7 +129,7 @@ ProgramPath::Piece ProgramPath::piece(std::size_t index) const {
   return out;
 }
 
-// Where a piece begins, in its own coordinates; `at` is in those of the piece before.
+// Start of a piece in its own coordinates; `at` is in those of the previous piece.
 AxisWords ProgramPath::begin_of(const Piece& piece, const Piece* before, AxisWords at) const {
   const bool was_tip = before != nullptr && before->is_tip;
   if (was_tip == piece.is_tip && (!was_tip || before->p_ST == piece.p_ST)) return at;

@@ -107,7 +107,7 @@ class RowWriter {
   double* next_;
 };
 
-// What a resolution of one metre is in the unit of a signal; 0: it is never rounded.
+// A resolution of one metre in the unit of a signal; 0: the signal is never rounded.
 double per_metre(const Signal& signal) {
   const std::string& unit = signal.units;
   constexpr double kArm = 1.0;  // m
@@ -251,7 +251,8 @@ class Recorder::Rows {
   std::optional<RowKeeper> keeper_;
 };
 
-// Where the original program is, from `first` on up to a change of the tool. Returns the row of it.
+// Finds the places in the original program, from row `first` to the next change of the tool;
+// returns the row of that.
 std::size_t Recorder::Rows::find_places(const std::vector<Snapshot>& block, std::size_t first) {
   pieces_.clear();
   Q_prog_.clear();
@@ -271,14 +272,14 @@ std::size_t Recorder::Rows::find_places(const std::vector<Snapshot>& block, std:
   return block.size();
 }
 
-// Where the joints of the ideal machine would stand with the tool where it is.
+// Joints of the ideal machine for the actual pose of the tool.
 Joints Recorder::Rows::ideal_joints(const Joints& Q_true, int tool_offset) const {
   const auto tip = tips_.find(tool_offset);
   const Eigen::Vector3d p_ST = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;
   return inverse_.nearest(truth_.forward(Q_true, p_ST), p_ST, Q_true).Q;
 }
 
-// Where the tool is and where it should be.
+// Computes the actual and the nominal pose of the tool.
 void Recorder::Rows::find_poses(std::span<const double> directions) {
   const auto tip = tips_.find(path_.tool_offset(pieces_.front()));
   p_ST_ = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;

@@ -162,8 +162,7 @@ class Cut {
   Eigen::Vector3d p_ST_ = Eigen::Vector3d::Zero();
 };
 
-// What belongs to one case among those that run in lockstep: set point, feedback hardware,
-// recorder.
+// Parts of one case among those that run in lockstep: setpoint, feedback hardware, recorder.
 class CaseRun {
  public:
   CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::size_t run,

@@ -29,7 +29,7 @@ void fill(Curve& curve, const ResponseAt& y, double f, Complex response, int dep
   fill(curve, y, f, response, depth - 1);
 }
 
-// Where `quantity` of the response is least near the point i, which has a larger one on each side.
+// Frequency at which `quantity` has its minimum near point i, whose neighbours are both larger.
 template <class Of>
 std::pair<double, Complex> least(const Curve& curve, std::size_t i, const ResponseAt& y,
                                  const Of& quantity) {
@@ -67,7 +67,7 @@ Complex interpolated(const Curve& curve, std::size_t i, double f) {
   return curve.y[i] * std::pow(curve.y[i + 1] / curve.y[i], t);
 }
 
-// Where `quantity` of the response changes its sign between the points i and i + 1.
+// Frequency at which `quantity` changes its sign between the points i and i + 1.
 template <class Of>
 std::pair<double, Complex> crossing(const Curve& curve, std::size_t i, const ResponseAt& at,
                                     const Of& quantity) {

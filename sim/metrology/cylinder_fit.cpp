@@ -19,7 +19,7 @@ using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
 constexpr int kMostSteps = 200;       // ten or twenty are usual
 constexpr double kLittleGain = 1e-4;  // of the sum: Gauss-Newton takes over
-// Of the strongest motion: one that changes the distances by less than 1e-7 of it is free.
+// Relative to the strongest motion: one that changes distances by less than 1e-7 of it is free.
 constexpr double kFree = 1e-14;
 constexpr int kDirections = 200;             // over the half-sphere, some 10 deg apart
 constexpr int kStarts = 6;                   // of which the search begins

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRounding = 1e-13;  // of what is added up, for components of the order of 1
 
-// Whether x lies outside by more than rounding.
+// Returns true if x is outside by more than rounding.
 bool cuts_off(const HalfSpace& half, const SmallVector& x) {
   const double size = 1.0 + half.a.cwiseAbs().dot(x.cwiseAbs()) + std::abs(half.b);
   return half.a.dot(x) > half.b + kRounding * size;

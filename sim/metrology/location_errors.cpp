@@ -127,7 +127,7 @@ int rank_of(const MatrixXd& A) {
   return static_cast<int>(svd.rank());
 }
 
-// What stands for an unknown that was left out: the kept ones that have the same effect.
+// Finds the unknowns kept that have the same effect as one left out.
 void explain(LocationEstimate& estimate, const VectorXd& effect, const Solved& solved,
              const Basis& basis, int set_up_unknowns, const std::vector<ErrorName>& names) {
   const VectorXd share = solved.svd.solve(effect);  // each of the size of what it does

@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Of widths: how far a tilt or slope may go in one step.
+// In widths: largest change of a tilt or slope in one step.
 constexpr double kReach = 10.0;
 
 // Twice the area of a triangle: positive if it turns left.

@@ -6,7 +6,7 @@
 namespace servomill::sim {
 namespace {
 
-// Of the largest extent. Extents are roots of eigenvalues, which are good to 1e-16 of the largest.
+// Relative to the largest extent. Extents are roots of eigenvalues, exact to 1e-16 of the largest.
 constexpr double kNoExtent = 1e-7;
 
 template <int N>

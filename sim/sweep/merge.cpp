@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostNamed = 20;  // shards or ranges in one message
 
-// What a merge keeps of a file; files are open one at a time, there may be thousands.
+// Data that a merge keeps of each file; files are opened one at a time, there may be thousands.
 struct Shard {
   std::string path, build, resolved, swept_files;
   Selection selection;
@@ -94,7 +94,7 @@ class Owners {
     }
   }
 
-  // What nobody holds, by shard where all files are of one partition.
+  // Points in none of the files, by shard where all files are of one partition.
   std::string missing(const std::vector<Shard>& shards) const {
     const Selection& like = shards.front().selection;
     const bool one_partition = std::all_of(shards.begin(), shards.end(), [&](const Shard& shard) {

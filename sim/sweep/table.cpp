@@ -44,7 +44,7 @@ void add_level(std::set<SimdLevel>& levels, double number) {
   }
 }
 
-// Whether a file begins with nothing: what is first in it is written last.
+// Returns true if a file begins with zeros: its beginning is written last.
 bool begins_empty(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::array<char, 8> begin{};
@@ -197,7 +197,7 @@ void SweepTable::make(const Scenario& base) {
   counts_[0] = rows;
 }
 
-// What a file holds already. Anything but this sweep is left alone.
+// Takes over the points that a file holds already. A file that is not of this sweep is refused.
 void SweepTable::take_over(const std::string& name, const Scenario& base) {
   std::optional<SweepHeader> header;
   try {
@@ -282,7 +282,7 @@ void SweepTable::write_runs(std::span<const std::uint64_t> rows, Hdf5Dataset& to
 
 namespace {
 
-// What stands in column c of a point.
+// Value of a point in column c.
 double value_in(const TableColumn& column, std::size_t c, const SweepPoint& point) {
   if (c >= point.values.size()) {
     const std::size_t q = c - point.values.size();

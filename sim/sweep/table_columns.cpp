@@ -40,7 +40,7 @@ class Names {
   std::set<std::string> taken_ = {"point", "status", "reason", "simd_level"};
 };
 
-// What a TOML text says, if it says it without escapes; other values as they are.
+// The content of a TOML string without escapes; other values unchanged.
 std::string unquoted(const std::string& toml) {
   const bool is_text = toml.size() >= 2 && (toml.front() == '"' || toml.front() == '\'') &&
                        toml.back() == toml.front() && toml.find('\\') == std::string::npos;
