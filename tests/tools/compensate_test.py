@@ -103,7 +103,7 @@ def main():
         (path / "offsets.var").write_text(var)
         (path / "offsets_mm.var").write_text("".join(f"{n} {v}\n" for n, v in OFFSETS.items()))
         said = subprocess.run([servomill, "compensate", "part.ngc", "--machine", MACHINE, "--tools", "tools.tbl",
-                               "--parameter-file", "offsets_mm.var", "--json"], cwd=folder, check=True,
+                               "--parameter-file", "offsets_mm.var", "--reader", "linuxcnc", "--json"], cwd=folder, check=True,
                               capture_output=True, text=True).stdout
         for name, blocks in (("part.ngc", "blocks_before"), ("part.compensated.ngc", "blocks_after")):
             done = run_rs274(exe, name, folder)

@@ -186,7 +186,7 @@ def _tool_shift(run, case, sections):
     rows = cutting.samples(sections)
     if not len(rows):
         raise NotInFile("no feed motion in sections named " + ", ".join(sections))
-    in_air = files.along_path(air, air.column("tool_position_true", "Z"), cutting.column("s")[rows])
+    in_air = air.along("tool_position_true", "Z", cutting.column("s")[rows])
     return (cutting.column("tool_position_true", "Z")[rows] - in_air) * files.UM_PER_MM
 
 

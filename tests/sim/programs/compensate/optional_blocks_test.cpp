@@ -64,7 +64,7 @@ TEST(OptionalBlocks, KeepTheSlashOnEveryLineThatTheyBecome) {
 
 // A hole of a canned cycle that the operator may leave out.
 TEST(OptionalBlocks, LeaveHolesOut) {
-  const std::string holes = "G81 X10 Y10 Z-3 R2 F100\n/X20 Y20\nX40 Y40\nG80\nM2\n";
+  const std::string holes = "G99 G81 X10 Y10 Z-3 R2 F100\n/X20 Y20\nX40 Y40\nG80\nM2\n";
   const std::string text = without_numbers(written_for(Dialect::fanuc, holes));
   EXPECT_NE(text.find("G0 Z2.\n/X20. Y20.\n/G1 X20. Y20. Z-3.\n/G0 Z2.\n/X20. Y20.\n"
                       "X40. Y40.\nG1 Z-3.\n"),
@@ -153,8 +153,9 @@ TEST(OptionalBlocks, DoNotCallSubroutines) {
 TEST(OptionalBlocks, AreRefusedWhereTheProgramCannotRunWithoutThem) {
   EXPECT_EQ(
       why(Dialect::linuxcnc, "/F100\nG1 X20\nM2\n"),
-      "plate.ngc:7:1: error: G1 with zero feed; no F is in force; that is with the blocks with "
-      "'/' left out: " +
+      "plate.ngc:7:1: error: G1 before any F: Mach goes on with the feed that it had last, other "
+      "controls refuse it; write F, or give the feed with --feed; that is with the blocks with '/' "
+      "left out: " +
           kRemedy);
 }
 

@@ -175,6 +175,7 @@ TEST(CompensateResidual, OfAPerfectBeliefIsBelowTheTolerance) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const std::string program = Generator(seed).program();
     Trial trial(program, "random.ngc");
+    trial.request.inputs.reader = "linuxcnc";
     for (const double tolerance : {1.0 * um, 5.0 * um}) {
       trial.request.tolerance = tolerance;
       const Compensated done = trial.run();
