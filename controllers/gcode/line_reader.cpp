@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "plant/vocabulary/input_error.h"
 
@@ -343,20 +344,22 @@ void LineReader::parse(std::string_view& line, const std::string& file, int numb
     parser_.parse(line, file, number, block, extent);
     if (!reads_fan_codes_ || !has_fan_code(block)) return;
     tolerant_ = tolerant_line(line, reader_);
+    line = tolerant_.text;
   } catch (const InputError& error) {
     const int column = error.faults().front().place.column;
     const std::string language = other_language(line, column);
     if (!language.empty()) throw InputError({file, number, column}, language);
-    tolerant_ = tolerant_line(line, reader_);
-    if (tolerant_.applied.empty() && line.starts_with("//")) {
+    TolerantLine other = tolerant_line(line, reader_);  // `line` may be the text of the last one
+    if (other.applied.empty() && line.starts_with("//")) {
       throw InputError({file, number, column},
                        "'//' before words: a comment for some controls, a block that the operator "
                        "may skip for others; write ( ) or ;");
     }
-    if (tolerant_.applied.empty()) throw;
+    if (other.applied.empty()) throw;
+    tolerant_ = std::move(other);
+    line = tolerant_.text;
   }
-  parser_.parse(tolerant_.text, file, number, block, extent);
-  line = tolerant_.text;
+  parser_.parse(line, file, number, block, extent);
 }
 
 }  // namespace servomill::controllers
