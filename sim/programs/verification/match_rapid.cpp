@@ -152,6 +152,7 @@ void ReplayComparison::match_rapid(const OriginalAction& action) {
   const Targets targets = targets_of(action);
   std::optional<double> z_begin;
   bool began_with_Z = false, began_without_Z = false;
+  const bool moves = !is_reached(targets);
   for (int blocks = 0; !is_reached(targets); ++blocks) {
     if (!at_[kZ] && !limits_.is_linuxcnc && !action.is_machine_position) skip_retracts(&action);
     const Action& one = need("a rapid");
@@ -186,7 +187,8 @@ void ReplayComparison::match_rapid(const OriginalAction& action) {
                        targets.corrected[k] / unit_of(i), *at_[i] / unit_of(i)));
     }
   }
-  compare_auxiliary(action, false);
+  // what is switched at a move of no length is compared at the next that has one
+  if (moves) compare_auxiliary(action, false);
 }
 
 // G53: machine positions, to the digit.
