@@ -138,6 +138,7 @@ void Interpreter::Machine::read_pending_line() {
   pending_line_ = std::move(pending_lines_.front());
   pending_lines_.pop_front();
   line_ = pending_line_;
+  const std::size_t moves_before = out_.size();
   try {
     reader_.parse(line_, file(), line(), block_);
     execute();
@@ -148,8 +149,16 @@ void Interpreter::Machine::read_pending_line() {
   }
   if (!pending_lines_.empty()) {
     ++nth_line_;
-  } else if (reading_.local_call()) {
+    return;
+  }
+  if (!reading_.local_call()) return;
+  try {
     call_block(*reading_.local_call());
+  } catch (const InputError&) {  // a block that fails has moved nothing
+    reading_.roll_back();
+    state_ = before_;
+    out_.resize(moves_before);
+    throw;
   }
 }
 
