@@ -76,7 +76,7 @@ class LexicalRules {
     constexpr std::array kRequests = {"$$", "$G", "$I", "$N", "$#", "?"};
     const bool is_request = std::any_of(kRequests.begin(), kRequests.end(),
                                         [&](const char* one) { return request == one; });
-    if (!is_request || !apply(WordRule::sender_command, at_)) return false;
+    if (!is_request || !apply(ReaderRule::sender_command, at_)) return false;
     blank(at_, std::min(end, text().size()));
     return true;
   }
@@ -88,7 +88,7 @@ class LexicalRules {
     const std::size_t star = text().find_last_not_of("0123456789", last);
     const bool is_checksum = star != std::string::npos && star > 0 && text()[star] == '*' &&
                              text()[star - 1] != '*' && text().find_first_of("[#(;") == text().npos;
-    if (is_checksum && apply(WordRule::checksum, star)) blank(star, last + 1);
+    if (is_checksum && apply(ReaderRule::checksum, star)) blank(star, last + 1);
   }
 
   // Cuts a comment that goes beyond the longest line; what it says has no effect.
@@ -101,7 +101,7 @@ class LexicalRules {
     const bool is_closed =
         close != std::string::npos && text()[close] == ')' && text().find(')', open) == close;
     if (!is_line_comment && !is_closed) return;
-    if (!apply(WordRule::long_comment, kLongestLine)) return;
+    if (!apply(ReaderRule::long_comment, kLongestLine)) return;
     text().resize(kLongestLine);
     if (!is_line_comment) text().back() = ')';
   }
@@ -160,7 +160,7 @@ class LexicalRules {
       fan_code();
     } else if (is_code('G', "187")) {
       smoothness();
-    } else if (is_dwell_ && upper(c) == 'U' && apply(WordRule::dwell_word, at_)) {
+    } else if (is_dwell_ && upper(c) == 'U' && apply(ReaderRule::dwell_word, at_)) {
       text()[at_++] = 'X';
     } else if (is_letter(c)) {
       is_dwell_ = is_dwell_ || is_code('G', "4") || is_code('G', "04");
@@ -195,7 +195,7 @@ class LexicalRules {
       at_ = digits_end(at_ + 1);
       if (at(at_) == '.') at_ = digits_end(at_ + 1);
     }
-    if (apply(WordRule::smoothing, begin)) blank(begin, at_);
+    if (apply(ReaderRule::smoothing, begin)) blank(begin, at_);
   }
 
   bool is_fan_code() const { return is_code('M', "106") || is_code('M', "107"); }

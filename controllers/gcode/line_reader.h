@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "controllers/gcode/parser.h"
-#include "controllers/gcode/reader_rules.h"
+#include "controllers/gcode/reader.h"
 
 namespace servomill::controllers {
 

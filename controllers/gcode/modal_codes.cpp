@@ -77,7 +77,7 @@ bool Interpreter::Machine::is_unknown_length(bool is_added, int number, int colu
   const bool may_be = setup_.accepts_unknown_lengths && setup_.tools.empty() && number != 0 &&
                       !is_added && !state_.controls_tip() &&
                       request().code(Group::g_tool_length) == 430;
-  return may_be && tolerates(WordRule::unknown_length, column);
+  return may_be && tolerates(ReaderRule::unknown_length, column);
 }
 
 // G43 and G43.2

@@ -203,7 +203,7 @@ ArcCentre Interpreter::Machine::checked_centre(const Eigen::Vector2d& start,
       least > tolerance.radius && difference <= kSpiralLimit && difference <= kSpiralShare * least;
   if (!is_near) return found;
   const std::string detail = fmt::format("; here by {:.4f} mm", difference / mm);
-  if (tolerates(WordRule::arc_radii, request().motion.column, detail)) found.fault.clear();
+  if (tolerates(ReaderRule::arc_radii, request().motion.column, detail)) found.fault.clear();
   return found;
 }
 

@@ -36,6 +36,41 @@ enum class ReaderRule : std::uint8_t {
   block_number_anywhere,
   tool_without_table,
   fan_code,
+  long_comment,
+  dwell_word,
+  given_feed,
+  arc_radii,
+  repeated_group,
+  home_with_motion,
+  second_home_number,
+  homing_cycle,
+  additional_work_offset,
+  cycle_repeats,
+  cycle_without_hole,
+  cycle_memory,
+  cycle_without_dwell,
+  fine_boring,
+  tapping_spindle,
+  words_with_g80,
+  motion_behind_cycle,
+  modal_diameter_offset,
+  modal_length_offset,
+  unknown_length,
+  subprogram_repeats,
+  call_with_words,
+  local_subprogram,
+  smoothing,
+  machine_function,
+  polar_coordinates,
+  scaling,
+  mirror_image,
+  rotation,
+  unit_codes,
+  sender_command,
+  checksum,
+  rapid_at_start,
+  centre_off_plane,
+  circular_pocket,
   count
 };
 
@@ -47,6 +82,13 @@ struct ReaderRuleEntry {
   std::string_view controls;  // that read it so
   std::uint8_t readers;       // those of `Reader`, a bit each; `any` has every rule
   std::string_view source;    // manual and page, or "from memory", or that none was found
+};
+
+/// A rule that a line needed, and the first column that needed it.
+struct AppliedRule {
+  ReaderRule rule;
+  int column = 0;
+  std::string detail = {};  // behind the sentence of the rule, or empty
 };
 
 /// All rules, in the order of `ReaderRule`.

@@ -14,7 +14,7 @@
 #include "controllers/gcode/block.h"
 #include "controllers/gcode/decimal_point.h"
 #include "controllers/gcode/modal_state.h"
-#include "controllers/gcode/reader_rules.h"
+#include "controllers/gcode/reader.h"
 #include "controllers/gcode/readers/block_words.h"
 #include "controllers/gcode/readers/differences.h"
 #include "controllers/gcode/readers/plane_frame.h"

@@ -84,7 +84,7 @@ void ReadingStep::fine_boring() {
          "G76 without R: a thread of a lathe (LinuxCNC), or fine boring (Fanuc, "
          "Haas), which needs R");
   }
-  need(WordRule::fine_boring, code->column);
+  need(ReaderRule::fine_boring, code->column);
   code->value = 86.0;
   code->is_changed = true;
   for (const char letter : {'Q', 'I', 'J'}) words.erase(letter);
@@ -100,7 +100,7 @@ void ReadingStep::cycle_words(int code) {
   for (const std::size_t k : {kR, kBottom, kP, kQ}) {
     const bool uses = k < kP || (k == kP ? has_dwell(code) || is_tapping(code) : is_pecking(code));
     if (!uses || !is_fresh || words.has(letters[k]) || !kept.values[k]) continue;
-    if (memory.pending_motion < 0) need(WordRule::cycle_memory, column);
+    if (memory.pending_motion < 0) need(ReaderRule::cycle_memory, column);
     words.add(letters[k], *kept.values[k], column);
   }
   for (const std::size_t k : {kR, kBottom, kQ}) {
@@ -134,7 +134,7 @@ void ReadingStep::cycle_levels(int code) {
   const int column = words.all().front().column;
   const bool goes_on = state.motion == code;
   if (goes_on && choose(WordDifference::cycle_distance, column) == 0) return;
-  if (!goes_on && memory.pending_motion < 0) need(WordRule::cycle_memory, column);
+  if (!goes_on && memory.pending_motion < 0) need(ReaderRule::cycle_memory, column);
   const double base = is_incremental() ? initial_level() : 0.0;
   if (!words.has('R')) words.add('R', kept.r_level - base, column);
   if (!words.has(bottom)) {
@@ -156,7 +156,7 @@ void ReadingStep::cycle_dwell(int code) {
   if (!has_dwell(code) || state.motion == code || memory.cycle.values[kP]) return;
   const BlockWord* word = words.code('G', code);
   const int column = word != nullptr ? word->column : words.all().front().column;
-  need(WordRule::cycle_without_dwell, column);
+  need(ReaderRule::cycle_without_dwell, column);
   words.add('P', 0.0, column);
 }
 
@@ -166,12 +166,12 @@ void ReadingStep::cycle_repeats(int code) {
   if (const BlockWord* K = is_back_boring ? nullptr : words.find('K')) {
     const int column = K->column;
     if (words.has('L')) fail(column, "K and L in one block: both repeat the cycle");
-    need(WordRule::cycle_repeats, column);
+    need(ReaderRule::cycle_repeats, column);
     words.add('L', words['K'], column);
     words.erase('K');
   }
   if (!words.has('L') || words['L'] != 0.0) return;
-  need(WordRule::cycle_without_hole, words.column('L'));
+  need(ReaderRule::cycle_without_hole, words.column('L'));
   for (const char letter : {'X', 'Y', 'Z', 'R', 'P', 'Q', 'L'}) words.erase(letter);
   if (BlockWord* word = words.code('G', strict_code(code))) words.erase(*word);
   memory.pending_motion = strict_code(code);
@@ -213,7 +213,7 @@ void ReadingStep::tapping(int code) {
   if (words.has_code('M', 30) || words.has_code('M', 40) || words.has_code('M', 50)) return;
   const BlockWord* word = words.code('G', code);
   const int column = word != nullptr ? word->column : words.all().front().column;
-  need(WordRule::tapping_spindle, column);
+  need(ReaderRule::tapping_spindle, column);
   words.add('M', code == 840 ? 3.0 : 4.0, column);
 }
 

@@ -43,7 +43,7 @@ void ReadingStep::polar_mode() {
   for (const int tenths : {150, 160}) {
     BlockWord* code = words.code('G', tenths);
     if (code == nullptr) continue;
-    need(WordRule::polar_coordinates, code->column);
+    need(ReaderRule::polar_coordinates, code->column);
     memory.polar = {};
     memory.polar.is_on = tenths == 160;
     if (memory.polar.is_on) polar_origin(code->column);
@@ -69,7 +69,7 @@ void ReadingStep::scale_inputs(BlockWord& code) {
     fail(words.column(letter),
          fmt::format("{} beside G51: the factors of Mach are X, Y and Z", letter));
   }
-  need(WordRule::scaling, code.column);
+  need(ReaderRule::scaling, code.column);
   for (int i = 0; i < 3; ++i) {
     const char axis = "XYZ"[i];
     if (words.has(axis) && words[axis] == 0.0) {
@@ -89,7 +89,7 @@ void ReadingStep::scaling() {
   if (BlockWord* off = words.code('G', 500)) {
     refuse_frame_change(*off);
     if (words.has('S')) fail(off->column, "G50 S limits the speed of a lathe's spindle");
-    need(WordRule::scaling, off->column);
+    need(ReaderRule::scaling, off->column);
     if (frame.is_scaled) frame.scale.setOnes();
     frame.is_scaled = false;
     words.erase(*off);
@@ -107,7 +107,7 @@ void ReadingStep::scaling() {
   if (frame.is_rotated || frame.is_mirrored) {
     fail(on->column, "G51 under G68 or G51.1; scale before");
   }
-  need(WordRule::scaling, on->column);
+  need(ReaderRule::scaling, on->column);
   const Eigen::Vector3d now = frame.from_work(state.programmed().head<3>());
   const auto factor = [&](char letter) {
     const BlockWord& word = *words.find(letter);
@@ -137,7 +137,7 @@ void ReadingStep::mirror() {
     if (frame.is_rotated || frame.is_scaled) {
       fail(code->column, fmt::format("{} under G68 or G51", code_name('G', tenths)));
     }
-    need(WordRule::mirror_image, code->column);
+    need(ReaderRule::mirror_image, code->column);
     const bool ends_all = tenths == 501 && !words.has_axis();
     for (int i = 0; i < 3; ++i) {
       const char axis = "XYZ"[i];
@@ -177,7 +177,7 @@ void ReadingStep::rotation() {
   PlaneFrame& frame = memory.frame;
   if (BlockWord* off = words.code('G', 690); off != nullptr && frame.is_rotated) {
     refuse_frame_change(*off);
-    need(WordRule::rotation, off->column);
+    need(ReaderRule::rotation, off->column);
     frame.is_rotated = false;
     words.erase(*off);
   }
@@ -188,7 +188,7 @@ void ReadingStep::rotation() {
     fail(on->column, "G68 is read with R, an angle in the plane; a tilted plane is G68.2");
   }
   if (frame.is_rotated) fail(on->column, "G68 under G68; G69 first");
-  need(WordRule::rotation, on->column);
+  need(ReaderRule::rotation, on->column);
   centre_of_mach(*on);
   const int n = normal_axis();
   const Eigen::Vector3d now = frame.from_work(state.programmed().head<3>());
@@ -222,7 +222,7 @@ void ReadingStep::additional_offset() {
   if (code == nullptr) code = words.code('G', 1540);
   if (code == nullptr) return;
   refuse_frame_change(*code);
-  need(WordRule::additional_work_offset, code->column);
+  need(ReaderRule::additional_work_offset, code->column);
   const std::string name = code_name('G', tenths_of(code->value));
   if (!words.has('P')) fail(code->column, fmt::format("{} needs P", name));
   const int P = static_cast<int>(std::lround(words['P']));

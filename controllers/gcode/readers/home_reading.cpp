@@ -25,12 +25,12 @@ void ReadingStep::home() {
       fail(words.column('P'),
            fmt::format("G30 P{}: the place is not in the program; use G53", words['P']));
     }
-    need(WordRule::second_home_number, words.column('P'));
+    need(ReaderRule::second_home_number, words.column('P'));
     words.erase('P');
   }
   const int motion = motion_code();
   if (motion < 0 || motion == 800) return;
-  need(WordRule::home_with_motion, words.code('G', motion)->column);
+  need(ReaderRule::home_with_motion, words.code('G', motion)->column);
   if (motion <= 30) leave_cycle();
   words.erase(*words.code('G', motion));
   memory.pending_motion = motion;
@@ -41,7 +41,7 @@ void ReadingStep::home() {
 void ReadingStep::homing_cycle() {
   BlockWord* code = words.code('G', 282);
   if (code == nullptr) return;
-  need(WordRule::homing_cycle, code->column);
+  need(ReaderRule::homing_cycle, code->column);
   for (const char axis : {'Z', 'X', 'Y', 'A', 'B', 'C'}) {
     if (!words.has(axis)) continue;
     behind.push_back(fmt::format("G90 G53 G0 {}0", axis));
@@ -115,7 +115,7 @@ void ReadingStep::inputs() {
     offset[i] = words[letter(axis)] * (is_linear(axis) ? unit() : deg);
     words.erase(letter(axis));
   }
-  need(WordRule::additional_work_offset, code->column);
+  need(ReaderRule::additional_work_offset, code->column);
   for (const char letter : {'P', 'L'}) words.erase(letter);
   words.erase(*words.code('G', 100));
 }

@@ -31,7 +31,7 @@ void ReadingStep::motion_in_force() {
     rapid_at_start(column);
     motion = 0;
   } else if (state.motion == 800 && motion <= 30) {
-    if (!memory.is_pending_known) need(WordRule::motion_behind_cycle, column);
+    if (!memory.is_pending_known) need(ReaderRule::motion_behind_cycle, column);
     refuse_arc_behind_cycle(motion, column);
   }
   words.add('G', motion / 10.0, column);
@@ -42,7 +42,7 @@ void ReadingStep::motion_in_force() {
 // A feed without F stops a control; what runs is a rapid.
 void ReadingStep::rapid_at_start(int column) {
   const bool can_feed = words.has('F') || state.feed_linear != 0.0 || options.feed.has_value();
-  if (can_feed || !apply(WordRule::rapid_at_start, column)) {
+  if (can_feed || !apply(ReaderRule::rapid_at_start, column)) {
     choose(WordDifference::start_motion, column);
   }
 }
@@ -53,7 +53,7 @@ void ReadingStep::arc_centre() {
   if (motion != 20 && motion != 30) return;
   BlockWord* centre = words.find("IJK"[normal_axis()]);
   if (centre == nullptr || centre->value != 0.0 || !centre->is_literal) return;
-  need(WordRule::centre_off_plane, centre->column);
+  need(ReaderRule::centre_off_plane, centre->column);
   words.erase(*centre);
 }
 
@@ -69,7 +69,7 @@ void ReadingStep::circular_pocket() {
     fail(word.column,
          "G12 and G13 of Haas: the way into the wall is the control's; program it with G2 or G3");
   }
-  need(WordRule::circular_pocket, word.column);
+  need(ReaderRule::circular_pocket, word.column);
   if (!words.has('I') || words['I'] <= 0.0 || words.has_axis() || normal_axis() != 2) {
     fail(word.column, fmt::format("{} needs I > 0, G17, and no axis words", code_name('G', code)));
   }
@@ -96,7 +96,7 @@ void ReadingStep::cancel_cycle(bool has_words) {
     return;
   }
   BlockWord& code = *words.code('G', 800);
-  need(WordRule::words_with_g80, code.column);
+  need(ReaderRule::words_with_g80, code.column);
   if (motion < 0) choose(WordDifference::start_motion, code.column);
   refuse_arc_behind_cycle(motion, code.column);
   code.value = std::max(motion, 0) / 10.0;
@@ -123,7 +123,7 @@ void ReadingStep::feed() {
                              "controls refuse it; write F, or give the feed with --feed",
                              code_name('G', motion)));
   }
-  if (!apply(WordRule::given_feed, column)) return;
+  if (!apply(ReaderRule::given_feed, column)) return;
   words.add('F', *options.feed * minute / state.unit, column);
 }
 

@@ -18,7 +18,7 @@ void ReadingStep::subprograms() {
   const BlockWord* P = words.find('P');
   if (P == nullptr || !P->is_literal || P->digits <= kNumberDigits) return;
   if (choose(WordDifference::subprogram_digits, P->column) == 0) return;
-  need(WordRule::subprogram_repeats, P->column);
+  need(ReaderRule::subprogram_repeats, P->column);
   const double repeats = std::floor(P->value / kNumbers);
   const double number = P->value - repeats * kNumbers;
   if (repeats == 0.0) return;
@@ -43,7 +43,7 @@ void ReadingStep::call_behind_words() {
   BlockWord* code = words.code('M', 980);
   if (code == nullptr) return;
   if (!words.has('P')) fail(code->column, "M98 needs a P word, the number of a subprogram");
-  need(WordRule::call_with_words, code->column);
+  need(ReaderRule::call_with_words, code->column);
   std::string call = fmt::format("M98 P{}", words['P']);
   if (words.has('L')) call += fmt::format(" L{}", words['L']);
   behind.push_back(std::move(call));
@@ -55,7 +55,7 @@ void ReadingStep::call_behind_words() {
 void ReadingStep::local_call() {
   BlockWord* code = words.code('M', 970);
   if (code == nullptr) return;
-  need(WordRule::local_subprogram, code->column);
+  need(ReaderRule::local_subprogram, code->column);
   if (!words.has('P')) fail(code->column, "M97 needs a P word, the number of a block");
   LocalCall call;
   call.block_number = static_cast<int>(std::lround(words['P']));

@@ -19,7 +19,7 @@ void ReadingStep::length_offset() {
       words.has_code('G', 432) || words.has_code('G', 434) || words.has_code('G', 435);
   if (is_other) return;
   if (H != nullptr && G43 == nullptr && !words.has_code('G', 490)) {
-    need(WordRule::modal_length_offset, H->column);
+    need(ReaderRule::modal_length_offset, H->column);
     memory.length_offset = H->value;
     if (state.tool_offset_number == 0) return words.erase('H');
     words.add('G', 43.0, H->column);
@@ -27,7 +27,7 @@ void ReadingStep::length_offset() {
     H = words.find('H');
   }
   if (H != nullptr && G43 == nullptr) {  // beside G49
-    need(WordRule::modal_length_offset, H->column);
+    need(ReaderRule::modal_length_offset, H->column);
     memory.length_offset = H->value;
     return words.erase('H');
   }
@@ -54,7 +54,7 @@ void ReadingStep::diameter_offset() {
     if (state.compensation.is_on && !words.has_code('G', 400)) {
       fail(D->column, "D with cutter compensation on; G40 first");
     }
-    need(WordRule::modal_diameter_offset, D->column);
+    need(ReaderRule::modal_diameter_offset, D->column);
     memory.diameter_offset = D->value;
     return words.erase('D');
   }

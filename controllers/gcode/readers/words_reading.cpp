@@ -84,7 +84,7 @@ void ReadingStep::unit_codes() {
   for (const int tenths : {700, 710}) {
     BlockWord* code = words.code('G', tenths);
     if (code == nullptr || words.has('Q') || words.has('P')) continue;
-    need(WordRule::unit_codes, code->column);
+    need(ReaderRule::unit_codes, code->column);
     code->value = tenths == 700 ? 20.0 : 21.0;
     code->is_changed = true;
   }
@@ -119,7 +119,7 @@ void ReadingStep::repeated_groups() {
                "G90 and G91 beside G28 or G30: which of them holds for the way there "
                "no control documents; write two blocks");
         }
-        if (tenths_of(last->value) != code->tenths) need(WordRule::repeated_group, word.column);
+        if (tenths_of(last->value) != code->tenths) need(ReaderRule::repeated_group, word.column);
         words.erase(*last);
       }
       last = &word;
@@ -144,7 +144,7 @@ void ReadingStep::machine_functions() {
     if (word.letter != 'M' || word.is_erased) continue;
     const int tenths = tenths_of(word.value);
     if (tenths == 190) {  // oriented, the spindle stands still
-      need(WordRule::machine_function, word.column);
+      need(ReaderRule::machine_function, word.column);
       for (const char letter : {'P', 'R', 'Q'}) words.erase(letter);
       word.value = 5.0;
       word.is_changed = true;
@@ -153,7 +153,7 @@ void ReadingStep::machine_functions() {
     const bool is_known = tenths % 10 == 0 && std::find(kFunctions.begin(), kFunctions.end(),
                                                         tenths / 10) != kFunctions.end();
     if (!is_known) continue;
-    need(WordRule::machine_function, word.column);
+    need(ReaderRule::machine_function, word.column);
     words.erase(word);
   }
 }
@@ -162,7 +162,7 @@ void ReadingStep::smoothing() {
   for (const Switch& one : kSmoothing) {
     BlockWord* code = words.code('G', one.tenths);
     if (code == nullptr || (one.needs_no_axis && words.has_axis())) continue;
-    need(WordRule::smoothing, code->column);
+    need(ReaderRule::smoothing, code->column);
     words.erase(*code);
     for (const char letter : one.words) words.erase(letter);
   }
@@ -187,7 +187,7 @@ void ReadingStep::dwell() {
     return words.set('P', dwell_of(WordDifference::dwell_unit, *P));
   }
   const BlockWord* X = words.find('X');
-  if (X == nullptr || !apply(WordRule::dwell_word, X->column)) return;
+  if (X == nullptr || !apply(ReaderRule::dwell_word, X->column)) return;
   double seconds = X->value;
   if (!X->has_point && seconds != 0.0) {
     if (options.decimal_point == DecimalPoint::unset) {

@@ -1,7 +1,7 @@
 // What is read beyond LinuxCNC's rules: each rule with a program that needs it and one that does
 // not and means the same; nothing is read in silence, and nothing that two controls read
 // differently.
-#include "controllers/gcode/reader_rules.h"
+#include "controllers/gcode/reader.h"
 
 #include <gtest/gtest.h>
 
@@ -98,81 +98,84 @@ const std::vector<Example>& examples() {
       {tool_without_table, "T5 M6\nG0 X1\nM2\n", "", "p.nc:1:1"},
       {fan_code, "M106 S255\nG0 X1\nM107\nM2\n", ";\nG0 X1\nM2\n", "p.nc:1:1"},
       {fan_code, "G0 X1 m106p1.5\nM2\n", "G0 X1\nM2\n", "p.nc:1:7"},
-      {WordRule::long_comment, "(" + std::string(300, 'x') + ")\nG0 X1.\nM2\n", ";\nG0 X1\nM2\n",
+      {ReaderRule::long_comment, "(" + std::string(300, 'x') + ")\nG0 X1.\nM2\n", ";\nG0 X1\nM2\n",
        "p.nc:1:253"},
-      {WordRule::dwell_word, "G4 X2.5\nM2\n", "G4 P2.5\nM2\n", "p.nc:1:4"},
-      {WordRule::dwell_word, "G04 U1.5\nM2\n", "G4 P1.5\nM2\n", "p.nc:1:5"},
-      {WordRule::given_feed, "G1 X1.\nM2\n", "G1 X1 F100\nM2\n", "p.nc:1:1", with_feed()},
+      {ReaderRule::dwell_word, "G4 X2.5\nM2\n", "G4 P2.5\nM2\n", "p.nc:1:4"},
+      {ReaderRule::dwell_word, "G04 U1.5\nM2\n", "G4 P1.5\nM2\n", "p.nc:1:5"},
+      {ReaderRule::given_feed, "G1 X1.\nM2\n", "G1 X1 F100\nM2\n", "p.nc:1:1", with_feed()},
       // radii of 5.04 and 4.96 mm
-      {WordRule::arc_radii, "G0 X0. Y0.\nG2 X10. Y0. I5.04 F100.\nM2\n", "", "p.nc:2:1"},
-      {WordRule::repeated_group, "G90 G17 G18 G17 G0 X1.\nM2\n", "G90 G17 G0 X1\nM2\n", "p.nc:1:9"},
-      {WordRule::home_with_motion, "G0 G28 X1.\nX2.\nM2\n", "G28 X1\nG0 X2\nM2\n", "p.nc:1:1"},
-      {WordRule::second_home_number, "G30 P2 X1.\nM2\n", "G30 X1\nM2\n", "p.nc:1:5"},
-      {WordRule::homing_cycle, "G0 X1. Y2.\nG28.2 X0. Y0.\nM2\n",
+      {ReaderRule::arc_radii, "G0 X0. Y0.\nG2 X10. Y0. I5.04 F100.\nM2\n", "", "p.nc:2:1"},
+      {ReaderRule::repeated_group, "G90 G17 G18 G17 G0 X1.\nM2\n", "G90 G17 G0 X1\nM2\n",
+       "p.nc:1:9"},
+      {ReaderRule::home_with_motion, "G0 G28 X1.\nX2.\nM2\n", "G28 X1\nG0 X2\nM2\n", "p.nc:1:1"},
+      {ReaderRule::second_home_number, "G30 P2 X1.\nM2\n", "G30 X1\nM2\n", "p.nc:1:5"},
+      {ReaderRule::homing_cycle, "G0 X1. Y2.\nG28.2 X0. Y0.\nM2\n",
        "G0 X1 Y2\nG53 G0 X0\nG53 G0 Y0\nM2\n", "p.nc:2:1"},
-      {WordRule::additional_work_offset, "G54.1 P3\nG0 X1. Y2.\nM2\n", "G0 X11 Y2\nM2\n",
+      {ReaderRule::additional_work_offset, "G54.1 P3\nG0 X1. Y2.\nM2\n", "G0 X11 Y2\nM2\n",
        "p.nc:1:1", with_additional_offset()},
-      {WordRule::additional_work_offset, "G154 P3 G0 X1.\nG54\nX1.\nM2\n", "G0 X11\nX1\nM2\n",
+      {ReaderRule::additional_work_offset, "G154 P3 G0 X1.\nG54\nX1.\nM2\n", "G0 X11\nX1\nM2\n",
        "p.nc:1:1", with_additional_offset()},
-      {WordRule::cycle_repeats, "G0 Z5.\nG91 G99 G81 X1. Z-2. R-1. K3 F100.\nM2\n",
+      {ReaderRule::cycle_repeats, "G0 Z5.\nG91 G99 G81 X1. Z-2. R-1. K3 F100.\nM2\n",
        "G0 Z5\nG91 G99 G81 X1 Z-2 R-1 L3 F100\nM2\n", "p.nc:2:27"},
-      {WordRule::cycle_without_hole, "G0 Z5.\nG99 G81 X1. Z-2. R1. L0 F100.\nX3.\nM2\n",
+      {ReaderRule::cycle_without_hole, "G0 Z5.\nG99 G81 X1. Z-2. R1. L0 F100.\nX3.\nM2\n",
        "G0 Z5\nG99 F100\nG81 X3 Z-2 R1\nM2\n", "p.nc:2:22"},
-      {WordRule::cycle_memory, kCycle + "G85 X3.\nM2\n",
+      {ReaderRule::cycle_memory, kCycle + "G85 X3.\nM2\n",
        "G0 Z5\nG99 G81 X1 Z-2 R1 F100\nG85 X3 Z-2 R1\nM2\n", "p.nc:3:1"},
-      {WordRule::cycle_without_dwell, "G0 Z5.\nG99 G82 X1. Z-2. R1. F100.\nM2\n",
+      {ReaderRule::cycle_without_dwell, "G0 Z5.\nG99 G82 X1. Z-2. R1. F100.\nM2\n",
        "G0 Z5\nG99 G82 X1 Z-2 R1 P0 F100\nM2\n", "p.nc:2:5"},
-      {WordRule::fine_boring, "M3 S100\nG0 Z5.\nG99 G76 X1. Z-2. R1. Q0.1 P0 F100.\nX3.\nM2\n",
+      {ReaderRule::fine_boring, "M3 S100\nG0 Z5.\nG99 G76 X1. Z-2. R1. Q0.1 P0 F100.\nX3.\nM2\n",
        "M3 S100\nG0 Z5\nG99 G86 X1 Z-2 R1 P0 F100\nX3\nM2\n", "p.nc:3:5"},
-      {WordRule::tapping_spindle, "S100\nG0 Z5.\nG99 G84 X1. Z-2. R1. F100.\nM2\n",
+      {ReaderRule::tapping_spindle, "S100\nG0 Z5.\nG99 G84 X1. Z-2. R1. F100.\nM2\n",
        "S100\nG0 Z5\nM3 G99 G84 X1 Z-2 R1 F100\nM2\n", "p.nc:3:5"},
-      {WordRule::words_with_g80, kCycle + "G80 X3.\nM2\n",
+      {ReaderRule::words_with_g80, kCycle + "G80 X3.\nM2\n",
        "G0 Z5\nG99 G81 X1 Z-2 R1 F100\nG0 X3\nM2\n", "p.nc:3:1"},
-      {WordRule::motion_behind_cycle, kCycle + "G80\nX3.\nM2\n",
+      {ReaderRule::motion_behind_cycle, kCycle + "G80\nX3.\nM2\n",
        "G0 Z5\nG99 G81 X1 Z-2 R1 F100\nG80\nG0 X3\nM2\n", "p.nc:4:1"},
-      {WordRule::modal_diameter_offset, "D1\nG41 G1 X10. F100.\nG40 X20.\nM2\n",
+      {ReaderRule::modal_diameter_offset, "D1\nG41 G1 X10. F100.\nG40 X20.\nM2\n",
        "G41 D1 G1 X10 F100\nG40 X20\nM2\n", "p.nc:1:1", with_tools()},
-      {WordRule::modal_length_offset, "G43 H1\nH2\nG0 Z1.\nM2\n", "G43 H1\nG43 H2\nG0 Z1\nM2\n",
+      {ReaderRule::modal_length_offset, "G43 H1\nH2\nG0 Z1.\nM2\n", "G43 H1\nG43 H2\nG0 Z1\nM2\n",
        "p.nc:2:1", with_tools()},
-      {WordRule::unknown_length, "G43 H1\nG0 Z1.\nM2\n", "", "p.nc:1:1", with_unknown_lengths()},
-      {WordRule::subprogram_repeats,
+      {ReaderRule::unknown_length, "G43 H1\nG0 Z1.\nM2\n", "", "p.nc:1:1", with_unknown_lengths()},
+      {ReaderRule::subprogram_repeats,
        "M98 P20100\nM2\nO100\nG0 X1.\nM99\n",
        "M98 P100 L2\nM2\nO100\nG0 X1\nM99\n",
        "p.nc:1:5",
        {},
        Reader::fanuc},
-      {WordRule::call_with_words, "G0 X2. M98 P100\nM2\nO100\nX1.\nM99\n",
+      {ReaderRule::call_with_words, "G0 X2. M98 P100\nM2\nO100\nX1.\nM99\n",
        "G0 X2\nM98 P100\nM2\nO100\nX1\nM99\n", "p.nc:1:8"},
-      {WordRule::local_subprogram, "M97 P100\nM2\nN100 G0 X1.\nM99\n", "G0 X1\nM2\n", "p.nc:1:1"},
-      {WordRule::local_subprogram, "G91 G0\nM97 P100 L3\nM2\nN100 X1.\nM99\n",
+      {ReaderRule::local_subprogram, "M97 P100\nM2\nN100 G0 X1.\nM99\n", "G0 X1\nM2\n", "p.nc:1:1"},
+      {ReaderRule::local_subprogram, "G91 G0\nM97 P100 L3\nM2\nN100 X1.\nM99\n",
        "G91 G0\nX1\nX1\nX1\nM2\n", "p.nc:2:1"},
-      {WordRule::smoothing, "G5.1 Q1\nG05 P10000\nG187 P1 E0.01\nG0 X1.\nM2\n", "G0 X1\nM2\n",
+      {ReaderRule::smoothing, "G5.1 Q1\nG05 P10000\nG187 P1 E0.01\nG0 X1.\nM2\n", "G0 X1\nM2\n",
        "p.nc:1:1"},
-      {WordRule::machine_function, "M88\nM29 S100\nM19 P90\nG0 X1.\nM2\n", "S100\nM5\nG0 X1\nM2\n",
-       "p.nc:1:1"},
-      {WordRule::polar_coordinates, "G16\nG0 X10. Y90.\nG91 Y90.\nG90 G15\nM2\n",
+      {ReaderRule::machine_function, "M88\nM29 S100\nM19 P90\nG0 X1.\nM2\n",
+       "S100\nM5\nG0 X1\nM2\n", "p.nc:1:1"},
+      {ReaderRule::polar_coordinates, "G16\nG0 X10. Y90.\nG91 Y90.\nG90 G15\nM2\n",
        "G0 X0 Y10\nX-10 Y0\nM2\n", "p.nc:1:1"},
-      {WordRule::scaling, "G51 X0. Y0. Z0. P2.\nG0 X1. Y2.\nG50\nX1.\nM2\n", "G0 X2 Y4\nX1\nM2\n",
+      {ReaderRule::scaling, "G51 X0. Y0. Z0. P2.\nG0 X1. Y2.\nG50\nX1.\nM2\n", "G0 X2 Y4\nX1\nM2\n",
        "p.nc:1:1"},
-      {WordRule::mirror_image, "G51.1 X0.\nG1 X1. Y2. F100.\nG2 X2. Y3. I1. J0.\nG50.1 X0.\nM2\n",
+      {ReaderRule::mirror_image, "G51.1 X0.\nG1 X1. Y2. F100.\nG2 X2. Y3. I1. J0.\nG50.1 X0.\nM2\n",
        "G1 X-1 Y2 F100\nG3 X-2 Y3 I-1 J0\nM2\n", "p.nc:1:1"},
-      {WordRule::unit_codes, "G70\nG0 X1.\nG71 X1.\nM2\n", "G20\nG0 X1\nG21 X1\nM2\n", "p.nc:1:1"},
-      {WordRule::sender_command, "$G ; modes\n?\nG0 X1.\nM2\n", "G0 X1\nM2\n", "p.nc:1:1"},
-      {WordRule::rapid_at_start, "Z5.\nX1.\nM2\n", "G0 Z5\nX1\nM2\n", "p.nc:1:1"},
-      {WordRule::centre_off_plane, "G2 X2. I1. J0. K0.000 F100.\nM2\n", "G2 X2 I1 J0 F100\nM2\n",
+      {ReaderRule::unit_codes, "G70\nG0 X1.\nG71 X1.\nM2\n", "G20\nG0 X1\nG21 X1\nM2\n",
+       "p.nc:1:1"},
+      {ReaderRule::sender_command, "$G ; modes\n?\nG0 X1.\nM2\n", "G0 X1\nM2\n", "p.nc:1:1"},
+      {ReaderRule::rapid_at_start, "Z5.\nX1.\nM2\n", "G0 Z5\nX1\nM2\n", "p.nc:1:1"},
+      {ReaderRule::centre_off_plane, "G2 X2. I1. J0. K0.000 F100.\nM2\n", "G2 X2 I1 J0 F100\nM2\n",
        "p.nc:1:16"},
-      {WordRule::centre_off_plane, "G18 G3 X2. J0. I1. K0. F100.\nM2\n",
+      {ReaderRule::centre_off_plane, "G18 G3 X2. J0. I1. K0. F100.\nM2\n",
        "G18 G3 X2 I1 K0 F100\nM2\n", "p.nc:1:12"},
-      {WordRule::circular_pocket,
+      {ReaderRule::circular_pocket,
        "G12 I4. F300.\nM2\n",
        "F300\nG1 X4\nG2 I-4\nG1 X0\nM2\n",
        "p.nc:1:1",
        {},
        Reader::mach},
-      {WordRule::checksum, "N1 G0 X1. *45\nM2\n", "G0 X1\nM2\n", "p.nc:1:11"},
+      {ReaderRule::checksum, "N1 G0 X1. *45\nM2\n", "G0 X1\nM2\n", "p.nc:1:11"},
       {percent_title, "(PART)\n%\nG0 X1.\n%\n", "%\nG0 X1\n%\n", "p.nc:2:1"},
-      {WordRule::home_with_motion, "G0 G92 X1.\nX2.\nM2\n", "G92 X1\nG0 X2\nM2\n", "p.nc:1:1"},
-      {WordRule::rotation, "G68 X0. Y0. R90.\nG0 X1. Y0.\nG69\nM2\n", "G0 X0 Y1\nM2\n", "p.nc:1:1"},
+      {ReaderRule::home_with_motion, "G0 G92 X1.\nX2.\nM2\n", "G92 X1\nG0 X2\nM2\n", "p.nc:1:1"},
+      {ReaderRule::rotation, "G68 X0. Y0. R90.\nG0 X1. Y0.\nG69\nM2\n", "G0 X0 Y1\nM2\n",
+       "p.nc:1:1"},
   };
   return all;
 }
@@ -204,9 +207,9 @@ TEST(ReaderRules, AreReadAsTheirPlainFormAndReportedOnce) {
 // What whoever rewrites programs gets to see is LinuxCNC's language.
 TEST(ReaderRules, AreGivenOutAsLinesForLinuxCnc) {
   const std::set<ReaderRule> others = {
-      ReaderRule::tool_without_table, WordRule::arc_radii,        WordRule::unknown_length,
-      ReaderRule::percent_title,      WordRule::local_subprogram, ReaderRule::percent_at_end,
-      WordRule::subprogram_repeats,   WordRule::call_with_words};  // these are unrolled
+      ReaderRule::tool_without_table, ReaderRule::arc_radii,        ReaderRule::unknown_length,
+      ReaderRule::percent_title,      ReaderRule::local_subprogram, ReaderRule::percent_at_end,
+      ReaderRule::subprogram_repeats, ReaderRule::call_with_words};  // these are unrolled
   for (const Example& one : examples()) {
     if (others.contains(one.rule)) continue;
     SCOPED_TRACE(one.tolerant);
@@ -233,7 +236,8 @@ TEST(ReaderRules, AreRefusedByLinuxCncAndByReadersWithoutThem) {
     for (std::size_t k = 0; k < kReaders.size(); ++k) {
       const auto reader = static_cast<Reader>(k);
       if (one.reader != Reader::any && reader == Reader::any) continue;
-      const bool has_other_words = one.rule == WordRule::scaling || one.rule == WordRule::rotation;
+      const bool has_other_words =
+          one.rule == ReaderRule::scaling || one.rule == ReaderRule::rotation;
       if (has_other_words && reader == Reader::mach) continue;  // G51 X2 Y2, G68 A1 B2 R90
       EXPECT_EQ(read(one.tolerant, reader, one.setup).refusal.empty(), has_rule(reader, one.rule))
           << kReaders[k];

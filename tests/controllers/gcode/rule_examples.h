@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "controllers/gcode/interpreter.h"
-#include "controllers/gcode/reader_rules.h"
+#include "controllers/gcode/reader.h"
 #include "controllers/gcode/readers/differences.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
