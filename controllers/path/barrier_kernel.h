@@ -49,7 +49,7 @@ struct BarrierParts {
   std::array<std::uint32_t, kLaneWidth> interval;
 };
 
-/// Where eight points are, and what they add to cost by their three coefficients.
+/// Eight points: their place in the path, and their share of the cost by its three coefficients.
 struct BarrierTerms {
   std::array<LaneArray, 3> x;  // b, b', b''
   std::array<LaneArray, 3> g;  // first derivatives

@@ -1,7 +1,7 @@
 /// A cubic spline through the tolerance of a polyline of many short chords.
 ///
-/// Of all C2 cubic splines on given knots, with given place, direction and curvature at both ends,
-/// the one with the least
+/// Fairing: among all C2 cubic splines on given knots, with given place, direction and curvature at
+/// both ends, the one with the least
 ///
 ///     sum_i  mu_i l_i |q(s_i) - u_i|^2  +  integral  (kappa w)^6 |q'''|^2 ds                 (1)
 ///
@@ -12,7 +12,7 @@
 /// large for the programmed speed; the others only raise mu, until the tolerance is kept
 /// everywhere.
 ///
-/// Where the direction of the polyline wanders at random no filter has a smaller q''' at the same
+/// On a polyline of random direction no filter has a smaller q''' at the same
 /// deviation than the first solution; it bends curves much longer than w by (w/L)^6, the window by
 /// (w/L)^2.
 ///
@@ -43,7 +43,7 @@ class FairSpline {
            const Joints& jerk, const State& begin, const State& end);
 
   const std::vector<CubicPiece>& pieces() const { return pieces_; }
-  /// Where a piece begins.
+  /// State at the beginning of a piece.
   State state_at(std::size_t piece) const;
 
  private:

@@ -1,4 +1,4 @@
-/// What the path planner may ask of the joints, and how it may treat the programmed path.
+/// Limits of the joints for the path planner, and its tolerances of the programmed path.
 #pragma once
 
 #include "plant/vocabulary/axes.h"

@@ -1,4 +1,4 @@
-/// Where the joints cannot follow the programmed feed.
+/// Stretches on which the joints cannot follow the programmed feed.
 #pragma once
 
 #include <cstddef>
@@ -23,13 +23,13 @@ struct SlowedMotion {
   int order = 1;                                   // 1 speed, 2 acceleration, 3 jerk
   std::size_t others = 0;                          // blocks that are slowed down, too
 
-  /// Of the feed, what is left: the derivative of that order goes with its power. That of a feed
-  /// which stays the same; where it has to fall for a moment only, it falls somewhat farther.
+  /// Share of the programmed feed that remains: the derivative of that order goes with its power.
+  /// Holds for a steady feed; where it has to fall for a moment only, it falls somewhat farther.
   double share() const;
 };
 
-/// Where the tool axis is nearer to a singular direction, that is why a joint turns fast: more than
-/// five times as fast as the tool axis.
+/// Angle to a singular direction within which a joint turns fast because of it: more than five
+/// times as fast as the tool axis.
 inline constexpr double kNearSingular = 0.2;  // rad
 
 /// "the programmed feed needs C at ..."

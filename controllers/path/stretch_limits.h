@@ -1,4 +1,4 @@
-/// What the joint limits leave for the speed along a piece of the path.
+/// Limits of the speed along a piece of the path that follow from the joint limits.
 #pragma once
 
 #include <limits>

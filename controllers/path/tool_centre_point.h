@@ -1,5 +1,5 @@
-/// What tool-centre-point control knows of the machine: where the tip is when the axes stand
-/// somewhere, and where the axes go when the tip and the tool axis are given.
+/// Machine as tool centre point control sees it: the tip from the axis positions, and the axis
+/// positions from the tip and the tool axis.
 ///
 /// A program under such control speaks of *tip words*: X Y Z are the tip in the workpiece frame W
 /// (p_WT), A B C the positions of the rotary axes. Machine words are positions of all axes. With
@@ -15,8 +15,8 @@
 
 namespace servomill::controllers {
 
-/// Of the tolerance of the tool axis, for the chords of great circles: what the planner's
-/// ToolCentrePoint is made with.
+/// Share of the tolerance of the tool axis that the chords of great circles take in the planner's
+/// ToolCentrePoint.
 inline constexpr double kGreatCircleShare = 0.25;
 
 /// Ways of the tip shorter than that are none (m): feed then is that of the rotation.

@@ -25,7 +25,7 @@ class Trajectory {
     bool rapid = false;
   };
 
-  /// Where the last sample was; makes forward reading O(1). Value-initialised: at the begin.
+  /// Place of the last sample; makes forward reading O(1). Value-initialised: at the beginning.
   struct Cursor {
     std::size_t chain = 0, phase = 0, piece = 0, span = 0;
   };

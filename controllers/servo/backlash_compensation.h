@@ -18,7 +18,7 @@ struct BacklashCompensationState {
   double offset = 0.0;    // m or rad, 0 ... -width
 };
 
-/// What the ramp over the gap says in this position period.
+/// Output of the ramp over the gap in one position period.
 struct BacklashRamp {
   double offset = 0.0;  // m or rad, 0 while the positive flank carries, -width for the other
   double rate = 0.0;    // m/s or rad/s, change of the offset

@@ -52,7 +52,7 @@ struct CascadeStateOf {
 using CascadeState = CascadeStateOf<double, FilterState>;
 using CascadeLanesState = CascadeStateOf<LaneArray, FilterLanesState>;
 
-/// What the loops compute with: CascadeParams without divisions.
+/// Coefficients of the loops: CascadeParams without divisions.
 template <class Number, class Filters>
 struct CascadeGainsOf {
   Number Kv{}, kvf{}, v_max{};         // 1/s, -, m/s

@@ -26,7 +26,7 @@ struct CurrentLoopStateOf {
 using CurrentLoopState = CurrentLoopStateOf<double>;
 using CurrentLoopLanesState = CurrentLoopStateOf<LaneArray>;
 
-/// What the loop computes with.
+/// Coefficients of the loop.
 template <class Number>
 struct CurrentLoopGainsOf {
   Number Kp{}, Ki_Ti{}, u_max{};  // V/A: Kp, Ki Ti; V

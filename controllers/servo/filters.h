@@ -26,7 +26,7 @@ struct Biquad {
 /// Half the sampling rate (Hz): a filter of a loop with period T (s) belongs below it.
 constexpr double nyquist_frequency(double T) { return 0.5 / T; }
 
-/// Whether a filter at f (Hz) can be designed for period T (s): 0 < f < 1 / (2T).
+/// True if a filter at f (Hz) can be designed for period T (s): 0 < f < 1 / (2T).
 constexpr bool can_filter(double f, double T) { return f > 0.0 && f < nyquist_frequency(T); }
 
 /// The designs replace s by the bilinear transform with the frequency scale set so that the

@@ -1,4 +1,4 @@
-/// Where the position loop takes its position from: scale, motor encoder, or both.
+/// Source of the position loop's feedback: scale, motor encoder, or both.
 #pragma once
 
 #include <cstdint>

@@ -24,7 +24,7 @@ struct SupervisionState {
   std::int64_t standing = 0;         // periods for which the axis has been told to stand
 };
 
-/// What the NC sees of one axis in a position period (m or rad, m/s or rad/s).
+/// Reading of one axis by the NC in a position period (m or rad, m/s or rad/s).
 struct AxisReading {
   double q_cmd = 0.0;    // set point of the position loop
   double dq_cmd = 0.0;   // its fed-forward speed

@@ -31,11 +31,11 @@ struct Cutter {
   double radius_at(double h) const;
 };
 
-/// What is wrong with the values, each as "KEY RULE" ("corner_radius must be <= radius"). Empty for
-/// a cutter that can be.
+/// Rules that the values break, each as "KEY RULE" ("corner_radius must be <= radius"). Empty for
+/// a possible cutter.
 std::vector<std::string> implausible(const Cutter& cutter);
 
-/// Where a cutter stands, seen from the workpiece.
+/// Position of a cutter in the workpiece frame.
 struct CutterPosition {
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();    // m
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // k, from the tip to the spindle

@@ -28,7 +28,7 @@ struct CutterFrame {
 };
 CutterFrame frame_of(const CutterMotion& motion);
 
-/// Whether there is material at a point (m, where the cutter's position is given).
+/// True if there is material at a point (m, in the frame of the cutter's position).
 using IsMaterial = std::function<bool(const Eigen::Vector3d&)>;
 
 /// Pieces of the cutter's profile from the middle of its bottom over the corner to the end of the

@@ -96,7 +96,7 @@ class BallContact {
     return std::sqrt(std::max(radius_ * radius_ - rho * rho, 0.0));
   }
   double lift(double rho) const { return radius_ - half_chord(rho); }
-  // Of the ball where it starts.
+  // Distance of the ball from the surface at the start.
   double back(double rho) const { return clearance_ + radius_ + half_chord(rho); }
 
   // The latest first: what a neighbour met.

@@ -1,4 +1,4 @@
-/// What a straight probe meets of a part that cutters have machined.
+/// Contact of a straight probe with a part that cutters have machined.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +17,7 @@ struct ProbeTarget {
   Eigen::Vector3d normal;  // unit, out of the part
 };
 
-/// What became of a probe on its way inwards along the normal.
+/// End of a probe's way inwards along the normal.
 struct Meeting {
   enum class Kind : std::uint8_t {
     met,        // material at `distance`

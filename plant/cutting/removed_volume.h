@@ -1,4 +1,4 @@
-/// What cutters leave behind: the union of the bodies that they sweep. Everything in one frame
+/// Volume that cutters remove: the union of the bodies that they sweep. Everything in one frame
 /// fixed to the workpiece.
 #pragma once
 
@@ -48,10 +48,10 @@ class RemovedVolume {
   /// Positions of all passes.
   std::size_t position_count() const { return place_of_.size(); }
 
-  /// Whether a cutter was at the point.
+  /// True if a cutter was at the point.
   bool contains(const Eigen::Vector3d& point) const;
 
-  /// Whether a cutter was at the point while it went through the first n positions: from each of
+  /// True if a cutter was at the point while it went through the first n positions: from each of
   /// them to the next, up to position n - 1 and not beyond. For n = 0 nothing has been removed.
   /// For what the cutter meets on arriving at position i: contains(point, i).
   bool contains(const Eigen::Vector3d& point, std::size_t n) const;
@@ -61,8 +61,8 @@ class RemovedVolume {
   /// lengthen the way by less than 1 nm need not be found.
   FreeWay free_way(const Ray& ray) const;
 
-  /// Where a ray, also one beside that of `way`, leaves what the step removed that ended `way` (s,
-  /// m); -infinity if it misses that. Concave over parallel rays.
+  /// Distance s (m) at which a ray, also one beside that of `way`, leaves the volume removed by the
+  /// step that ended `way`; -infinity if it misses that. Concave over parallel rays.
   /// @pre way.kind is ends
   double leave(const FreeWay& way, const Ray& ray) const;
 

@@ -55,8 +55,8 @@ class SweptCutter {
 
   bool contains(const Eigen::Vector3d& x) const;
 
-  /// Where the line of the ray leaves the body (s, m; also beyond the ray's ends); -infinity if it
-  /// misses it. Where it comes in: -leave(reversed, ...).
+  /// Distance s (m) at which the line of the ray leaves the body, also beyond the ray's ends;
+  /// -infinity if it misses it. It enters at -leave(reversed, ...).
   ///
   /// As the axis turns, w of (1) changes along the line: it is taken at s_near, so that the result
   /// s is exact for s_near = s, and wrong by no more than what a body does that is displaced by |s

@@ -137,7 +137,7 @@ void follow(T (&value)[2], const Diagonal2<T>& derivative, const T (&dv)[2]) {
 /// How long the servo loop leaves an error of speed standing (s).
 inline constexpr double kMemory = 5e-3;
 
-/// What a parabola through `nodes` misses of a and b at h/4 and 3h/4, as its effect over a
+/// Error of a parabola through `nodes` against a and b at h/4 and 3h/4, as its effect over a
 /// sub-step. A cubic miss moves the slide only within the sub-step, a quartic one changes its
 /// speed. Factors: integrals of s (s - 1/2) (s - 1), times (1 - s), and of s (s - 1/2)^2 (s - 1),
 /// over their values at 1/4.

@@ -25,8 +25,8 @@ struct SlopeBounds {
   }
 };
 
-// Of a HoldBlock: without the position, which nothing depends on and which is counted from where it
-// was.
+// Columns of a HoldBlock without the position: nothing depends on it, and it is counted from its
+// last value.
 constexpr Eigen::Index kHoldColumns[] = {0, 1, 2, 3, 5, 6};
 
 // Calls what(n, ticks) of the pieces from stop to stop, the last one up to the end.

@@ -78,7 +78,7 @@ class DriveBank {
                      LanesLeft left) const;
   void advance_in_pieces(DriveState& state, const DriveInputBlock& of_all, const Stretch& stretch,
                          std::span<LaneArray> positions, LanesLeft left) const;
-  // Of the blocks.
+  // Prepared steps of the blocks.
   const BlockStep* steps_of(Tick step) const {
     assert(static_cast<std::size_t>(step) < first_of_step_.size());
     assert(first_of_step_[static_cast<std::size_t>(step)] >= 0);

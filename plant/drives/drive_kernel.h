@@ -1,4 +1,4 @@
-/// What the kernel of the drives (drive_kernel.cpp) reads: eight drives side by side, prepared by
+/// Data of the kernel of the drives (drive_kernel.cpp): eight drives side by side, prepared by
 /// DriveBank. Included by the kernel: no Eigen here.
 #pragma once
 
@@ -59,7 +59,7 @@ struct Ladder {
   const ParabolaBlock* rungs = nullptr;
 };
 
-/// What of eight drives does not depend on the length of the step.
+/// Constants of eight drives that do not depend on the length of the step.
 struct DriveConstants {
   LaneArray F_load{};                      // N
   LaneArray glide_speed{};                 // m/s, struct Gliding; below 0: the drive is linear

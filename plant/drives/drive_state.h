@@ -17,7 +17,8 @@ enum class SlideMode : std::uint8_t { sticking, positive, negative };
 /// Which flank of the screw carries; without backlash always `positive`.
 enum class ContactMode : std::uint8_t { positive, gap, negative };
 
-/// What the exact step (exact_step.h) keeps between two calls: nothing of the drive itself.
+/// Step control that the exact step (exact_step.h) keeps between two calls: nothing of the drive
+/// itself.
 struct StepControl {
   int halvings = 0;              // how far below the longest the last sub-step was, a first guess
   std::uint32_t unresolved = 0;  // sub-steps that missed their tolerance at the finest length
@@ -49,8 +50,8 @@ struct DriveBlock {
   LaneArray delta{};   // m (carried instead of phi: no cancellation)
   LaneArray v{}, x{};  // m/s, m
   LaneArray z{};       // m
-  // What the kernel knows of friction from its last step: at which speed (m/s; NaN: it knows
-  // nothing), the force (N) and its slope (N s/m); of LuGre dz/dt (m/s). It follows from the rest.
+  // Friction at the end of the kernel's last step: its speed (m/s; NaN: not known), the force (N)
+  // and its slope (N s/m); for LuGre dz/dt (m/s). It follows from the rest of the state.
   LaneArray known_v = all_lanes(std::numeric_limits<double>::quiet_NaN());
   LaneArray known_friction{}, known_slope{};
   std::array<SlideMode, kLaneWidth> slide{};

@@ -22,7 +22,8 @@ struct Resolution {
   double longest = std::numeric_limits<double>::infinity();
 };
 
-/// Where the force against a slide is constant to the last bit, so that its drive is linear.
+/// Speeds at which the force against a slide is constant to the last bit, so that its drive is
+/// linear.
 struct Gliding {
   double speed = std::numeric_limits<double>::infinity();  // m/s: beyond it; infinite: nowhere
   double Fc_positive = 0.0, Fc_negative = 0.0;             // N
@@ -66,13 +67,13 @@ class ExactStep {
 
   const Gliding& gliding() const { return gliding_; }
   const Resolution& resolution() const { return resolution_; }
-  /// Of its longest sub-step in base periods.
+  /// Binary logarithm of its longest sub-step in base periods.
   int coarsest_log2() const {
     return static_cast<int>(linear_.front().ladder.size()) - 1 - sub_ticks_;
   }
   /// Largest last correction of Newton's iteration (m/s).
   double speed_tolerance() const { return speed_tolerance_; }
-  /// Whether friction is continuous at v = 0 and its slope is not.
+  /// True if friction is continuous at v = 0 and its slope is not.
   bool has_kink() const { return has_kink_; }
 
  private:

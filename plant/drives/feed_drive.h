@@ -62,14 +62,14 @@ struct FeedDriveParams {
 
   bool operator==(const FeedDriveParams&) const = default;
   bool has_winding() const { return L > 0.0; }
-  /// Whether the current is the command itself, without lag or winding.
+  /// True if the current is the command itself, without lag or winding.
   bool current_is_command() const { return !has_winding() && T_i <= 0.0; }
   bool is_rigid() const { return kind != DriveKind::two_mass; }
   /// Inertia that the motor sees (kg m^2): J + M r^2.
   double J_total() const { return J + M * r * r; }
   /// Mass that a force on the slide accelerates at once (kg).
   double slide_mass() const { return is_rigid() ? M + J / (r * r) : M; }
-  /// Whether the equations are linear: no friction but viscous, no gap, no cogging.
+  /// True if the equations are linear: no friction but viscous, no gap, no cogging.
   bool is_linear() const {
     return friction.kind == FrictionKind::none && gap == 0.0 && cogging.T == 0.0;
   }
@@ -116,8 +116,8 @@ SlideMode slide_from_rest(const FrictionParams& friction, double driving_force);
 /// At rest at x, holding the constant load: current and wind-up in equilibrium, friction unloaded.
 LaneState at_rest(const FeedDriveParams& params, double x);
 
-/// What is wrong with the values as physics, each as "KEY RULE" in SI ("Fs must be >= Fc").
-/// Empty for a drive that can be.
+/// Rules of physics that the values break, each as "KEY RULE" in SI ("Fs must be >= Fc").
+/// Empty for a possible drive.
 std::vector<std::string> implausible(const FeedDriveParams& params);
 
 }  // namespace servomill::plant

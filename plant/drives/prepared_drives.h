@@ -1,4 +1,4 @@
-/// What is costly to compute of a drive, kept for all lanes that have the same one.
+/// Coefficients of a drive that are costly to compute, kept for all lanes that have the same one.
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ struct PreparedDrive {
   std::vector<Stop> stops;         // stretch after stretch
   std::optional<ExactStep> exact;  // of a drive that is not linear
 
-  /// Whether its friction is a smooth function of its state, so that the kernel moves it.
+  /// True if its friction is a smooth function of its state, so that the kernel moves it.
   bool smooth() const;
   /// The same as `hold` for a force that is a parabola, of smooth drives; and rungs of the Ladder.
   std::vector<Propagator> whole, rungs;

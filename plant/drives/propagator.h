@@ -28,7 +28,7 @@ double fastest_rate(const Eigen::Matrix<double, 5, 7>& equations);
 /// in long double.
 class PropagatorSeries {
  public:
-  /// What the terms that are left out amount to stays below the last bit of long double as long as
+  /// The sum of the omitted terms stays below the last bit of long double as long as
   /// t times the rates of A does not exceed this.
   static constexpr double kMostRate = 2.0;
 

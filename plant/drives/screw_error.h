@@ -1,4 +1,4 @@
-/// What a ball screw does to a position measured at its motor: lead error and thermal growth.
+/// Errors of a ball screw in a position measured at its motor: lead error and thermal growth.
 #pragma once
 
 #include <string>
@@ -52,8 +52,7 @@ struct ScrewError {
 /// is X_s / r, bit for bit.
 double motor_angle(const ScrewError& error, double r, double X_s, double t);
 
-/// What is wrong with the values as physics, each as "KEY RULE" in SI. Empty for a screw that can
-/// be.
+/// Rules of physics that the values break, each as "KEY RULE" in SI. Empty for a possible screw.
 std::vector<std::string> implausible(const ScrewGrowth& growth);
 
 }  // namespace servomill::plant

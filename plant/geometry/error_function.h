@@ -50,7 +50,7 @@ struct ErrorFunction {
   std::vector<LinearTable> tables;
   std::vector<Reversal> reversals;
 
-  /// Of the mean of both directions, as its derivative.
+  /// Mean of both directions of travel, as for its derivative.
   double value(double s) const;
   double derivative(double s) const;
   /// Error travelling up minus error travelling down, long after a change of direction.

@@ -29,7 +29,7 @@ struct StraightPower {
   double half_turn[kStraightAxes][4];  // rad, of half the angles
 };
 
-/// Where the lever of an axis begins: [direction], the fourth 0.
+/// Beginning of the lever of an axis: [direction], the fourth 0.
 struct StraightLever {
   double slope[4], centre[4];  // m/m, m
 };
@@ -44,8 +44,8 @@ struct StraightProgram {
   VolumetricFunctions functions;  // with half the angles
 };
 
-/// What the kernel does not compute of eight poses (lanes: poses): values of tables, and the tip
-/// before it passes the first axis (m; X, Y, Z).
+/// Inputs of the kernel for eight poses (lanes: poses): values of tables, and the tip before it
+/// passes the first axis (m; X, Y, Z).
 struct StraightData {
   VolumetricPower tables[kStraightAxes];
   LaneArray tip[kStraightAxes];

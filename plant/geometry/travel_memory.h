@@ -1,4 +1,4 @@
-/// What an axis remembers of the directions in which it travelled: the state of hysteresis.
+/// Memory of the directions in which an axis travelled: the state of hysteresis.
 ///
 /// The memory follows the axis with play, as the far side of a gap would:
 ///

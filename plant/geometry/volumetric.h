@@ -75,8 +75,8 @@ class VolumetricModel {
   void joint_offsets(const LaneArray (&Q)[kJoints], const Eigen::Vector3d& p_ST,
                      LaneArray (&out)[kLinearJoints]) const;
 
-  /// What errors with hysteresis have to remember (TravelMemory); empty on most machines, which
-  /// pay nothing for it.
+  /// Plays that errors with hysteresis have to remember (TravelMemory); empty on most machines,
+  /// which pay nothing for it.
   const std::vector<Play>& plays() const;
 
   /// The same where axes have travelled: directions of each of plays(), -1 to 1.

@@ -44,7 +44,7 @@ class PreparedFunctions {
   /// All that were added. Points into this.
   VolumetricFunctions finish();
 
-  /// Of the reversals, each once.
+  /// Plays of the reversals, each once.
   const std::vector<Play>& plays() const { return plays_; }
   /// add(axis, component, value) for the value of each reversal at q(joint).
   /// @param directions  of each play
@@ -108,7 +108,7 @@ class VolumetricEvaluation {
   }
   void offset(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const;
 
-  /// What reversals need; where directions are not given, the mean of both is meant.
+  /// Plays that reversals need; without directions the mean of both is meant.
   const std::vector<Play>& plays() const { return functions_.plays(); }
   void tool(const Joints& Q, const Eigen::Vector3d& p_ST, std::span<const double> directions,
             double* out) const {

@@ -6,10 +6,11 @@
 ///
 ///     p <- R (p - c) + c + w       k <- R k
 ///
-/// What is known before the tool arrives, w and R, is computed for all axes first: for one pose
-/// with the axes in lanes, for many with the poses in lanes. Both run the same formulas with the
-/// same roundings, so that a pose has the same bits alone and among others. Machines with AVX2 and
-/// with AVX-512 agree in every bit; the baseline, which rounds a b + c twice, differs by rounding.
+/// The quantities that do not depend on the tool, w and R, are computed for all axes first: for one
+/// pose with the axes in lanes, for many with the poses in lanes. Both run the same formulas with
+/// the same roundings, so that a pose has the same bits alone and among others. Machines with AVX2
+/// and with AVX-512 agree in every bit; the baseline, which rounds a b + c twice, differs by
+/// rounding.
 ///
 /// The offset of most machines needs less: straight_kernel.h.
 #pragma once
@@ -64,7 +65,7 @@ struct VolumetricWaves {
   std::uint8_t axis[kLaneWidth];
 };
 
-/// What one wave adds to one error.
+/// Contribution of one wave to one error.
 struct VolumetricHarmonic {
   std::size_t wave;  // 8 x block + lane
   std::size_t component;
@@ -101,7 +102,7 @@ struct VolumetricProgram {
   double senses[kTurnedJoints];  // -1 where the joint counts the turn of a table
 };
 
-/// What the kernel does not compute: values of tables.
+/// Inputs of the kernel: values of tables.
 struct OnePoseData {
   VolumetricPower tables;  // lanes: joints
 };

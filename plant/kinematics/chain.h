@@ -99,7 +99,8 @@ LinearJoints linear_joints(const MachineChain& chain, const Eigen::Vector3d& p_W
 std::optional<Joints> inverse_fixed_rotary(const MachineChain& chain, const Eigen::Vector3d& p_WT,
                                            const Joints& Q_rotary, const Eigen::Vector3d& p_ST);
 
-/// What a point may lie off the plane or line of a machine with fewer than three linear axes.
+/// Largest distance of a point from the plane or line of a machine with fewer than three linear
+/// axes.
 inline constexpr double kReachTolerance = 1e-9;  // m
 
 /// Two linear axes whose directions enclose less than this are taken as parallel.
@@ -139,7 +140,7 @@ inline Eigen::Vector3d turned(const ChainAxis& a, const JointMotion& m, const Ei
   return times(a.R_MA, turned(a.axis, m.cosine, m.sine, transpose_times(a.R_MA, v)));
 }
 
-/// What one ideal joint does to a tool pose given in the frame behind it.
+/// Moves a tool pose given in the frame behind it through one ideal joint.
 inline void apply(const ChainAxis& a, const JointMotion& m, ToolPose& P) {
   if (is_linear(a.axis)) {
     P.p_WT[index_of(a.axis)] += m.shift;

@@ -19,7 +19,7 @@
 /// of spherical trigonometry, which stays exact where the triangle is flat: no iteration is needed
 /// for any directions of the axes. The linear joints follow from a linear system.
 ///
-/// Where k is parallel to e_1 (or z to e_2) the angle q_1 (q_2) does not matter: a singular
+/// If k is parallel to e_1 (or z to e_2) the angle q_1 (q_2) does not matter: a singular
 /// direction. It then stays where it is and the other axis comes as close as it can.
 #pragma once
 
@@ -30,7 +30,7 @@
 
 namespace servomill::plant {
 
-/// What becomes of a pose.
+/// Result for a pose.
 enum class Reach : std::uint8_t {
   reached,
   orientation,    // no angles of the rotary axes give that tool axis
@@ -100,7 +100,7 @@ class InverseKinematics {
     return solve(P, p_ST, Q_near).nearest();
   }
 
-  /// Whether no joint lies farther beyond its travel than the tolerance.
+  /// True if no joint lies farther beyond its travel than the tolerance.
   bool is_within_travel(const Joints& Q) const;
 
   /// Angle between the tool axis and the nearest singular direction (rad, at most pi/2), where

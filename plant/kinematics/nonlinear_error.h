@@ -37,8 +37,8 @@ namespace servomill::plant {
 enum class NonlinearError : std::uint8_t { joint_interpolation, posted_location };
 enum class ErrorShape : std::uint8_t { harmonic, parabolic };
 
-/// Where the vector e of joint_interpolation is expressed, and with it the amplitude of a model.
-/// |e| is the same in both. An error by posted_location is always one of the machine.
+/// Frame in which the vector e of joint_interpolation is expressed, and with it the amplitude of a
+/// model. |e| is the same in both. An error by posted_location is always in the machine frame.
 enum class ErrorFrame : std::uint8_t { machine, workpiece };
 
 /// Tip and tool axis as a CAM system gives them. The length of U does not matter for the post; it

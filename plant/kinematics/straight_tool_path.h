@@ -42,7 +42,7 @@ struct PathPoint {
   Joints Q = Joints::Zero();  // m, rad
 };
 
-/// What `linearise` found.
+/// Result of `linearise`.
 struct LinearisedPath {
   std::vector<PathPoint> points;  // behind the start; the last has t = 1 if it is complete
   bool is_complete = true;
@@ -54,7 +54,7 @@ struct LinearisedPath {
 
 /// Points between which the joints may move linearly while the tool stays within the tolerance of
 /// its path: halves the way until it does. Each point is the solution nearest to the one before.
-/// Where that leads from a singular direction to the end of a travel, the other branches
+/// If that leads from a singular direction to the end of a travel, the other branches
 /// (branches.h) are followed in turn, and the first that arrives is taken.
 /// @param Q_0  joints at t = 0 (5; m, rad)
 LinearisedPath linearise(const InverseKinematics& inverse, const Eigen::Vector3d& p_ST,

@@ -21,7 +21,7 @@ struct StructureAxis {
   bool operator==(const StructureAxis&) const = default;
 };
 
-/// What `[w C' B' X b Y Z (C1) t]` says: the axes from the workpiece to the tool.
+/// Meaning of `[w C' B' X b Y Z (C1) t]`: the axes from the workpiece to the tool.
 struct Structure {
   std::vector<StructureAxis> axes;  // reading order, without the spindle
   std::optional<Axis> spindle;      // the axis about which the spindle turns; carries no motion

@@ -58,8 +58,8 @@ struct EncoderParams {
 /// @param subdivision  measuring steps per period; 0: no quantising
 EncoderParams from_periods_per_revolution(double periods, double subdivision = 0.0);
 
-/// What is wrong with the values as physics, each as "KEY RULE" in SI ("step must be <= period").
-/// Empty for an encoder that can be.
+/// Rules of physics that the values break, each as "KEY RULE" in SI ("step must be <= period").
+/// Empty for a possible encoder.
 std::vector<std::string> implausible(const EncoderParams& params);
 
 /// An encoder prepared for the hot loop. Ideal and merely quantising ones cost a branch and a
@@ -106,7 +106,7 @@ class Encoder {
   double step() const { return step_; }
   double frequency_limit() const { return frequency_limit_; }
   bool is_noisy() const { return noisy_; }
-  /// Whether it does nothing but quantise.
+  /// True if it only quantises.
   bool is_plain() const { return !disturbed_ && !noisy_; }
 
  private:

@@ -1,4 +1,4 @@
-/// What a measuring step makes of a position.
+/// Quantisation of a position by a measuring step.
 #pragma once
 
 #include "plant/vocabulary/numbers.h"

@@ -32,7 +32,7 @@ MarkParams marks_of_scale(double period, int N, double lower, double upper);
 /// Marks of a rotary encoder (RON 785C: 18 000 periods, N = 1000); fixed mark 0 is at angle 0.
 MarkParams marks_of_revolution(int periods, int N);
 
-/// What is wrong with the values, each as "KEY RULE". Empty for a track that can be.
+/// Rules that the values break, each as "KEY RULE". Empty for a possible track.
 std::vector<std::string> implausible(const MarkParams& params);
 
 /// The marks as integers: mark 2 i is fixed mark i, mark 2 i + 1 the coded one behind it; on a
@@ -43,7 +43,7 @@ class ReferenceMarks {
   explicit ReferenceMarks(const MarkParams& params);
 
   const MarkParams& params() const { return params_; }
-  /// Whether there is such a mark: 0 <= mark <= 2 intervals, always on a closed track.
+  /// True if there is such a mark: 0 <= mark <= 2 intervals, always on a closed track.
   bool has(std::int64_t mark) const;
   /// Signal periods from fixed mark 0 to a mark.
   std::int64_t periods(std::int64_t mark) const;

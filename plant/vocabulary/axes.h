@@ -15,13 +15,13 @@ inline constexpr int kAxisWords = 6;
 inline constexpr std::array<Axis, kAxisWords> kAllAxes = {Axis::X, Axis::Y, Axis::Z,
                                                           Axis::A, Axis::B, Axis::C};
 
-/// What a program speaks of: X Y Z A B C (6; m, rad).
+/// Axis words of a program: X Y Z A B C (6; m, rad).
 using AxisWords = Eigen::Matrix<double, kAxisWords, 1>;
 
 inline constexpr int kJoints = 5;
 inline constexpr int kLinearJoints = 3;
 
-/// What a machine has: X, Y, Z and its (at most two) rotary axes in alphabetical order (5; m, rad).
+/// Axes of a machine: X, Y, Z and its (at most two) rotary axes in alphabetical order (5; m, rad).
 /// Linear coordinates count the motion of the tool relative to the workpiece, whichever side of the
 /// bed carries the axis. The place of an axis that the machine lacks holds 0.
 using Joints = Eigen::Matrix<double, kJoints, 1>;

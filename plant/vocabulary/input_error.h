@@ -9,7 +9,7 @@
 
 namespace servomill {
 
-/// Where a fault stands. Line and column count from 1; 0 means "unknown", and is not printed.
+/// Place of a fault. Line and column count from 1; 0 means "unknown", and is not printed.
 struct Place {
   std::string file;
   int line = 0;

@@ -19,7 +19,7 @@ inline constexpr std::size_t kLanesOf<JointLanes> = kLaneWidth;
 template <>
 inline constexpr std::size_t kLanesOf<LinearJointLanes> = kLaneWidth;
 
-/// What one of these runs has of a joint.
+/// A joint's value in one of these runs.
 inline double& lane(double& number, std::size_t) { return number; }
 inline double& lane(LaneArray& numbers, std::size_t n) { return numbers[n]; }
 inline double lane(const double& number, std::size_t) { return number; }

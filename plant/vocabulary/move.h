@@ -43,7 +43,7 @@ struct Arc {
                   // started revolutions
 };
 
-/// What X Y Z of a move say, and where the orientation of the tool comes from.
+/// Meaning of X Y Z of a move, and source of the tool's orientation.
 enum class ToolControl : std::uint8_t {
   none,         // X Y Z are positions of the axes
   rotary_axes,  // G43.4: tip in the workpiece; the rotary axes move linearly to their words

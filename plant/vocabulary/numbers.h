@@ -15,7 +15,7 @@ inline void put(double& to, double number) { to = number; }
 
 inline double fma(double a, double b, double c) { return a * b + c; }
 inline double select(bool mask, double yes, double no) { return mask ? yes : no; }
-/// Of a number and NaN: the second argument, as the processor does it for lanes.
+/// For a number and NaN the result is the second argument, as the processor does it for lanes.
 inline double min(double a, double b) { return a < b ? a : b; }
 inline double max(double a, double b) { return a > b ? a : b; }
 inline double abs(double a) { return std::fabs(a); }

@@ -1,4 +1,4 @@
-/// Where and how fast a correction of the set point enters the NC.
+/// Entry of a setpoint correction into the NC: its place and its speed.
 #pragma once
 
 #include <cstdint>

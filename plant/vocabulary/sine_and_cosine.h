@@ -22,7 +22,7 @@ struct SineAndCosine {
   N sine, cosine;
 };
 
-/// Of angles from here on the multiples of pi/2 would no longer be exact.
+/// Limit above which multiples of pi/2 would no longer be exact.
 constexpr double kLargestAngle = 1e6;  // rad
 
 /// Both with an error below one unit in the last place of 1, and exact at 0: Taylor's series of x

@@ -22,7 +22,7 @@ class InputRecord {
 /// happens.
 void remember_input(const std::string& path);
 
-/// Whether the file behind a name is an input, under whatever name it was read: symbolic and hard
+/// True if the file behind a name is an input, under whatever name it was read: symbolic and hard
 /// links are the file that they lead to.
 bool is_input(const std::string& path);
 

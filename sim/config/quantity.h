@@ -60,7 +60,8 @@ struct Unit {
   double factor = 1.0;  // SI = value * factor
 };
 
-/// What a text says: a unit, or why it is none ("unknown unit 'mmm'; did you mean 'mm'?").
+/// Reading of a text: a unit, or the reason why it is none ("unknown unit 'mmm'; did you mean
+/// 'mm'?").
 struct ParsedUnit {
   std::optional<Unit> unit;
   std::string complaint;
@@ -84,7 +85,7 @@ ScaledText scale_text(std::string_view text, Quantity quantity);
 /// SI spelling: "m/s^2", "kg m^2/s^2/rad" or, where it has one, the usual name: "Nm/rad".
 std::string si_unit(Quantity quantity);
 
-/// What the quantity is called: "a length", "a torque", or "a quantity in kg/A".
+/// Name of the quantity in messages: "a length", "a torque", or "a quantity in kg/A".
 std::string name_of(Quantity quantity);
 
 /// A unit that a writer may use, such as "mm" for a length; empty for a number.

@@ -44,7 +44,7 @@ constexpr Rule at_least(double bound) { return {Rule::Comparison::at_least, boun
 constexpr Rule below(double bound) { return {Rule::Comparison::below, bound}; }
 constexpr Rule at_most(double bound) { return {Rule::Comparison::at_most, bound}; }
 
-/// What all hold together: `{above(0.0), at_most(1.0)}`.
+/// Rules that must all hold: `{above(0.0), at_most(1.0)}`.
 using Rules = std::initializer_list<Rule>;
 
 /// A cursor over one table. All cursors over one document share its faults.
@@ -95,10 +95,10 @@ class Reader {
   std::vector<Reader> tables(std::string_view key);
   std::vector<Reader> tables_or_none(std::string_view key);
 
-  /// Whether the key is there. It must still be read: a key that is only looked at counts as
+  /// True if the key is present. It must still be read: a key that is only looked at counts as
   /// unused.
   bool has(std::string_view key);
-  /// Whether the key is there and its value has this type (for keys that may be of several).
+  /// True if the key is present and its value has this type (for keys that may be of several).
   bool is(std::string_view key, Value::Type type);
 
   /// All keys in the order of the document, for tables with free names. They must still be read.
@@ -119,7 +119,7 @@ class Reader {
   /// Number of faults so far, in all of the document.
   std::size_t faults() const;
 
-  /// Where the value of a key stands, or this table if the key is absent.
+  /// Place of the value of a key, or of this table if the key is absent.
   Place place(std::string_view key) const;
   /// Dotted key of this table, items of lists as `case[2]`, counted from 0; empty at the root.
   const std::string& path() const { return path_; }

@@ -12,7 +12,7 @@
 
 namespace servomill::sim {
 
-/// What is looked at. Those marked (sampled) exist at the instants of their loop only.
+/// Measured signal. Those marked (sampled) exist at the instants of their loop only.
 enum class AxisSignal : std::uint8_t {
   position,        // m, rad: slide or table
   velocity,        // m/s: slide or table
@@ -35,7 +35,7 @@ constexpr std::uint8_t sampled_by(AxisSignal signal) {
   return 0;
 }
 
-/// What is fed in at one tick.
+/// Excitation of one tick.
 struct StandInput {
   double q = 0.0;              // m, rad: set point
   double dq = 0.0, ddq = 0.0;  // m/s, m/s^2: fed forward
@@ -68,10 +68,10 @@ class AxisStand {
   /// Why a run would stop here, in the NC's words, since the axis was settled ("friction too stiff
   /// for the exact step; ..."); following errors and differences of encoders are not supervised.
   const std::optional<std::string>& fault() const { return fault_; }
-  /// Whether the current command is on its limit, that of the torque included.
+  /// True if the current command is on its limit, that of the torque included.
   bool at_current_limit();
 
-  /// What the position encoder adds to the position at this moment (m, rad).
+  /// Error of the position encoder at this moment (m, rad).
   double scale_error() {
     axes_.read_scales();
     return axes_.Q_meas()[joint_] - axes_.Q_true()[joint_];

@@ -5,7 +5,7 @@
 
 namespace servomill::sim {
 
-/// Where a sinusoid of amplitude 1 enters.
+/// Point at which a sinusoid of amplitude 1 enters.
 enum class Entry : std::uint8_t {
   set_point,              // m, rad; its derivatives are not fed forward
   set_point_fed_forward,  // the same with feed-forward as the NC has it
@@ -15,7 +15,7 @@ enum class Entry : std::uint8_t {
   reading,                // m, rad
 };
 
-/// What is fed in for the complex amplitude u of one tick's sinusoid: the real part of it. A force
+/// Excitation for the complex amplitude u of one tick's sinusoid: its real part. A force
 /// is held over the tick and given so that its fundamental is that of Re(u exp(j w t)).
 /// @param w  rad/s
 /// @param h  s, base period

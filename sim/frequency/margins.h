@@ -48,7 +48,7 @@ struct Margins {
 ///            of the curve without it; the largest sensitivity is among the points without it
 Margins margins_of(const Curve& open_loop, const ResponseAt& at = {});
 
-/// Of a closed loop with the gain 1 at low frequencies.
+/// Figures of a closed loop with the gain 1 at low frequencies.
 struct ClosedLoop {
   double bandwidth = Margins::kNone;  // Hz, where |y| first falls below 1/sqrt(2)
   double peak = 1.0;                  // largest |y|

@@ -34,8 +34,8 @@ struct MeasuredPoint {
   Response added = {};
 };
 
-/// Whether so little of output over input is added by the encoders that the ratio is a measurement:
-/// less than this share of either.
+/// Largest share of input or output that encoder errors may add for their ratio to count as a
+/// measurement.
 inline constexpr double kMostAdded = 0.1;
 bool resolved(const MeasuredPoint& point, AxisSignal output, AxisSignal input);
 

@@ -1,4 +1,4 @@
-/// What one axis does after a step: of its set point, of its velocity command, of a force.
+/// Response of one axis to a step of its setpoint, of its velocity command or of a force.
 #pragma once
 
 #include <optional>

@@ -29,7 +29,7 @@ struct TuneSettings {
   double reset_ratio = 4.0;          // Tn wv: the reset costs atan(1 / 4) = 14 deg at the crossover
 };
 
-/// What keeps a gain from being larger.
+/// Reason why a gain is not larger.
 struct Limit {
   enum class Kind : std::uint8_t { phase_margin, gain_margin, overshoot, bandwidth, most, range };
   Kind kind = Kind::range;

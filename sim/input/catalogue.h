@@ -1,4 +1,5 @@
-/// What there is, as text for people: derived from the tables that the program itself uses.
+/// Lists of all that can be chosen, as text for people: derived from the tables that the program
+/// itself uses.
 #pragma once
 
 #include <string>

@@ -43,7 +43,7 @@ plant::StockCylinder read_cylinder(Reader table) {
   return cylinder;
 }
 
-// What the coefficients are where no material says it: nothing.
+// Without a material the coefficients have no defaults.
 plant::CuttingCoefficients read_material(Reader& table) {
   std::vector<std::string_view> names;
   for (const plant::Material& one : plant::materials()) names.push_back(one.name);

@@ -116,7 +116,7 @@ void read_travel(Reader& axis, bool linear, int j, NcSettings& nc) {
 // Lengths of which the square is a number.
 constexpr double kLeastDirection = 1e-100, kMostDirection = 1e100;
 
-// What the machine says for all of its axes.
+// Settings that all axes of the machine share.
 struct Common {
   CommonServo servo;
   Place Kv_place;
@@ -155,7 +155,7 @@ void read_direction(Reader& axis, plant::ChainAxis& chain_axis) {
   }
 }
 
-// Where the axis lies.
+// Direction and offset of the axis.
 void read_axis_geometry(Reader& axis, int j, MachineSettings& machine) {
   const auto lane = static_cast<std::size_t>(j);
   const bool linear = j < kLinearJoints;

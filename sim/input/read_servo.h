@@ -6,7 +6,7 @@
 
 namespace servomill::sim {
 
-/// What all axes have in common unless they say otherwise: keys of the table `nc`.
+/// Settings of all axes unless they have their own: keys of the table `nc`.
 struct CommonServo {
   controllers::CascadeParams cascade;
   controllers::PositionFeedback feedback = controllers::PositionFeedback::scale;

@@ -67,7 +67,7 @@ Document with_base(const std::string& path, InputFiles& files, int bases_left) {
   return below;
 }
 
-// What would make all that follows meaningless.
+// Faults of the machine without which no later message would make sense.
 void refuse_machine(const Document& document) {
   const Value& root = document.root();
   const Value* machine = root.find("machine");

@@ -28,7 +28,7 @@ Document scenario_document(const std::string& path, InputFiles& files);
 ScenarioDocument with_machine(Document scenario, std::span<const std::string> changes,
                               InputFiles& files);
 
-/// Whether a change acts before the machine is put in.
+/// True if a change acts before the machine is put in.
 bool comes_before_machine(std::string_view change);
 
 /// A path as it stands in a document: relative to that document, or, when it comes from --set, to

@@ -27,17 +27,19 @@ struct TipPath {
 
 enum class NestDirection : std::uint8_t { radial, axial, tangential };
 
-/// What a sensor reads at every sample (m), or why this is no such test.
+/// Reading of a sensor at every sample (m), or the reason why this is no such test.
 struct BallDeviation {
   std::vector<double> d;
   std::string why_not;
 };
 
-/// Of a nest of sensors around the ball, in the directions of the only rotary axis that turns.
+/// Deviation in a nest of sensors around the ball, in the directions of the only rotary axis that
+/// turns.
 BallDeviation nest_deviation(const plant::MachineChain& chain, const TipPath& path,
                              NestDirection direction);
 
-/// Of a ball bar from `centre` (3; m, in the workpiece) to the tip: true minus nominal length.
+/// Deviation of a ball bar from `centre` (3; m, in the workpiece) to the tip: true minus nominal
+/// length.
 BallDeviation bar_deviation(const TipPath& path, const Eigen::Vector3d& centre);
 
 /// Readings from which location errors can be identified, or why this is no such test.
@@ -46,12 +48,12 @@ struct BallReadings {
   std::string why_not;
 };
 
-/// Of a nest of three sensors along X, Y and Z of the workpiece; a set-up for each place.
+/// Readings of a nest of three sensors along X, Y and Z of the workpiece; a set-up for each place.
 /// @param most_places  at which the tip may stand
 BallReadings nest_readings(const plant::MachineChain& chain, const TipPath& path,
                            std::size_t most_places);
 
-/// Of a ball bar as above.
+/// Readings of a ball bar as above.
 /// @param set_up  number of that bar
 BallReadings bar_readings(const plant::MachineChain& chain, const TipPath& path,
                           const Eigen::Vector3d& centre, int set_up);

@@ -29,7 +29,7 @@ struct RadialDeviation {
   double dr = 0.0;
 };
 
-/// What happens where an axis of the plane reverses.
+/// Reversal of an axis of the plane, and the deviation there.
 ///
 /// The curve before and behind is taken as two parallel lines, by least squares over the arcs from
 /// 15 to 5 deg before the reversal and from 30 to 40 deg behind it, in the direction of travel. The

@@ -22,7 +22,7 @@ struct Line3 {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  // unit
 
-  /// Of a point from the line, >= 0.
+  /// Distance of a point from the line, >= 0.
   double distance(const Eigen::Vector3d& p) const;
 };
 

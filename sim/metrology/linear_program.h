@@ -7,7 +7,7 @@
 
 namespace servomill::sim {
 
-/// Of up to 6 numbers, which need no memory of their own.
+/// Vector of up to 6 numbers, which needs no memory of its own.
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
 
 /// a . x <= b

@@ -42,25 +42,25 @@ struct SensorReading {
   int set_up = 0;                                  // readings of one ball position: 0, 1, ...
 };
 
-/// What is not known of the set-up beside the place of the nest on the table.
+/// Unknowns of the set-up beside the place of the nest on the table.
 struct BallSetUp {
   bool tip_is_unknown = true;      // place of the ball in the spindle
   bool length_is_unknown = false;  // of a ball bar
 };
 
-/// What another error would do as well: `factor` of it (m, rad per m, rad).
+/// Error of the same effect: `factor` of it (m, rad per m, rad).
 struct Likeness {
   plant::ErrorName name;
   double factor = 0.0;
 };
 
-/// What readings tell of one location error.
+/// Estimate of one location error from readings.
 struct LocationEstimate {
   plant::ErrorName name;
   std::optional<double> value;  // m or rad; nothing where it cannot be told from others
   double uncertainty = 0.0;     // m or rad; standard deviation if what the fit leaves of the
                                 // readings is independent noise
-  // Where there is no value: errors and set-up that together have the same effect. None at all: no
+  // Without a value: errors and set-up that together have the same effect. Empty: the error has no
   // effect on these readings.
   std::vector<Likeness> like;
   bool is_like_set_up = false;

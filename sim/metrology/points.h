@@ -38,7 +38,7 @@ struct PrincipalAxes {
   Eigen::Matrix<double, N, N> axes = Eigen::Matrix<double, N, N>::Identity();  // unit columns
   Eigen::Vector<double, N> extent = Eigen::Vector<double, N>::Zero();          // rms, falling
 
-  /// Whether the points extend in at least `count` directions, by more than rounding.
+  /// True if the points extend in at least `count` directions, by more than rounding.
   bool span_directions(int count) const;
 };
 

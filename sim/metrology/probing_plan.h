@@ -1,4 +1,4 @@
-/// Where a coordinate measuring machine (CMM) probes a part: features with their nominal points.
+/// Probing plan of a coordinate measuring machine (CMM): features with their nominal points.
 ///
 /// All coordinates are those of the work frame G (sim/model/work_frame.h), in m; normals point out
 /// of the part and have length 1.

@@ -1,4 +1,4 @@
-/// What the least-squares fits of circles and spheres share.
+/// Common part of the least-squares fits of circles and spheres.
 #pragma once
 
 #include <Eigen/Dense>

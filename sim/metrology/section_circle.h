@@ -29,7 +29,7 @@ struct NoCircle {
 /// @param nominal  its positions in the workpiece (m), sampled as the path will be
 std::variant<SectionCircle, NoCircle> circle_of_section(std::span<const Eigen::Vector3d> nominal);
 
-/// Whether two sections go around the same place with the same radius.
+/// True if two sections go around the same centre with the same radius.
 bool is_same_circle(const SectionCircle& one, const SectionCircle& other);
 
 }  // namespace servomill::sim

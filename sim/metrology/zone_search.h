@@ -1,5 +1,5 @@
-/// What the minimum zones of circles, planes and cylinders share: a search for the zone between two
-/// surfaces at one distance from each other.
+/// Common part of the minimum zones of circles, planes and cylinders: a search for the zone between
+/// two surfaces at one distance from each other.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,12 @@ class ZoneShape {
  public:
   virtual ~ZoneShape() = default;
   virtual std::size_t points() const = 0;
-  /// Of a point, from the shape as it lies now; the offset that all share does not matter.
+  /// Distance of a point from the shape as it lies now; an offset that all share does not matter.
   virtual double distance(std::size_t point) const = 0;
   /// How it changes with each motion of the shape (up to 4); of the order of 1.
   virtual SmallVector gradient(std::size_t point) const = 0;
   virtual void move(const SmallVector& motions) = 0;
-  /// Where it lies now is the best so far.
+  /// Keeps the present location as the best so far.
   virtual void keep() = 0;
   /// One of cells() parts of the shape, to begin with the extreme points of each.
   virtual std::size_t cell(std::size_t point) const = 0;

@@ -22,7 +22,7 @@ std::string as_toml(double value, const std::string& unit) {
   return unit.empty() ? number : quoted_text(number + " " + unit);
 }
 
-// Of a number between two that the user wrote: without the digits that rounding has made.
+// TOML of a number between two that the user wrote, without digits that come from rounding.
 std::string as_toml_between(double value, const std::string& unit) {
   constexpr int kSure = 15;  // digits
   return as_toml(std::strtod(fmt::format("{:.{}g}", value, kSure).c_str(), nullptr), unit);

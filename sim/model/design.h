@@ -41,7 +41,7 @@ struct WrittenNumber {
   bool operator==(const WrittenNumber&) const = default;
 };
 
-/// What a TOML scalar says if it is a number or a text of a number and a known unit.
+/// Value of a TOML scalar that is a number, or a text of a number and a known unit.
 std::optional<WrittenNumber> written_number(const std::string& toml);
 
 /// The number that a TOML value is, in the unit it is written in ("60 1/s" is 60); NaN if none.
@@ -74,7 +74,7 @@ struct SweepKey {
   std::size_t dimension = 0;  // of the grid or of the samples; keys of one dimension go together
 };
 
-/// What the values of one key have in common: numbers of one unit, or one of some texts.
+/// Common type of the values of one key: numbers of one unit, or one of some texts.
 struct SweepColumn {
   bool numeric = true;
   std::string unit;

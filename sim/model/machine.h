@@ -35,7 +35,7 @@ struct LoopPeriods {
   bool operator==(const LoopPeriods&) const = default;
 };
 
-/// Whether all these periods (ticks) fit into one static schedule: sim/model/schedule.h bounds its
+/// True if all these periods (ticks) fit into one static schedule: sim/model/schedule.h bounds its
 /// length.
 bool can_be_scheduled(const std::vector<Tick>& periods);
 
@@ -45,7 +45,7 @@ struct NominalFilter {
   Tick length = 0;
 };
 
-/// What the NC does for one axis beside its cascade.
+/// Functions of the NC for one axis beside its cascade.
 struct AxisFunctions {
   controllers::CurrentLoopParams current_loop;  // of a drive with a winding
   controllers::PositionFeedbackParams position_feedback;
@@ -54,7 +54,7 @@ struct AxisFunctions {
   controllers::SupervisionParams supervision;
 };
 
-/// Where the gains of an axis were written, for messages.
+/// Places of the gains of an axis in the input, for messages.
 struct GainPlaces {
   Place Kv, velocity_bandwidth, winding_bandwidth;
 };
@@ -77,7 +77,7 @@ struct NcSettings {
   bool check_stability = true;  // refuse gains with which the linear loop diverges
 };
 
-/// What moves the drives between two instants.
+/// Integrator that moves the drives between two instants.
 enum class Integrator : std::uint8_t {
   exact,  // plant/drives/drive_bank.h
   cvode,  // plant/drives/cvode_bank.h: SUNDIALS at tight tolerance, the reference

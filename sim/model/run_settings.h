@@ -34,7 +34,7 @@ struct RecordFormat {
   /// and torques to that many times 0.1 A (N m) a micrometre, forces to that many times 1 N. 0:
   /// every bit is kept.
   double resolution = 0.0;  // m
-  /// Of all but time, s and counts, which stay float64.
+  /// Storage of all signals but time, s and counts, which stay float64.
   Storage storage = Storage::float64;
 };
 

@@ -17,7 +17,7 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// What a stream of random numbers is for: streams of different use are never the same.
+// Use of a stream of random numbers: streams of different use are never the same.
 enum class Use : std::uint8_t { sample = 1, jitter, permutation, shift };
 
 // SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014), of one

@@ -71,7 +71,7 @@ struct CaseSpec {
   bool needs_feedback_hardware() const;
 };
 
-/// What a quantity asks of a ball in the spindle and sensors on the table.
+/// Ball in the spindle and sensors on the table, as a quantity needs them.
 struct BallSpec {
   std::vector<Eigen::Vector3d> bar_centres;    // m, in the workpiece: of a ball bar, for each of
                                                // the sections; none: a nest of three sensors
@@ -79,7 +79,7 @@ struct BallSpec {
   std::optional<plant::ErrorName> error = {};  // location_error: which
 };
 
-/// What a quantity asks of the probed part.
+/// Features of the probed part that a quantity needs.
 struct PartSpec {
   std::vector<std::string> probes;  // features, each the name of a [[probe]]
   bool minimum_zone = true;         // of the fit, where there is a choice; else least squares
@@ -101,7 +101,7 @@ struct QuantitySpec {
   std::optional<PartSpec> part = {};
 };
 
-/// What becomes of recorded signals.
+/// Recording: signals, period and storage.
 struct RecordSpec {
   RecordFormat format = {.resolution = 0.001e-9};
   int compression = 1;            // of the result file, kNoCompression to kMostCompression
@@ -111,7 +111,7 @@ struct RecordSpec {
   double max_duration = 86400.0;  // s, of the motion of a case
 };
 
-/// What cutting costs.
+/// Limits on the computing effort of cutting.
 struct CuttingSpec {
   plant::CuttingCoefficients coefficients;
   CuttingWear wear;
@@ -163,7 +163,7 @@ Scenario read_resolved_scenario(const std::string& resolved, const std::string& 
 
 struct ScenarioDocument;
 class InputFiles;
-/// What both have in common: the document with the machine in it (sim/input/scenario_document.h).
+/// Common part of both: reads the document with the machine in it (sim/input/scenario_document.h).
 /// @param files  where the program is looked for
 Scenario read_document(ScenarioDocument scenario, const std::string& name, InputFiles& files);
 

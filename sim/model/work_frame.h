@@ -23,7 +23,7 @@ struct PartFrame {
   Eigen::Vector3d in_workpiece(const Eigen::Vector3d& p_G) const { return R_WG * p_G + p_WG; }
 };
 
-/// Where the ideal machine has the tip when the program says X Y Z with all rotary words at 0:
+/// Tip of the ideal machine for a programmed X Y Z with all rotary words at 0:
 ///
 ///     p_W = R_WG (X, Y, Z) + p_WG                                                          (1)
 ///     R_WG = R_WM(Q_0),  p_WG = p_WT(Q_0) of a tool of no length,  Q_0 the work offset       (2)

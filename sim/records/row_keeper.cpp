@@ -7,8 +7,8 @@
 namespace servomill::sim {
 namespace {
 
-// Of a thinned recording it is known what it may take, not how many rows that is; whoever thins has
-// to see chunks of it in time.
+// A thinned recording is bounded by its size, not by a number of rows; its chunks must reach the
+// thinning in time.
 std::size_t rows_within(const ThinningLimits& limits, const Series& series) {
   constexpr double kLeastChunks = 16.0;
   const double rows =

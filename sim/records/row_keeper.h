@@ -14,7 +14,7 @@
 
 namespace servomill::sim {
 
-/// Where the rows of a case are kept until they have been compared.
+/// Storage of the rows of a case until they have been compared.
 struct RowKeeping {
   std::string folder;            // of what memory is not to hold; empty: that of temporary files
   double most_in_memory = 64e6;  // bytes of the rows of a case; more go to the disk

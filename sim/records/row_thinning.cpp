@@ -120,7 +120,7 @@ void RowThinning::finish(std::vector<double>& out) {
   if (samples_ > 0) stay(before_, out);
 }
 
-// What rows tell of others must be of one section, and of feed or rapid.
+// A row may stand for others of its own section only, and either of feed or of rapid.
 bool RowThinning::must_stay(std::span<const double> before, std::span<const double> row) const {
   return row[section_] != before[section_] || row[rapid_] != before[rapid_];
 }

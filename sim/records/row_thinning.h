@@ -14,15 +14,16 @@ namespace servomill::sim {
 /// The number of rows before it that a row of a thinned recording stands for, itself included.
 inline constexpr std::string_view kSamples = "samples";
 
-/// What a recording may take.
+/// Limits of a recording's size.
 struct ThinningLimits {
   double bytes = 0.0;               // of its chunks on the disk
   std::size_t rows = 0;             // that will come, about
   std::vector<bool> keep_all = {};  // by section: every row of it stays, whatever that takes
 };
 
-/// Of rows at a fixed period some stay: the first and the last, those where the program goes to
-/// another section or from feed to rapid and back and, as long as the limit allows, those
+/// Thins rows of a fixed period. The rows that stay: the first and the last, those where the
+/// program goes to another section or from feed to rapid and back and, as long as the limit allows,
+/// those
 ///
 ///   - at which a block ends or an axis reverses,
 ///   - by which the contour error has changed by a tenth of its greatest value,
@@ -37,8 +38,7 @@ class RowThinning {
   /// @param signals  of the rows that come; among them line, section and rapid
   RowThinning(const std::vector<Signal>& signals, ThinningLimits limits);
 
-  /// Those of the rows that stay: those of the rows that come, and behind them what tells of the
-  /// others.
+  /// Signals of the rows that stay: the recorded ones, then the extremes of the rows left out.
   const std::vector<Signal>& signals() const { return signals_; }
 
   /// Adds whole rows; those that stay are put behind `out`.
@@ -59,7 +59,7 @@ class RowThinning {
     bool has_mean = false;            // beside least and greatest value
     bool is_single = false;           // kept as float32
   };
-  // Of a column, since a row stayed.
+  // Extremes of a column since the last row that stayed.
   struct Told {
     double least = 0.0, greatest = 0.0, sum = 0.0, squares = 0.0;
   };

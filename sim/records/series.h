@@ -56,7 +56,7 @@ class Series {
     if (pages_ != nullptr) return pages_->rows();
     return width_ == 0 ? 0 : data_.size() / width_;
   }
-  /// Where the rows lie; nullptr: in memory.
+  /// Pages that hold the rows; nullptr: they are in memory.
   const ColumnPages* pages() const { return pages_.get(); }
   /// @pre of these two: in memory
   const double* row(std::size_t index) const { return data_.data() + index * width_; }

@@ -27,7 +27,7 @@ struct Channel {
   Storage storage = Storage::float64;
 };
 
-/// What a SeriesWriter records. The index is the dimension that all share and the first number of a
+/// Layout of a series. The index is the dimension that all share and the first number of a
 /// row; a list of probed points would have {"point", {"1", "number of the point"}}.
 struct SeriesLayout {
   std::string index = "time";

@@ -28,7 +28,7 @@ inline constexpr std::size_t kPointStatuses = 5;
 /// "not_run", "done", ...
 std::string_view name_of(PointStatus status);
 
-/// What became of one point.
+/// Result of one point.
 struct BatchResult {
   PointStatus status = PointStatus::not_run;
   std::string reason;                  // why it is not `done`, in one line
@@ -36,7 +36,7 @@ struct BatchResult {
   std::vector<CaseOutput> cases = {};  // with their signals, where they are kept
 };
 
-/// What to keep of the cases of a batch.
+/// Data to keep of the cases of a batch.
 enum class Keep : std::uint8_t { comparison, series };
 
 /// A point of a batch, by its place there, that has ended.
@@ -59,7 +59,7 @@ struct BatchControl {
 
 /// Prepares and runs all cases of all points on the calling thread, in lockstep where they share
 /// lanes (sim/engine/simulate.h). The result of a point depends on that point alone, bit for bit.
-/// What is wrong with a point is part of its result; nothing is thrown but what `ended` throws.
+/// Faults of a point are part of its result; nothing is thrown but what `ended` throws.
 /// @param stop      points that have not ended when it is set are never told of
 /// @param progress  set to the share done of the batch, 0 to 1
 /// @param ended     called on this thread with points as soon as they have ended, each once

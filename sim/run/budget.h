@@ -75,10 +75,10 @@ struct Budget {
   double sum_at_place() const { return residual.at_place - remainder.at_place; }
 };
 
-/// Whether each case has this quantity, asked for or not: tool_deviation, following_error.
+/// True if each case has this quantity, asked for or not: tool_deviation, following_error.
 bool is_of_any_case(std::string_view quantity);
 
-/// What a scenario's quantities ask for that has a budget, each case of each once: brought_out and
+/// Quantities of a scenario that have a budget, each case of each once: brought_out and
 /// response_time stand for imposed_curve_residual; statistics do not matter.
 /// @param also      quantities of any case; where the scenario has none of that name, of all cases
 ///                  and linear axes

@@ -111,7 +111,7 @@ const std::string& truth_of(const Scenario& scenario, const CaseSpec& one) {
   return one.truth ? *one.truth : scenario.truth;
 }
 
-// Whether strategies of a case know errors, to correct or to generate them.
+// True if strategies of a case know errors, to correct or to generate them.
 bool has_strategy(const CaseSpec& one, strategies::Sign sign) {
   return std::any_of(one.strategies.begin(), one.strategies.end(), [&](const StrategySpec& spec) {
     return spec.entry->reads_errors && spec.sign == sign;
@@ -190,7 +190,7 @@ bool remove(Cause cause, Scenario& scenario, CaseSpec& one) {
   return false;
 }
 
-// Whether strategies of a case move the tool where the program does not want it.
+// True if strategies of a case move the tool off the programmed path on purpose.
 bool moves_on_purpose(const CaseSpec& one) {
   return has_strategy(one, strategies::Sign::generate) ||
          std::any_of(one.strategies.begin(), one.strategies.end(), [](const StrategySpec& spec) {

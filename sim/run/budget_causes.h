@@ -14,7 +14,7 @@
 
 namespace servomill::sim {
 
-/// What a residual can come from. Taking a cause away (of the case and of the case that it is
+/// Causes of a residual. Taking a cause away (of the case and of the case that it is
 /// compared with) means:
 enum class Cause : std::uint8_t {
   lag,             // loops and drives: axes stand where the NC wants them (servo = "ideal")
@@ -44,9 +44,9 @@ struct CauseInfo {
 const CauseInfo& info_of(Cause cause);
 using Causes = std::set<Cause>;
 
-/// Those that the signal goes through, in this order.
+/// Causes in the order in which the signal passes them.
 inline constexpr std::array kChain = {Cause::interpolation, Cause::lag, Cause::delay};
-/// Those that add to it, beside measurement.
+/// Causes that add to the signal, beside measurement.
 inline constexpr std::array kAdding = {Cause::table,          Cause::saturation, Cause::one_step,
                                        Cause::identification, Cause::friction,   Cause::cutting,
                                        Cause::uncorrected};
@@ -54,10 +54,10 @@ inline constexpr std::array kAdding = {Cause::table,          Cause::saturation,
 /// All that can be taken away.
 Causes all_causes();
 
-/// Those that a case has. An ideal servo has nothing that goes through loops.
+/// Causes that are present in a case. An ideal servo has none of the loops.
 Causes present(const Causes& causes, const Scenario& scenario, const CaseSpec& one);
 
-/// What stays without all others; none of what begins behind the strategies.
+/// Cause that remains without all others; none if it begins behind the strategies.
 /// @param base  the case it is compared with, or nullptr
 std::optional<Cause> rest_of(const QuantitySpec& quantity, const CaseSpec& one,
                              const CaseSpec* base);

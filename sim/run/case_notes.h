@@ -1,5 +1,4 @@
-/// What there is to say about a case that has run: lines for the user, most with a line of the
-/// program.
+/// Notes on a case that has run: lines for the user, most with a line of the program.
 #pragma once
 
 #include <memory>
@@ -25,15 +24,16 @@ struct NotedCase {
   std::span<const std::shared_ptr<const strategies::Strategy>> strategies;  // those of spec
 };
 
-/// What the NC put right or could not do as programmed.
+/// Notes on what the NC corrected or could not do as programmed.
 /// @param held  displacements that strategies could not make in full
 std::vector<std::string> notes_of_run(const NotedCase& one,
                                       std::span<const strategies::Saturation> held);
 
-/// What strategies of this case cannot correct, one line for each (sim/run/uncorrected.h).
+/// Errors that the strategies of this case cannot correct, one line for each
+/// (sim/run/uncorrected.h).
 std::vector<std::string> notes_of_uncorrectable(const NotedCase& one);
 
-/// Where the program goes beyond the points of compensation tables, one line for each end.
+/// Places at which the program leaves the points of compensation tables, one line for each end.
 std::vector<std::string> notes_of_left_tables(const NotedCase& one);
 
 /// Lays what was probed on the nominal part.

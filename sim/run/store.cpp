@@ -91,7 +91,7 @@ struct StoredSignals {
   std::size_t rows = 0;
 };
 
-// What the signals of one group are, in the order in which they were written.
+// Signals of one group, in the order in which they were written.
 StoredSignals signals_of(const InputFile& file, const std::string& group) {
   StoredSignals out;
   auto& [signals, rows] = out;
@@ -137,7 +137,7 @@ std::unique_ptr<Series> read_series(const std::shared_ptr<const InputFile>& file
 // Signals that a case has only if it feels the cut: another one of the same run may be in air.
 constexpr std::array<std::string_view, 2> kOfCutting = {"cutting_force", "structural_deflection"};
 
-// What every comparison needs, and what the other cases have.
+// Checks that a group has the signals that every comparison needs, and those of the other cases.
 void check_signals(const InputFile& file, const std::string& group, const Series& series,
                    const Series& first) {
   std::vector<std::string> needed = {"s", "rapid", "section"};
@@ -155,7 +155,7 @@ void check_signals(const InputFile& file, const std::string& group, const Series
   }
 }
 
-// Of the ideal machine of a case.
+// Chain of the ideal machine of a case.
 plant::MachineChain chain_of(const Scenario& scenario, const std::string& name) {
   const CaseSpec* one = scenario.find_case(name);
   return (one != nullptr ? scenario.machine_of(*one) : scenario.machine).chain;

@@ -21,7 +21,7 @@ void write_build(Hdf5Group& root);
 /// The build that wrote it; only its version if it is older than that.
 std::string build_of(const InputFile& file);
 
-/// What every result file begins with: build, kind, the instructions that compute
+/// Header of every result file: build, kind, the instructions that compute
 /// (plant/vocabulary/simd.h), and the scenario with all that it read.
 void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view kind);
 
@@ -62,7 +62,7 @@ StoredRun read_run(const std::string& path);
 /// The lines of a text attribute: one more than it has line breaks.
 std::vector<std::string> split_lines(const std::string& text);
 
-/// Whether a file begins as HDF5 does.
+/// True if a file begins as HDF5 does.
 bool is_hdf5(const std::string& path);
 
 /// The name under which a result file may be made (sim/system/output_name.h): neither it nor its

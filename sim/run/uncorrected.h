@@ -1,4 +1,4 @@
-/// What a strategy cannot correct, or no longer corrects, looked for along the program.
+/// Errors that a strategy cannot correct, or no longer corrects, searched for along the program.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ struct Uncorrected {
   double singular_angle = 0.0;  // rad, of the tool axis from a singular direction there
 };
 
-/// Of this and less nothing is said.
+/// Limits up to which nothing is reported.
 inline constexpr strategies::Leftover kUncorrected = {.tip = 0.1e-6, .axis = 1e-6};  // m, rad
 
 /// The place of the feed motion where most is left of the tool axis or, where of none much is left,
@@ -30,7 +30,7 @@ std::optional<Uncorrected> uncorrected(const ProgramPath& path,
                                        const plant::InverseKinematics& inverse,
                                        const Eigen::Vector3d& p_ST);
 
-/// Where the program leaves a compensation table.
+/// Place at which the program leaves a compensation table.
 struct LeftTable {
   int line = 0;  // the first one that does
   strategies::BeyondTable table;

@@ -33,7 +33,7 @@ class TemporaryFile {
   std::string name_;
 };
 
-/// What may be there already.
+/// Treatment of a file that exists already.
 enum class Existing : std::uint8_t { refused, resumed, replaced };
 
 inline Existing existing_of(bool force) { return force ? Existing::replaced : Existing::refused; }
@@ -53,7 +53,7 @@ void refuse_same_output(const std::string& path, const std::string& other, const
 /// @throws InputError if it may not be replaced, SystemError
 void give_name(const std::string& complete, const std::string& target, Existing existing);
 
-/// Whether a process writes a partial file now: its lock tells.
+/// Process that writes a partial file now, as its lock tells.
 enum class Writer : std::uint8_t { none, alive, unknown };
 Writer writer_of(const std::string& partial);
 

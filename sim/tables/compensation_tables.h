@@ -28,7 +28,7 @@ struct TableLine {
   double entry_of(double position) const;  ///< the way back
 };
 
-/// What is wanted of the line of one axis; the rest follows from the format.
+/// Request for the line of one axis; the rest follows from the format.
 struct LineRequest {
   int joint = 0;
   char letter = 'X';

@@ -1,5 +1,5 @@
-/// What compensation tables over single axes cannot correct. A shift of the machine's zero does not
-/// count: everywhere what the machine is off at the reference is taken away.
+/// Errors that compensation tables over single axes cannot correct. A shift of the machine's zero
+/// does not count: the error at the reference position is subtracted everywhere.
 #pragma once
 
 #include <vector>

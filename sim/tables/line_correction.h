@@ -1,4 +1,4 @@
-/// What tables over single axes can know of a machine's errors: those on one line per axis.
+/// Errors on one line per axis: all that tables over single axes can hold of a machine's errors.
 #pragma once
 
 #include <Eigen/Core>

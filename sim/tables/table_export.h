@@ -48,7 +48,7 @@ struct TableExport {
 TableExport export_tables(const MachineSettings& machine, const plant::ErrorModel& errors,
                           const TableRequest& request);
 
-/// What the tables hold and leave, for the reader: lines of text without line ends.
+/// Report of what the tables correct and leave uncorrected: lines of text without line ends.
 std::vector<std::string> report(const TableExport& tables);
 
 }  // namespace servomill::sim
