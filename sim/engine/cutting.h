@@ -22,7 +22,7 @@ class CuttingTable {
     Eigen::Vector3d edge = Eigen::Vector3d::Zero();   // N of a new edge, in W
     double cut = 0.0;                                 // m, cut by feed moves until here
   };
-  /// Where the last force was; makes forward reading O(1).
+  /// Place of the last force; makes forward reading O(1).
   struct Cursor {
     std::size_t row = 0;
   };
@@ -44,7 +44,7 @@ class CuttingTable {
   std::vector<Row> rows_;
 };
 
-/// What one run feels of the cut, position period by position period.
+/// Cutting force on one run, position period by position period.
 class CuttingLoad {
  public:
   /// All arguments must outlive this.

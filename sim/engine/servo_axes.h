@@ -39,7 +39,7 @@ struct DriveWay {
 /// @param most_stops  on a stretch; 0: each stop ends a leg
 DriveWay drive_way(const std::vector<Instant>& schedule, std::size_t most_stops = 8);
 
-/// What the position loops follow, for all joints.
+/// Setpoints of the position loops, for all joints.
 struct AxisSetPoint {
   Joints Q_ref = Joints::Zero();  // interpolated, filtered
   Joints Q_cmd = Joints::Zero();  // with corrections: what the position loop follows
@@ -79,15 +79,15 @@ class ServoAxes {
   /// Has stood for long where the loops hold Q, which the NC reads as Q + displacement: there, or
   /// below it by what the load needs where no loop has an integral part.
   void settle(const Joints& Q, const Joints& displacement, std::size_t run = 0);
-  /// What a virtual encoder adds to the readings (5; m, rad), from now on.
+  /// Sets the virtual displacement that is added to the readings (5; m, rad), from now on.
   void displace(const Joints& displacement, std::size_t run = 0);
   /// The same for some of eight runs side by side, from run `first` on, a multiple of eight.
   /// @param rotary  false: only the linear joints
   void displace(const JointLanes& displacement, const LaneFlags& lanes, bool rotary,
                 std::size_t first = 0);
-  /// What the position loops follow, from now on.
+  /// Sets the setpoints that the position loops follow, from now on.
   void follow(const AxisSetPoint& set, std::size_t run = 0);
-  /// What is added to a joint from now on.
+  /// Sets what is added to a joint, from now on.
   void inject(int joint, const Injection& injection, std::size_t run = 0);
   /// External forces on the slides from now on (5; N, N m), towards +, in place of an injected one.
   void load(const Joints& forces, std::size_t run = 0);
@@ -129,17 +129,17 @@ class ServoAxes {
     advance(step, [] { assert(false); });
   }
 
-  /// What read_scales read.
+  /// Positions as read_scales read them.
   Joints Q_meas(std::size_t run = 0) const { return joints_of(&ServoBlock::scale, run); }
   /// The same of eight runs side by side, from run `first` on, a multiple of eight. Joints that do
   /// not take part and runs beyond the last are left as they are.
   void get_readings(JointLanes& Q_meas, std::size_t first = 0) const;
-  /// What the position loops read last.
+  /// Positions as the position loops read them last.
   Joints Q_read(std::size_t run = 0) const { return joints_of(&ServoBlock::Q_read, run); }
   Joints Q_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::x, run); }
   Joints dQ_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::v, run); }
   Joints current(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::i, run); }
-  /// What acts on the drives: A, with a winding V.
+  /// Command to the drives: A, with a winding V.
   Joints command(std::size_t run = 0) const {
     return gathered(input_.blocks, &plant::DriveInputBlock::command, run);
   }
@@ -166,7 +166,7 @@ class ServoAxes {
   void each_state(int joint, Visit visit);
 
  private:
-  // What the NC does for an axis beside its loops.
+  // Functions of the NC for an axis beside its loops.
   struct Functions {
     controllers::FrictionCompensationState friction;
     controllers::BacklashCompensationState backlash;
@@ -179,7 +179,7 @@ class ServoAxes {
     int joint;
   };
 
-  // Where the lane of a joint lies; of a joint that does not take part, somewhere.
+  // Place of a joint's lane; arbitrary for a joint that does not take part.
   struct Place {
     std::size_t block = 0, place = 0;
     bool present = false;
@@ -224,7 +224,7 @@ class ServoAxes {
   auto row(LaneArray ServoBlock::*member) { return Joints::Map((servos_.front().*member).data()); }
   // Blocks hold one joint of eight runs each.
   bool fills_blocks() const { return runs() % kLaneWidth == 0; }
-  // Where they do and all joints take part.
+  // Block if the runs share lanes and all joints take part.
   std::size_t block_of(std::size_t joint, std::size_t run) const {
     return joint * blocks_of_joint_ + run / kLaneWidth;
   }
@@ -262,7 +262,7 @@ class ServoAxes {
   }
   void describe(std::size_t lane);
   void settle(std::size_t lane, double Q, double displacement);
-  // Of encoders that do more than quantise, at positions of the drives.
+  // Reads the encoders that do more than quantise, at positions of the drives.
   void read_own_scales_at(const LaneArray* positions, Tick now);
   void read_motors();
   double motor_reading(std::size_t lane) const;

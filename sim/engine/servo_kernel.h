@@ -72,7 +72,7 @@ struct ServoKernel {
 /// The functions for the instruction set of this machine.
 const ServoKernel& servo_kernel();
 
-/// Those of one level.
+/// Kernels of one level.
 template <SimdLevel level>
 ServoKernel make_servo_kernel();
 

@@ -440,7 +440,7 @@ class IdealRun {
     return in_.reference.at(periods_.seconds(n) - set_point_.delay(), record_cursor_);
   }
 
-  // Of an instant that is recorded; the sizes of displacements, which are all that settle().
+  // Adds the saturations of a recorded instant.
   void add_saturations(double time) {
     if (!feedback_) return;
     for (const strategies::Saturation& now : feedback_->saturations(0)) {

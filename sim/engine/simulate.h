@@ -22,7 +22,7 @@
 
 namespace servomill::sim {
 
-/// What one case needs. References are shared with other cases; parts belong to this run.
+/// Inputs of one case. References are shared with other cases; parts belong to this run.
 struct CaseInputs {
   const MachineSettings& machine;
   const plant::VolumetricModel& truth;         // the machine as it is
@@ -67,7 +67,7 @@ struct CaseResult {
   double wall_time = 0.0;                           // s, of all that ran in lockstep
 };
 
-/// Whether two cases can run in lockstep: the same axes, moved at the same instants. Everything
+/// True if two cases can run in lockstep: the same axes, moved at the same instants. Everything
 /// else may differ: program, feed, strategy, any number of the machine.
 bool share_lanes(const CaseInputs& a, const CaseInputs& b);
 

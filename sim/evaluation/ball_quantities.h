@@ -21,11 +21,11 @@ class BallQuantities {
   /// @param samples  must outlive this
   explicit BallQuantities(CaseSamples& samples) : samples_(samples) {}
 
-  /// What the sensor reads, in um.
+  /// Reading of the sensor, in um.
   /// @pre quantity_info(spec.name).is_of_ball with a statistic; the case has a recording
   BallDeviation deviation(const QuantitySpec& spec);
 
-  /// Of location_error, in unit_of_location; or NaN and why the sections do not tell.
+  /// Value of location_error, in unit_of_location; or NaN and why the sections do not determine it.
   struct Location {
     double value;
     std::string why_not;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// Of the two reversals of an axis the value that is larger by magnitude.
+// The value that is larger by magnitude at the two reversals of an axis.
 double larger_at_reversal(const CircularTurn& turn, const SectionCircle& circle, char axis,
                           double Reversal::*value) {
   double larger = kNone;

@@ -36,7 +36,7 @@ std::span<const QuantityInfo> quantities();
 std::vector<std::string_view> quantity_names();
 const QuantityInfo& quantity_info(std::string_view name);
 
-/// What is known of one case that ran.
+/// Data of one case that ran.
 struct CaseData {
   std::string name;
   const Series* servo = nullptr;

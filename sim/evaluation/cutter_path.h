@@ -20,7 +20,7 @@
 
 namespace servomill::sim {
 
-/// What a case brings along.
+/// Inputs from a case: moves and cutters of its part.
 struct PartSource {
   const std::string& case_name;
   const Series& servo;

@@ -14,14 +14,14 @@ namespace {
 constexpr double kStep = 10e-6;  // m, along a normal
 constexpr double kShare = 0.9;  // of it, by which the distance grows: facets may be turned a little
 
-// Whether the distance from the part grows along the normal: outside of it, or, as at the foot of a
+// True if the distance from the part grows along the normal: outside of it, or, as at the foot of a
 // wall, inside.
 bool faces_out(const TriangleMesh& mesh, const plant::ProbeTarget& target, double distance) {
   const auto at = [&](double s) { return mesh.closest(target.point + s * target.normal).distance; };
   return at(kStep) - distance >= kShare * kStep || distance - at(-kStep) >= kShare * kStep;
 }
 
-// What is wrong with points of one kind: how many, and the first.
+// Points with one kind of fault: how many, and the first.
 struct Wrong {
   std::size_t count = 0;
   const plant::ProbeTarget* first = nullptr;

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Where a point was met; components are NaN where nothing was.
+// Measured points; components are NaN where the probe met nothing.
 std::vector<Vector3d> measured_points(const ProbedFeature& feature) {
   std::vector<Vector3d> out;
   const std::vector<double> d = mean_deviations(feature);

@@ -13,7 +13,7 @@ namespace servomill::sim {
 
 struct ProbedFeature;
 
-/// What the best fit of all probed points of a case found.
+/// Best fit of all probed points of a case.
 struct PartFit {
   BestFit fit;                             // of all points that were met, feature by feature
   std::vector<std::vector<Arrow>> arrows;  // feature, point; NaN: nothing was met

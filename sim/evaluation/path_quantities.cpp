@@ -146,7 +146,7 @@ AtRow tool_axis_deviation(const CaseData& one) {
   };
 }
 
-// Of the quantities with a path signal.
+// Signed values of the quantities with a path signal.
 AtRow signed_value(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
   if (spec.name == "following_error") return column_of(one, "following_error_linear", spec.axis);
   if (spec.name == "tool_deviation") return column_of(one, "tool_deviation", spec.axis);
@@ -237,7 +237,7 @@ struct PathSignal::Parts {
     }
   }
 
-  // What rotary axes turn from one row to another.
+  // Turn of the rotary axes from one row to another.
   double turn(std::size_t from, std::size_t to) const {
     double sum = 0.0;
     for (const AtRow& ref : rotary) sum += std::abs(ref(to) - ref(from));

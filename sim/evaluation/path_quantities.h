@@ -24,11 +24,11 @@ struct PathSample {
   double value = 0.0;   // in the unit of the quantity
 };
 
-/// Whether there is a PathSignal of this quantity: imposed_curve_residual, trajectory_difference,
+/// True if there is a PathSignal of this quantity: imposed_curve_residual, trajectory_difference,
 /// tool_deviation, following_error.
 bool has_path_signal(std::string_view quantity);
 
-/// What the statistic of a quantity is taken over, sample by sample; nothing is kept of them.
+/// Samples over which the statistic of a quantity is taken, one by one; nothing is kept of them.
 class PathSignal {
  public:
   /// @param one, base  the recordings must outlive it; base: the case it is compared with, nullptr

@@ -99,7 +99,7 @@ std::vector<Vector2d> along_line(const Points& points) {
   return out;
 }
 
-// Whether points around a circle leave no gap of half a turn or more.
+// True if points around a circle leave no gap of half a turn or more.
 bool go_around(const Points& points) {
   const Feature& round = points.feature->feature;
   std::vector<double> angles;
@@ -228,7 +228,7 @@ Fitted position(const Points& points, char letter) {
   return {mean};
 }
 
-// Where a feature points, as it should be and as it is.
+// Direction of a feature, nominal and measured.
 struct Direction {
   Vector3d nominal, actual;
 };

@@ -25,7 +25,8 @@ struct ProbedDeviations {
   std::string note;
 };
 
-/// Of quantities with a statistic. Points at which one of the cases met nothing are left out.
+/// Deviations for quantities with a statistic. Points at which one of the cases met nothing are
+/// left out.
 /// @param base  nullptr: none
 /// @pre spec.part; both cases finished
 ProbedDeviations probed_deviations(const QuantitySpec& spec, const CaseData& one,
@@ -37,7 +38,7 @@ struct ProbedValue {
   std::string note;
 };
 
-/// Of the other quantities.
+/// Value of the other quantities.
 ProbedValue probed_value(const QuantitySpec& spec, const CaseData& one, const CaseData* base);
 
 }  // namespace servomill::sim

@@ -27,7 +27,7 @@ constexpr double kPoorChord = 1.0 * um;  // chord errors beyond it are told
 constexpr double kParallel = 1e-9;       // sine of an angle
 constexpr double kBelow = 1.0 * um;      // a surface, where its material is looked for
 
-// Where the tip of a cutter with axis k stands when its body touches a face with this normal at a
+// Tip of a cutter with axis k when its body touches a face with this normal at a
 // point: at the foot of the flank, on the rounding or, as for a plane, under the axis.
 Vector3d tip_that_cuts(const plant::Cutter& cutter, const Vector3d& k,
                        const plant::ProbeTarget& target) {
@@ -55,7 +55,7 @@ double imposed_at(const PartSource& source, const PartFrame& frame, const Progra
   return target.normal.dot(frame.direction(displacement));
 }
 
-// What a probe met, and the feed that cut there.
+// Contact of a probe, and the feed that cut there.
 struct Probed {
   Meeting meeting;
   const ProgramPath::Piece* feed = nullptr;
@@ -138,7 +138,7 @@ struct Misses {
 
 enum class Miss : std::uint8_t { untouched, blocked, through, no_stock };
 
-// What the stylus met is a cut surface only where there was raw material below it.
+// A contact of the stylus lies on a cut surface only if there was raw material below it.
 std::optional<Miss> miss_of(const Meeting& meeting, const plant::ProbeTarget& target,
                             const plant::Stock* stock) {
   switch (meeting.kind) {

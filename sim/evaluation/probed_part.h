@@ -11,7 +11,7 @@
 
 namespace servomill::sim {
 
-/// What the CMM found of one feature of one case.
+/// Result of the CMM for one feature of one case.
 struct ProbedFeature {
   std::string name;
   Feature feature;                            // nominal
@@ -21,7 +21,7 @@ struct ProbedFeature {
   std::vector<double> imposed;                // m along the normals, where errors are imposed
 };
 
-/// What the CMM found of one case.
+/// Result of the CMM for one case.
 struct ProbedPart {
   std::vector<ProbedFeature> features;  // one for each [[probe]]
   std::vector<std::string> notes;  // what was missed, and how well the recorded path resolves it

@@ -1,4 +1,4 @@
-/// What a scenario asks of circular tests, against the circles that its program describes.
+/// Checks the circular tests of a scenario against the circles that its program describes.
 #pragma once
 
 #include <Eigen/Core>

@@ -18,7 +18,8 @@ constexpr double kGigabyte = 1e9;
 constexpr double kTicksPerSecond = 1e7;  // of one case on one core; measured with five axes
 constexpr double kMemoryShare = 0.8;  // of the memory; the rest is the program's and the system's
 
-// Of the signals of README, "The result file"; those that only some cases have are rounded up.
+// Columns of the recorded signals (sim/records/README.md); those that only some cases have are
+// rounded up.
 double columns_of(const MachineSettings& machine) {
   constexpr double kOfRow = 27.0, kOfAxis = 10.0;
   return kOfRow + kOfAxis * static_cast<double>(machine.joints().size());

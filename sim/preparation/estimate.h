@@ -1,4 +1,4 @@
-/// What a run will take, known before it begins.
+/// Estimates of the time, memory and file size of a run, made before it begins.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace servomill::sim {
 
-/// Of all cases together.
+/// Estimate for all cases together.
 struct RunEstimate {
   double motion = 0.0;      // s, simulated
   double rows = 0.0;        // at the record period
@@ -41,7 +41,7 @@ std::string thinning_message(const RunEstimate& estimate);
 std::vector<bool> sections_kept_whole(const Scenario& scenario,
                                       const std::vector<std::string>& sections);
 
-/// Whether the user should know before the work begins: above a minute or a gigabyte.
+/// True above a minute or a gigabyte, so that the user should know before the work begins.
 bool is_worth_telling(const RunEstimate& estimate);
 
 /// @param memory  bytes that this process may use

@@ -1,4 +1,5 @@
-/// What preparing many similar cases can share: the points of a sweep differ in little.
+/// Results that the preparation of many similar cases can share: the points of a sweep differ in
+/// little.
 #pragma once
 
 #include <array>

@@ -49,13 +49,13 @@ class PreparedCase {
   /// Lets rows of its recording be left out, so that it takes about so many bytes of the file.
   void thin(double bytes);
 
-  /// Of the planned motion, s.
+  /// Duration of the planned motion, s.
   double duration() const;
 
   /// Names of the sections of the original program.
   const std::vector<std::string>& sections() const;
 
-  /// Where the tool centre point of the ideal machine will be (in the workpiece, m) at the samples
+  /// Tool centre point of the ideal machine (in the workpiece, m) at the samples
   /// of feed motion in each of the sections.
   std::map<std::string, std::vector<Eigen::Vector3d>> nominal_positions(
       const std::set<std::string>& sections) const;
@@ -63,10 +63,10 @@ class PreparedCase {
   /// Faults of the scenario's quantities of circular tests.
   std::vector<Fault> circular_faults(PreparationCache* cache = nullptr) const;
 
-  /// What one run needs; refers to this and to the scenario.
+  /// Inputs of one run; refers to this and to the scenario.
   /// @param scratch_folder  of recordings that are long; empty: that of temporary files
   CaseInputs inputs(const std::string& scratch_folder = {}) const;
-  /// What there is to say about a run of `inputs()`.
+  /// Output of a run of `inputs()`, with its notes.
   CaseOutput output(CaseResult result) const;
 
   /// output(simulate(inputs())), and all notes of sim/run/case_notes.h
@@ -90,7 +90,7 @@ std::vector<PreparedCase> prepare_cases(const Scenario& scenario,
 MoveList read_program(const Scenario& scenario, const CaseSpec& spec,
                       std::vector<Fault>* warnings = nullptr);
 
-/// What the NC of a machine knows for tool-centre-point control.
+/// Kinematics in the NC of a machine for tool centre point control.
 std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(
     const MachineSettings& machine);
 

@@ -34,7 +34,7 @@ struct Action {
   }
 };
 
-/// What spindle, coolant and axes do between one move and the next.
+/// State of spindle, coolant and axes between one move and the next.
 class ActionState {
  public:
   explicit ActionState(const AxisWords& start) { now_.begin = start; }
@@ -99,7 +99,7 @@ bool is_same_feed(const Action& wanted, const Action& read) {
   return std::abs(wanted.time() - read.time()) <= kDigits * wanted.time() + rounding;
 }
 
-// What differs between motions, apart from where they end.
+// Difference between motions, apart from their end points.
 std::optional<std::string_view> difference_of_motions(const Action& wanted, const Action& read) {
   const Move &a = *wanted.move, &b = *read.move;
   if (!is_same_feed(wanted, read)) return "another feed";

@@ -1,6 +1,6 @@
 /// HDF5 files: written under a temporary name, renamed when complete, read back by path.
 ///
-/// What every dataset has to have so that h5py, xarray, netCDF and Octave open it: attributes
+/// Every dataset has what h5py, xarray, netCDF and Octave need to open it: attributes
 /// `units` and `long_name`, and a dimension scale for each of its dimensions. Texts are attributes.
 /// Several threads may use this, but wait for each other: the library takes one at a time.
 #pragma once
@@ -36,7 +36,7 @@ class Hdf5Handle {
   std::int64_t id_;
 };
 
-/// What groups and datasets have in common. An attribute set twice has the later value.
+/// Common part of groups and datasets. An attribute set twice has the later value.
 /// All members throw SystemError if the file cannot be written.
 class Hdf5Object {
  public:
@@ -58,7 +58,7 @@ class Hdf5Object {
   Hdf5Handle id_;
 };
 
-/// What a dataset says about itself.
+/// Description of a dataset.
 struct Meaning {
   std::string units;      // as CF has them: "mm", "s", "1"
   std::string long_name;  // a phrase for the label of a plot

@@ -8,7 +8,7 @@
 
 namespace servomill::sim {
 
-/// What a merge found.
+/// Result of a merge.
 struct Merged {
   StatusCounts counts{};
   std::vector<std::string> missing;    // what the table lacks, one reason an entry

@@ -11,7 +11,7 @@ namespace servomill::sim {
 /// "OUT.series" for "OUT.h5": where the points' files lie.
 std::string series_folder(const std::string& path);
 
-/// Whether the signals of a point lie there, complete and of this sweep and version.
+/// True if the signals of a point lie there, complete and of this sweep and version.
 bool has_point_series(const std::string& folder, const Sweep& sweep, std::uint64_t point);
 
 /// Writes the signals of a point as `servomill run` would with its values: FOLDER/NUMBER.h5,

@@ -27,7 +27,7 @@ struct Selection {
   std::uint64_t block() const;
 };
 
-/// What --points A-B and --shard I/N say, counted from 1; empty texts: all.
+/// Reads --points A-B and --shard I/N, counted from 1; empty texts: all.
 /// @param points  of the sweep
 /// @throws InputError at "--points ..." or "--shard ..."
 Selection read_selection(std::uint64_t points, const std::string& range, const std::string& shard);

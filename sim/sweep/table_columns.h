@@ -31,8 +31,8 @@ struct TableColumn {
   std::vector<std::string> texts;                               // of a column of their places
 };
 
-/// What the table of a scenario's sweep has beside point, status, reason and the instructions that
-/// computed it: a column for each key of the sweep, then one for each line of the comparison.
+/// Columns of a sweep table beside point, status, reason and the instructions that computed it: a
+/// column for each key of the sweep, then one for each line of the comparison.
 std::vector<TableColumn> columns_of(const Scenario& base);
 
 /// The same of a file that is there. @throws InputError

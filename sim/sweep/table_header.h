@@ -1,4 +1,4 @@
-/// What a sweep file says of itself before its table.
+/// Header of a sweep file, before its table.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ inline constexpr int kSweepSchemaVersion = 3;
 /// none.
 std::string changed_file(const std::string& before, const std::string& after);
 
-/// What the header of a sweep file says.
+/// Content of the header.
 struct SweepHeader {
   Scenario base;  // as stored; the keys of its sweep may stand in another order
   std::uint64_t points = 0;

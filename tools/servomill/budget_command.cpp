@@ -52,7 +52,7 @@ void must_be_among(const std::string& name, const Names& names, const char* opti
                   !near.empty() ? near : fmt::format("; there are: {}", fmt::join(views, ", "))));
 }
 
-// What the options leave of what the scenario asks for.
+// Quantities of the scenario that the options choose.
 std::vector<sim::QuantitySpec> chosen(const sim::Scenario& scenario, const Options& options) {
   std::vector<std::string> also = options.list("quantity");
   std::erase_if(also, [](const std::string& name) { return !sim::is_of_any_case(name); });

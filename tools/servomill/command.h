@@ -1,4 +1,4 @@
-/// What all commands of the program share: options, exit status, progress.
+/// Common part of all commands of the program: options, exit status, progress.
 #pragma once
 
 #include <boost/program_options.hpp>
@@ -91,7 +91,7 @@ class ProgressBar {
   std::size_t shown_ = 0;
 };
 
-/// What --threads says. @throws InputError
+/// Value of --threads. @throws InputError
 unsigned thread_count(const Options& options);
 
 /// "OUT.h5" for a scenario: its name in the current folder unless the user says otherwise.

@@ -43,7 +43,7 @@ std::string upper(std::string text) {
   return text;
 }
 
-// Of Fanuc: as given, or the digits of a file called 1234.ngc or O1234.ngc; 0: none.
+// Fanuc's program number: as given, or the digits of a file called 1234.ngc or O1234.ngc; 0: none.
 int program_number(const Options& options) {
   constexpr int kMost = 9999;
   const bool is_given = options.has("program-number");
@@ -72,7 +72,7 @@ std::string output_name(const Options& options) {
   return (path.parent_path() / name).string();
 }
 
-// Of the program as of its file.
+// Name of the program, from its file.
 std::string program_name(const Options& options) {
   const std::string output = output_name(options);
   const bool is_file = output != "-";

@@ -15,8 +15,8 @@ namespace servomill::tools {
 /// Installs the handlers and returns the flag that they set. A second signal ends the process.
 const std::atomic<bool>& stop_on_interrupt();
 
-/// What the command keeps if it ends early, asked for when it does, from another thread; nothing
-/// before the first call. Ends with the object.
+/// Names what the command keeps if it ends early; asked for when it does, from another thread;
+/// nothing before the first call. Ends with the object.
 class KeptWhenInterrupted {
  public:
   explicit KeptWhenInterrupted(std::function<std::string()> what_is_kept);

@@ -29,7 +29,7 @@ std::string time_left(double seconds) {
   return fmt::format("{:.1f} h left", seconds / kHour);
 }
 
-// What boost says, and the nearest option of ours.
+// Message of boost, and the nearest option of ours.
 std::string unknown_option(const po::unknown_option& error, const po::options_description& known) {
   const std::string given = error.get_option_name();
   std::vector<std::string> names;

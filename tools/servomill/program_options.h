@@ -10,7 +10,7 @@ namespace servomill::tools {
 void add_program_options(Options& options);
 void add_machine_option(Options& options);
 
-/// What they said.
+/// Reads these options.
 sim::ProgramInputs program_inputs(const Options& options);
 
 }  // namespace servomill::tools

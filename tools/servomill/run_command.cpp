@@ -20,7 +20,7 @@ namespace {
 
 namespace po = boost::program_options;
 
-// What the NC put right or could not do as programmed, once for all cases.
+// Notes on what the NC corrected or could not do as programmed, once for all cases.
 void print_notes(const sim::RunOutput& output) {
   std::set<std::string> said;
   for (const sim::CaseOutput& one : output.cases) {
@@ -43,7 +43,7 @@ void print_outcomes(const sim::RunOutput& output) {
   }
 }
 
-// What a run that did not end leaves behind. For any thread.
+// Output that a run leaves behind when it does not end. For any thread.
 class Kept {
  public:
   explicit Kept(const sim::Scenario& scenario) {

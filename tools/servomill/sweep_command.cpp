@@ -82,8 +82,8 @@ void print_file(const std::string& path) {
   std::cout << file.rdbuf() << std::flush;
 }
 
-// Of its points; where signals are kept also that of this process, which may have added signals to
-// rows of another one.
+// SIMD levels of its points; if signals are kept also that of this process, which may have added
+// signals to rows of another one.
 std::vector<SimdLevel> levels_of(const sim::SweepTable& table, const std::string& signals) {
   std::vector<SimdLevel> levels = table.simd_levels();
   const bool is_new = std::find(levels.begin(), levels.end(), simd_level()) == levels.end();
@@ -92,8 +92,8 @@ std::vector<SimdLevel> levels_of(const sim::SweepTable& table, const std::string
   return levels;
 }
 
-// What is left to be done takes, if its points are like the first: on standard error, where it is
-// long or large.
+// Prints the estimate for the remaining points, if they are like the first: on standard error, and
+// only if it is long or large.
 void tell_estimate(sim::RunEstimate takes, std::uint64_t points, unsigned threads, bool series) {
   const auto n = static_cast<double>(points);
   if (points > 0 && takes.is_thinned) fmt::print(stderr, "{}\n", thinning_message(takes));
