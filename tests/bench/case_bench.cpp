@@ -104,7 +104,7 @@ BENCH_FRICTION(regularised);
 BENCH_FRICTION(lugre);
 #undef BENCH_FRICTION
 
-// What the feedback hardware evaluates every 60 us.
+// Evaluation of the feedback hardware, every 60 us.
 void BM_ErrorModel(benchmark::State& state) {
   const plant::VolumetricModel model(experiment1().machine.chain,
                                      experiment1().errors.at("imposed"));

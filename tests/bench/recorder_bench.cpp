@@ -1,4 +1,4 @@
-/// What recording costs a row of 40 signals at 1 ms: `caller` on the thread that appends rows (the
+/// Cost of recording a row of 40 signals at 1 ms: `caller` on the thread that appends rows (the
 /// simulation's), `all` on all threads together, and `wall` until the file is written, each in us a
 /// row; `bytes` in the file for each row.
 

@@ -1,4 +1,4 @@
-/// What all fuzz targets have in common. A target is a function of bytes that must neither crash
+/// Common part of all fuzz targets. A target is a function of bytes that must neither crash
 /// nor hang nor break one of the laws that it checks; whatever is wrong with the bytes ends as an
 /// `InputError` with a place inside them.
 ///

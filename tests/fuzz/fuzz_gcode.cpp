@@ -49,7 +49,7 @@ std::size_t faults_of(std::string_view text, const controllers::ProgramSetup& se
   return faults;
 }
 
-// What other controls accept, as they read it: no law but those of faults_of.
+// Reads the text as each other control does: no law but those of faults_of.
 void read_as_controls(std::string_view text) {
   auto setup = setup_for(text);
   for (const auto reader : {controllers::Reader::any, controllers::Reader::fanuc}) {

@@ -25,7 +25,7 @@ controllers::ProgramSetup setup_for(std::string_view program);
 /// Law: a fault has its place in the program or in one of the subroutine files.
 void require_program_places(std::span<const Fault> faults, std::string_view program);
 
-/// What a program gives until its end, its first fault or too many moves.
+/// Moves of a program until its end, its first fault or too many moves.
 std::vector<Move> moves_until_fault(std::string_view program,
                                     const controllers::ProgramSetup& setup);
 

@@ -16,7 +16,7 @@ constexpr double kRadius = 50000.0;  // um
 constexpr double kKv = 500.0 / 6.0;  // 1/s, 5 m/min/mm
 constexpr double kWv = 200.0;        // rad/s, velocity loop of X and Y
 constexpr double kTv = 0.2e-3;       // s, velocity period of CC424
-// What the motor does runs half a period ahead of what is measured: speed is a difference over Tv.
+// The motor's speed leads the measured one by half a period: speed is a difference over Tv.
 constexpr double kLead = 0.5 * kTv;
 constexpr double kFormTol = 2e-3;  // share: higher powers of w / Kv, stiffness of the drive
 

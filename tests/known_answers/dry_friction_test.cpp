@@ -146,7 +146,7 @@ MachineSettings machine_with(plant::FrictionKind kind, double Fs, double vs) {
 
 constexpr double kBase = 10e-6;  // s
 
-// What the slide does after a move of 100 um at 1 mm/s, seen at its target.
+// Motion of the slide after a move of 100 um at 1 mm/s, seen at its target.
 class AfterMove {
  public:
   AfterMove(const MachineSettings& machine, double seconds) {
@@ -163,7 +163,7 @@ class AfterMove {
   };
   /// Places (m, from the target) where the slide came to a stop, in order.
   std::vector<double> stops;
-  /// Where the slide was in each second.
+  /// Range of the slide's positions in each second.
   std::vector<Span> spans;
 
  private:
@@ -252,7 +252,7 @@ TEST(Hunting, IsNotThereWithPresliding) {
   expect_rest(machine_with(FrictionKind::lugre, 900.0, 2e-3));
 }
 
-// Where the slide is after it has been fed with `input` for long.
+// Position of the slide after a long time under `input`.
 template <class Input>
 double rests_at(const MachineSettings& machine, double seconds, const Input& input) {
   AxisStand stand(machine, 0, 0, PositionLoop::closed);

@@ -1,4 +1,4 @@
-/// What encoders and screws do to an axis whose loop is closed over them.
+/// Effect of encoders and screws on an axis whose loop is closed over them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

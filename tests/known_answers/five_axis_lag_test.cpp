@@ -1,4 +1,4 @@
-/// What feedback compensation leaves in five axes, against its closed form.
+/// Residual of feedback compensation in five axes, against its closed form.
 ///
 /// The axes move by -d(Q), with d from PoseCompensation, each tau_j late: 1/Kv and what the
 /// hardware takes (lag_test.cpp). With the Jacobians of the ideal machine, tip and tool axis are
@@ -106,7 +106,7 @@ struct Rms {
   double tip = 0.0, axis = 0.0;  // um, urad
 };
 
-// What two cases of one motion differ by, less what is predicted.
+// Difference between two cases of one motion, less the predicted one.
 template <class Predict>
 Rms difference(const CaseOutput& one, const CaseOutput& other, Predict predict) {
   const Series &a = one.result.servo, &b = other.result.servo;

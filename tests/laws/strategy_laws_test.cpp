@@ -81,7 +81,7 @@ TEST(EveryStrategy, IsListedInOrderOfItsName) {
   EXPECT_EQ(names().size(), entries().size());
 }
 
-// What is declared is what the help and the reader say: a default must keep its own rules.
+// Help and reader use the declaration: a default must keep its own rules.
 TEST(EveryStrategy, HasDefaultsThatKeepItsOwnRules) {
   for (const Entry& entry : entries()) {
     for (const ParameterSpec& spec : entry.parameters) {

@@ -45,7 +45,7 @@ inline Parameters default_parameters(const Entry& entry) {
   return out;
 }
 
-/// What acts on a run, made once.
+/// Parts that act on a run, made once.
 struct Acting {
   std::unique_ptr<Strategy> strategy;
   std::unique_ptr<SetPointPart> set_point;

@@ -197,7 +197,7 @@ TEST(PoseCompensation, LetsTheFreeAxisGiveWayNearASingularDirection) {
   EXPECT_NEAR(largest, 0.75 * std::sqrt(3.0) * error / kSigma0, kSecondOrder * error / kSigma0);
 }
 
-// What the one rotary axis of a machine cannot turn stays, and only that.
+// Only tilts that the one rotary axis of a machine cannot make remain.
 TEST(PoseCompensation, LeavesWhatAMissingAxisWouldHaveToCorrect) {
   plant::ErrorModel errors;
   errors.location({Axis::A, Axis::B, true}) = 30.0 * urad;  // about X: out of reach for B

@@ -74,7 +74,7 @@ TEST(Straightening, HarmonicLeavesASeventeenthParabolicMuchLess) {
   EXPECT_LT(parabolic, 0.003);
 }
 
-// Where the linear axes of a block are beside the line, over 4 t (1 - t): the amplitude at its end.
+// Deviation of a block's linear axes from the line, over 4 t (1 - t): the amplitude at its end.
 Eigen::Vector3d amplitude_at(const Line& line, const Move& block) {
   const double t = (block.s_end - line.move.s_begin) / (line.move.s_end - line.move.s_begin);
   const Joints Q = line.belief.layout.joints(block.end_machine);

@@ -46,8 +46,8 @@ double deviation(const Trajectory::Sample& sample, const Move& move, const AxisW
   return (p - arc.point(f)).norm();
 }
 
-// Of a third difference of samples: sixteen units in the last place of 1 m; rotary positions are
-// divided by the rotary radius of 0.1 m.
+// Rounding of a third difference of samples: sixteen units in the last place of 1 m; rotary
+// positions are divided by the rotary radius of 0.1 m.
 Joints rounding_of_positions() {
   Joints out = Joints::Constant(16 * 2.2e-16);
   out.tail<2>() *= 10.0;

@@ -21,7 +21,7 @@ namespace {
 constexpr double kTp = 0.2e-3;  // s, of the position and the velocity loop
 constexpr double kTi = 0.1e-3;  // s
 
-// What is not given is not there.
+// Parts that are not given are absent.
 struct AxisParams {
   CascadeParams cascade = {};
   PositionFeedbackParams feedback = {};

@@ -1,5 +1,5 @@
-// What the limits and filters between the position loop and the current do, and what they leave
-// alone. The drive is one inertia, exact under a held current.
+// Limits and filters between the position loop and the current: their effect, and all that they
+// leave alone. The drive is one inertia, exact under a held current.
 #include <gtest/gtest.h>
 
 #include <bit>

@@ -52,7 +52,7 @@ TEST(Engagement, is_half_a_turn_in_a_slot_as_deep_as_the_slot) {
 // r (1 - cos 3.75 deg).
 constexpr double kPieceOfCorner = 0.0022;
 
-// Of whatever profile, in whatever direction it goes: up to the top of the block.
+// For every profile and direction the engagement reaches to the top of the block.
 TEST(Engagement, reaches_to_the_top_of_what_is_cut) {
   for (const double corner : {0.0, 1 * mm, 4 * mm}) {
     Cutter cutter = kFlat;

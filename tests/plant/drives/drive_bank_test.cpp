@@ -134,8 +134,8 @@ FeedDriveParams with_friction(FrictionKind kind) {
   return p;
 }
 
-// Where a drive is at the stops of stretches and where steps of their lengths bring it, to and fro
-// through both zones of friction: the largest difference (m).
+// Largest difference (m) between a drive at the stops of stretches and after steps of their
+// lengths, to and fro through both zones of friction.
 double difference_at_stops(const FeedDriveParams& p, const Stretch& stretch) {
   const std::array<Tick, 0> none{};
   const DriveBank bank(std::array{p}, kTick, none, nullptr, simd_level(), std::array{stretch});

@@ -1,4 +1,4 @@
-/// What a lane computes depends on its own numbers only: not on its place, its neighbours, how many
+/// The result of a lane depends on its own numbers only: not on its place, its neighbours, how many
 /// they are, or whether they are active.
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ std::vector<Story> random_stories(unsigned first, unsigned count) {
   return stories;
 }
 
-// Where a lane is in the end, and where it was on the way.
+// Final state of a lane, and its states on the way.
 struct Told : LaneState {
   std::vector<double> at_stops;  // m
 };

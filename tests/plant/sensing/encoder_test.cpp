@@ -168,7 +168,7 @@ TEST(PeriodError, RepeatsWithThePeriod) {
   }
 }
 
-// What a real one does: atan2 of the two signals, and a counter for the periods.
+// A real encoder takes atan2 of the two signals, and counts the periods.
 TEST(PeriodError, IsThatOfAtan2AndACounter) {
   Random random(4);
   for (int n = 0; n < 1000; ++n) {

@@ -30,7 +30,7 @@ double mean_power(const std::vector<double>& values, int power) {
   return sum / kCount;
 }
 
-// Of two series of variance 1; its own standard deviation is 1 / sqrt(kCount).
+// Correlation of two series of variance 1; its own standard deviation is 1 / sqrt(kCount).
 double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
   for (std::size_t n = 0; n < kCount; ++n) sum += a[n] * b[n];

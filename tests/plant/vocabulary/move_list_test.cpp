@@ -1,4 +1,4 @@
-/// What is read from a list of moves is what was put in.
+/// A list of moves returns the moves that were put in.
 #include "plant/vocabulary/move_list.h"
 
 #include <gtest/gtest.h>

@@ -53,7 +53,7 @@ std::string message_of(const std::string& program, const std::string& toml) {
   }
 }
 
-// Of the slot while it is in steady motion (N, in W).
+// Force in the slot in steady motion (N, in W).
 plant::CuttingForce slot_force() {
   const plant::EngagedArc arc{.width = 2 * mm, .height = 1 * mm, .from = 0.0, .to = kPi};
   return plant::average_force(plant::find_material("42CrMo4")->typical, 4, {}, {&arc, 1});
@@ -133,7 +133,7 @@ TEST(Cutting, is_felt_by_no_one_in_air) {
             run_case(with, "air").result.servo.data());
 }
 
-// Of two cases only one has a force to record.
+// Only one of the two cases has a force to record.
 TEST(Cutting, comes_back_from_its_file_beside_a_case_in_air) {
   const Scenario scenario =
       cutting_scenario(kSlot, one_case("cut") + one_case("air", "cutting = false\n") +
@@ -363,7 +363,7 @@ TEST(Cutting, bends_the_structure_of_an_ideal_machine_too) {
               1e-3 * std::abs(expected));
 }
 
-// What is said of a case that cuts, without the folder of the program.
+// Notes on a case that cuts, without the folder of the program.
 std::vector<std::string> notes_of(const std::string& program, const std::string& tool) {
   const Scenario scenario = small_scenario(program, tool + kBlock + kSteel + one_case("cut"));
   std::vector<std::string> notes = run_case(scenario, "cut").notes;

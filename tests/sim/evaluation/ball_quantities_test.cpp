@@ -177,7 +177,7 @@ TEST(BallQuantities, HaveTheirNotesInTableAndJson) {
             "\"reference\": \"0 um true\", \"kind\": null, \"note\": \"acts as set-up\"}");
 }
 
-// What issue and standard want, of the scenarios as they are shipped: each identifiable error
+// Goal for the scenarios as they are shipped (ISO 10791-6): each identifiable error
 // within 1 % with the servo loops at work, the others with the reason.
 class ShippedScenario : public testing::Test {
  protected:
@@ -194,7 +194,7 @@ class ShippedScenario : public testing::Test {
     return found;
   }
 
-  // Those with a value, in the order of the table; every one near the truth.
+  // Names of the errors with a value, in the order of the table; every one near the truth.
   std::vector<std::string> identified() const {
     std::vector<std::string> out;
     for (const ComparisonRow& row : rows) {
@@ -259,7 +259,7 @@ TEST_F(Bk4, RecoversAllButOneOfThem) {
 }
 
 // A machine without errors has as much: 2.56 um where the servo loops pass joints of chords.
-// What is left is what a machine without errors shows, as its loops pass the joints of the chords.
+// The residual is that of a machine without errors, whose loops pass the joints of the chords.
 TEST_F(Bk4, ProvesTheCompensationThatTheRTestFound) {
   EXPECT_GT(largest("none", "ball_bar_deviation"), 10.0);
   Scenario without = scenario;

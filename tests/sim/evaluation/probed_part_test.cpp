@@ -95,7 +95,7 @@ TEST(ProbedPart, OfAPerfectMachineIsTheNominalOne) {
   }
 }
 
-// What is put into the machine comes out of the part: the straightness of X and the squareness of Y
+// The part shows the errors of the machine: the straightness of X and the squareness of Y
 // to X, through a CMM of 1.5 um.
 TEST(ProbedPart, ShowsStraightnessAndSquarenessOfTheMachine) {
   const std::string cmm = "[cmm]\nuncertainty_um = 1.5\nprobe_radius_mm = 1.0\nrepetitions = 4\n";
@@ -166,7 +166,7 @@ TEST(ProbedPart, TellsWhatIsMissed) {
             "Y-4 Z-5: the cutter took away all down to 1 mm (cmm.depth_mm) below it\n");
 }
 
-// What no cutter took away is no part where there was no raw part.
+// Material that no cutter removed is no part outside of the raw part.
 TEST(ProbedPart, EndsWhereTheRawPartDoes) {
   const std::string stock =
       "[[part.stock]]\nbox = { from_mm = [0.0, 0.0, -20.0], to_mm = [61.0, 60.0, 5.0] }\n";

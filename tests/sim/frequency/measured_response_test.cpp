@@ -136,7 +136,7 @@ TEST(MeasuredResponse, OfAnAxisWithFrictionIsTheLinearOneWhileItMoves) {
   EXPECT_GT(standing.dB, 10.0 * kMagnitudeTol);
 }
 
-// What a run refuses is not measured either.
+// Settings that a run refuses are refused here, too.
 TEST(MeasuredResponse, SaysWhenTheStepDoesNotResolveTheFriction) {
   constexpr int kX = 0;
   MachineSettings machine = hsm600u();
@@ -180,8 +180,8 @@ TEST(MeasuredResponse, SaysWhenTheCurrentIsLimited) {
   EXPECT_LT(loud.peak_current, most);
 }
 
-// What counts as a measurement is one, to a little more than the share that the encoders may add to
-// output and input; high frequencies of C move less than a step of its encoder.
+// A ratio that counts as a measurement is right to a little more than the share that the encoders
+// may add to output and input; high frequencies of C move less than a step of its encoder.
 TEST(MeasuredResponse, TellsWhatTheEncodersDoNotResolve) {
   constexpr int kC = 4;
   constexpr double kTol = 2.5 * kMostAdded;

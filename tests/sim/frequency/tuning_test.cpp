@@ -26,7 +26,7 @@ void use_CC422(MachineSettings& machine) {
   for (auto& cascade : machine.nc.cascade) cascade.Tv = 0.6e-3;
 }
 
-// Of Y with the margins that are the default, shared by the tests.
+// Tuning of Y with the default margins, shared by the tests.
 const Tuning& tuned_Y() {
   static const Tuning tuning = tune(hsm600u(), kY, 0, {});
   return tuning;

@@ -118,7 +118,7 @@ std::vector<double> column(const SweepDesign& design, std::size_t key) {
   return out;
 }
 
-// Of a stratified sample each quantile is met to within one stratum: here to 1/500 of the range.
+// A stratified sample meets each quantile to within one stratum: here to 1/500 of the range.
 TEST(Design, SamplesAsItsDistributionsSay) {
   const SweepDesign design = design_of(kSampled);
   ASSERT_EQ(design.size(), 500U);

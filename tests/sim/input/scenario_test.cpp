@@ -1,4 +1,4 @@
-/// What holds for every scenario, machine and strategy that there is.
+/// Laws for every scenario, machine and strategy that there is.
 #include "sim/model/scenario.h"
 
 #include <fmt/format.h>
@@ -301,7 +301,7 @@ TEST_F(BasedOn, WinsOverTheScenarioBelowAndKeepsTheRest) {
   EXPECT_EQ(above.cases.size(), below.cases.size());
 }
 
-// What is stored in result files is a scenario that runs anywhere.
+// The scenario in a result file runs anywhere.
 TEST_F(BasedOn, IsNotInTheResolvedScenario) {
   const std::string path = write("above.toml", fmt::format("based_on = \"{}\"\n", kSmall));
   const Scenario above = read_scenario(path);

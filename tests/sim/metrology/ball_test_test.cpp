@@ -95,7 +95,7 @@ TEST(NestOfSensors, FollowsTheClosedFormOfATurningTable) {
   }
 }
 
-// What one reads off: an axis out of place by e moves the ball by 2 e, one that leans by w lifts a
+// Known by inspection: an axis out of place by e moves the ball by 2 e, one that leans by w lifts a
 // ball at the radius r by 2 r w.
 TEST(NestOfSensors, ShowsAnOffsetTwiceAndATiltTwiceTheRadius) {
   const MachineChain chain = hsm();

@@ -113,7 +113,7 @@ TEST(MinimumZone, OfThreePointsIsTheirCircle) {
   EXPECT_NEAR(zone.width(), 0.0, kZoneTol);
 }
 
-// Of a polygon sampled along its edges: R and the radius R cos(pi/n) of the inner circle.
+// A polygon sampled along its edges has the circles R and R cos(pi/n).
 TEST(MinimumZone, OfARegularPolygonLiesBetweenItsCircles) {
   for (int n : {16, 17, 36}) {
     std::vector<Vector2d> points;

@@ -72,7 +72,7 @@ void measure(const MachineChain& chain, const ErrorModel& truth,
   }
 }
 
-// What such an error is on a machine as it was built.
+// Typical size of such an error on a machine as built.
 double typical(const ErrorName& name) { return is_linear(name.direction) ? 8.0 * um : 25.0 * urad; }
 
 std::vector<std::string> identified(const LocationFit& fit) {

@@ -17,7 +17,8 @@ using Eigen::Vector3d;
 
 constexpr double kRounding = 1e-15;       // m, of some operations on lengths of 0.5 m
 constexpr double kAngleRounding = 1e-14;  // rad, of kRounding over 0.1 m
-// Of the sum of the products' absolute values: where a gradient is zero but for rounding.
+// Share of the sum of the products' absolute values below which a gradient is zero but for
+// rounding.
 constexpr double kZero = 1e-12;
 
 TEST(LeastSquaresPlane, ReturnsThePlaneThatPointsLieOn) {

@@ -33,7 +33,7 @@ Triangles cuboid(const Vector3d& h) {
   return out;
 }
 
-// Where |p - nearest point of the cuboid| is known.
+// |p - nearest point of the cuboid| in closed form.
 double cuboid_distance(const Vector3d& h, const Vector3d& p) {
   const Vector3d q = p.cwiseAbs() - h;
   return q.cwiseMax(0.0).norm() + std::min(0.0, q.maxCoeff());

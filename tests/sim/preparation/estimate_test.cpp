@@ -1,4 +1,4 @@
-/// What a run takes is known before it begins, and refused where it would not fit.
+/// The cost of a run is known before it begins; a run that would not fit is refused.
 #include "sim/preparation/estimate.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-/// What a kill would leave: a copy of a file before each write to it. To be included once in a test
-/// program, because it takes the place of the system's pwrite.
+/// Copies of a file before each write to it, as a kill would leave it. To be included once in a
+/// test program, because it takes the place of the system's pwrite.
 #pragma once
 
 #include <sys/syscall.h>

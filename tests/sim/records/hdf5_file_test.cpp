@@ -25,7 +25,7 @@ class Hdf5File : public testing::Test {
 
   std::string path(const std::string& name) const { return folder_ / name; }
 
-  // What is said, with the folder taken out.
+  // Message of the error, without the folder.
   std::string message(const std::function<void()>& action) const {
     std::string text = "no error";
     try {

@@ -241,7 +241,7 @@ TEST(Budget, OfATableWithAllOfItsCausesAddsUp) {
   EXPECT_LT(largest(budget.remainder), 1e-3 * std::abs(budget.residual.at_place));
 }
 
-// What is left without all others has a name that says whose it is.
+// The rest without all other causes has a name that says whose it is.
 TEST(Budget, NamesWhatStays) {
   const std::string errors =
       "truth = \"machine\"\nimposed = \"wanted\"\n[errors.machine]\n"

@@ -1,4 +1,4 @@
-// What a simulation makes of G95.
+// Simulation of G95.
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::feed_per_revolution_sim_test {

@@ -30,7 +30,7 @@ const Series& every_tick() {
   return kOutput.result.servo;
 }
 
-// Of the model periods at ticks n = 0, 6, ... the position loop at k uses the last with n + 7 <= k.
+// Model periods lie at ticks n = 0, 6, ...; the position loop at k uses the last with n + 7 <= k.
 TEST(VirtualDisplacement, OfTickNIsReadFromTickNPlus7On) {
   const Series& rows = every_tick();
   const std::size_t read = rows.column("read_linear", 'X').value();

@@ -80,8 +80,8 @@ Left left_by(const Scenario& scenario, const std::string& name) {
   return {quantity(out, "tool_tip_deviation"), quantity(out, "tool_axis_deviation")};
 }
 
-// What is wanted: less than 0.1 um and 1 urad where the machine can. With exact inverses it is the
-// rounding of what is recorded, 1 nm at most.
+// Goal: less than 0.1 um and 1 urad wherever the machine can. With exact inverses the residual is
+// the rounding of the recorded values, 1 nm at most.
 TEST(FiveAxes, FeedbackLeavesNothingOfTipAndToolAxis) {
   const Scenario scenario = five_axes();
   const Left without = left_by(scenario, "none");

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 const fs::path kMachines = SERVOMILL_SOURCE_DIR "/scenarios/machines";
 
-// What reading the nutating head says when `old_text` is replaced, with the place of the fault.
+// Message on reading the nutating head with `old_text` replaced, with the place of the fault.
 std::string message_with(const std::string& old_text, const std::string& new_text) {
   std::ifstream in(kMachines / "generic_nutating_head_bc.toml");
   std::stringstream text;

@@ -1,4 +1,4 @@
-/// Where security blocks act and tables end, the run tells.
+/// A run reports where saturations act and tables end.
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/units.h"

@@ -1,4 +1,4 @@
-/// What strategies cannot correct is told of and recorded.
+/// Errors that strategies cannot correct are reported and recorded.
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/units.h"

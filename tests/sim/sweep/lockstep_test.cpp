@@ -26,7 +26,7 @@ Scenario scenario_with(const std::vector<std::string>& more) {
   return read_scenario(kScenario, changes);
 }
 
-// What one of eight may be that the others are not.
+// Settings in which one of eight may differ from the others.
 const std::map<std::string, std::vector<std::string>> kOdd = {
     {"overflows",
      {"machine.axis.X.velocity_bandwidth=1e100", "machine.axis.X.i_max_A=1.7e308",
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(OneOfEight, Lockstep, testing::ValuesIn(names_of_odd())
                            return name;
                          });
 
-// What the table above says happens, happens.
+// The runs differ as the table above says.
 TEST(Lockstep, HasOddRunsThatAreOdd) {
   std::map<std::string, BatchResult> odd;
   for (const auto& [name, changes] : kOdd) odd[name] = std::move(run({scenario_with(changes)})[0]);

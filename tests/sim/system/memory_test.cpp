@@ -1,4 +1,4 @@
-// What a process may use, as its control groups say it: made-up trees of both versions.
+// Memory that control groups allow a process: made-up trees of both versions.
 #include "sim/system/memory.h"
 
 #include <gtest/gtest.h>

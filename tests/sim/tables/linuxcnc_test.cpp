@@ -47,7 +47,7 @@ struct JointCompensation {
     }
   }
 
-  // What is added to the command of the motor and taken off its feedback.
+  // Correction that is added to the command of the motor and taken off its feedback.
   double at(double position, double velocity) const {
     const auto trim = [&](const Triplet& t) { return velocity > 0.0 ? t.up : t.down; };
     if (position < triplets.front().nominal) return trim(triplets.front());
@@ -169,7 +169,7 @@ TEST(Linuxcnc, SaysThatATableIsNotRepeated) {
   EXPECT_EQ(std::count(lines.begin(), lines.end(), note), 1);
 }
 
-// Of all errors LinuxCNC corrects only an axis over itself: the rest is named.
+// LinuxCNC corrects only errors of an axis over itself: the rest is named.
 TEST(Linuxcnc, NamesWhatItCannotHold) {
   plant::ErrorModel errors = wavy_positioning();
   errors.component("EYX"_err) = plant::harmonic(30.0 * um, 100.0 * mm);

@@ -1,4 +1,4 @@
-// What tables over single axes hold, what they leave, and when they are refused.
+// Tables over single axes: the errors that they hold and leave, and when they are refused.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -66,7 +66,7 @@ COMP_FILE_TYPE = 0
 )");
 }
 
-// What is added to the command of the motor: the error with the opposite sign.
+// The correction is added to the command of the motor: the error with the opposite sign.
 TEST(TableFiles, LinuxcncTrims) {
   EXPECT_EQ(file_named(small_files(TableFormat::linuxcnc, 1), "joint_0_x.comp").text,
             R"(0.000000 0.001000 0.001000
