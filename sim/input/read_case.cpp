@@ -1,0 +1,148 @@
+#include "sim/input/read_case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "plant/vocabulary/units.h"
+#include "sim/input/known_name.h"
+#include "sim/input/read_cutting.h"
+#include "sim/input/read_machine.h"
+#include "sim/input/read_program.h"
+#include "sim/input/read_strategy.h"
+#include "sim/input/scenario_document.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr std::array<std::string_view, 2> kServos = {"cascade", "ideal"};
+
+const strategies::Entry* user_of_hardware(const CaseSpec& spec) {
+  for (const StrategySpec& strategy : spec.strategies) {
+    if (strategy.entry->uses_feedback_hardware) return strategy.entry;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+CaseReader::CaseReader(std::vector<std::string> error_models, bool hardware_is_chosen,
+                       Scenario& out)
+    : error_models_(std::move(error_models)), hardware_is_chosen_(hardware_is_chosen), out_(out) {}
+
+void CaseReader::read(Reader& table) {
+  CaseSpec spec;
+  const std::size_t before = table.faults();
+  spec.name = table.text("name");
+  if (table.faults() == before) check_name(table, spec.name);
+  if (table.faults() > before) names_are_known_ = false;
+  if (table.has("work_offset")) {
+    Reader words = table.table("work_offset");
+    spec.work_offset = read_offsets(words, out_.machine.chain.layout);
+  }
+  const bool says_hardware = table.has("feedback_hardware");
+  spec.feedback_hardware = table.boolean_or("feedback_hardware", out_.hardware.connected);
+  read_case_cutting(table, out_.cutting, spec);
+  spec.servo = static_cast<ServoModel>(table.choice_or("servo", 0, kServos));
+  check_recording(table, spec);
+  if (table.has("truth")) {
+    spec.truth = table.text("truth");
+    if (!spec.truth->empty()) {
+      must_be_known(table, "truth", *spec.truth, "error model", error_models_);
+    }
+  }
+  for (Reader& strategy : table.tables_or_none("strategy")) {
+    read_strategy(strategy, error_models_, spec);
+  }
+  if (table.has("machine_override")) note_machine_override(table);
+  give_hardware(table, says_hardware, spec);
+  out_.cases.push_back(std::move(spec));
+}
+
+// The name becomes a group of the result file.
+void CaseReader::check_name(Reader& table, const std::string& name) const {
+  if (name.empty() || name == "." || name == "..") {
+    table.fault("name", "must name the case");
+  } else if (name.find('/') != std::string::npos) {
+    table.fault("name", "must not contain '/'");
+  } else if (out_.find_case(name) != nullptr) {
+    table.fault("name", "is the name of an earlier case");
+  }
+}
+
+void CaseReader::check_recording(Reader& table, const CaseSpec& spec) const {
+  if (spec.servo == ServoModel::ideal &&
+      out_.record_period % out_.machine.nc.periods.position != 0) {
+    table.fault(
+        "servo",
+        fmt::format("is recorded at its position periods: record.period_ms must "
+                    "be a whole multiple of {:g} ms",
+                    out_.machine.nc.periods.seconds(out_.machine.nc.periods.position) / ms));
+  }
+}
+
+void CaseReader::give_hardware(Reader& table, bool says_hardware, CaseSpec& spec) {
+  if (const strategies::Entry* user = user_of_hardware(spec)) {
+    if (says_hardware && !spec.feedback_hardware) {
+      table.fault("feedback_hardware",
+                  fmt::format("a case with the strategy {} needs its hardware", user->name));
+    }
+    spec.feedback_hardware = true;
+  } else if (!says_hardware && !hardware_is_chosen_) {
+    follows_others_.push_back(out_.cases.size());
+  }
+}
+
+void CaseReader::connect_hardware() {
+  const bool any = std::any_of(out_.cases.begin(), out_.cases.end(),
+                               [](const CaseSpec& one) { return one.needs_feedback_hardware(); });
+  for (const std::size_t index : follows_others_) out_.cases[index].feedback_hardware = any;
+}
+
+void CaseReader::note_machine_override(Reader& table) {
+  const Value* override = table.raw("machine_override");
+  if (override->type != Value::Type::table) {
+    table.fault("machine_override", "must be a table");
+    return;
+  }
+  if (override->find("structure") != nullptr) {
+    table.fault("machine_override", "has the key structure, which is common to all cases");
+  }
+  if (override->find("errors") != nullptr) {
+    table.fault("machine_override", "has the key errors; error models are common to all cases");
+  }
+  overrides_.emplace(out_.cases.size(), *override);
+}
+
+void CaseReader::read_machines(const Document& scenario) {
+  std::vector<Fault> faults;
+  for (const auto& [index, override] : overrides_) {
+    Document document = scenario;
+    document.merge(as_machine(override));
+    Reader root(document);
+    for (const std::string& key : root.keys()) {
+      if (key != "machine") root.raw(key);
+    }
+    try {
+      Reader machine = root.table("machine");
+      CaseSpec& one = out_.cases[index];
+      one.machine = read_machine(machine);
+      root.finish();
+      if (one.machine->nc.periods != out_.machine.nc.periods ||
+          one.machine->scale_delay != out_.machine.scale_delay) {
+        faults.push_back({override.place,
+                          fmt::format("case {}: machine_override changes the periods of the "
+                                      "loops or nc.scale_delay_us, which are common to all cases",
+                                      one.name)});
+      }
+    } catch (const InputError& error) {
+      faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    }
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+}  // namespace servomill::sim

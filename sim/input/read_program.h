@@ -1,0 +1,21 @@
+/// Reads the program of a scenario, its subroutines and its tools.
+#pragma once
+
+#include "plant/vocabulary/axes.h"
+#include "sim/config/reader.h"
+#include "sim/input/input_files.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
+
+namespace servomill::sim {
+
+/// Table [program]: file, reader, parameters, work offset, start and tools. A resolved document
+/// holds the texts of all files.
+/// @throws InputError if a file cannot be read or its text cannot be stored in a result file
+ProgramSpec read_program(Reader& table, const MachineSettings& machine, InputFiles& files);
+
+/// Program words such as X_mm = 1.5.
+/// @param layout  of the machine; empty where that could not be read: any words are then taken
+AxisWords read_offsets(Reader& table, const JointLayout& layout);
+
+}  // namespace servomill::sim

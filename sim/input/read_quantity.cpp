@@ -1,0 +1,210 @@
+#include "sim/input/read_quantity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "plant/vocabulary/units.h"
+#include "sim/evaluation/ball_quantities.h"
+#include "sim/evaluation/comparison.h"
+#include "sim/evaluation/nominal_part.h"
+#include "sim/evaluation/probe_quantities.h"
+#include "sim/input/known_name.h"
+#include "sim/input/read_ball.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr std::array<std::string_view, 4> kStatistics = {"max", "rms", "mean", "range"};
+constexpr std::array<std::string_view, 4> kKinds = {"identified", "predicted", "chosen", "bound"};
+constexpr std::array<std::string_view, 2> kFits = {"minimum_zone", "least_squares"};
+
+std::vector<std::string_view> letters_of(std::string_view axes) {
+  std::vector<std::string_view> out;
+  for (std::size_t i = 0; i < axes.size(); ++i) out.push_back(axes.substr(i, 1));
+  return out;
+}
+
+class QuantityReader {
+ public:
+  QuantityReader(bool checks_cases, Scenario& out) : checks_cases_(checks_cases), out_(out) {}
+
+  void read(Reader& table) {
+    QuantitySpec spec;
+    const auto names = quantity_names();
+    const std::size_t before = table.faults();
+    const std::size_t index = table.choice("name", names);
+    if (table.faults() > before) {
+      table.skip_rest();
+      return;
+    }
+    spec.name = names[index];
+    const QuantityInfo& info = quantity_info(spec.name);
+    if (info.needs_axis) read_axis(table, info, spec);
+    if (info.has_statistic) {
+      spec.statistic = kStatistics[table.choice_or("statistic", 0, kStatistics)];
+    }
+    read_compared_cases(table, info, spec);
+    if (info.needs_imposed && out_.imposed.empty()) {
+      table.fault("name", "needs the key 'imposed' of the scenario");
+    }
+    if (info.probes > 0) {
+      read_part(table, info, spec);
+    } else if (info.is_of_ball) {
+      read_ball(table, out_.machine.chain.layout, spec);
+    } else {
+      spec.sections = info.circles > 0 ? table.texts("sections") : table.texts_or("sections", {});
+      spec.sections_place = table.place("sections");
+    }
+    spec.reference = table.text_or("reference", "");
+    if (table.has("kind")) spec.kind = kKinds[table.choice("kind", kKinds)];
+    add(table, info, spec);
+  }
+
+ private:
+  void read_axis(Reader& table, const QuantityInfo& info, QuantitySpec& spec) const {
+    spec.axis = info.axes[table.choice("axis", letters_of(info.axes))];
+    const JointLayout& layout = out_.machine.chain.layout;
+    const auto axis = axis_of(spec.axis);
+    if (layout != JointLayout{} && table.is("axis", Value::Type::text) && axis &&
+        !layout.joint_of(*axis)) {
+      table.fault("axis", "the machine has no such axis");
+    }
+  }
+
+  void read_compared_cases(Reader& table, const QuantityInfo& info, QuantitySpec& spec) {
+    std::vector<std::string> all;
+    for (const CaseSpec& one : out_.cases) all.push_back(one.name);
+    if (info.needs_base || (info.probes > 0 && table.has("base"))) {
+      spec.base = table.text("base");
+      if (table.is("base", Value::Type::text) && checks_cases_)
+        must_be_known(table, "base", spec.base, "case", all);
+    }
+    read_cases_of(table, std::move(all), spec);
+  }
+
+  // Default: all but the one compared with, whose differences would all be 0.
+  void read_cases_of(Reader& table, std::vector<std::string> all, QuantitySpec& spec) {
+    std::vector<std::string> others = all;
+    if (others.size() > 1) std::erase(others, spec.base);
+    spec.cases = table.texts_or("cases", others);
+    for (const std::string& name : spec.cases) {
+      if (checks_cases_) must_be_known(table, "cases", name, fmt::format("case '{}'", name), all);
+    }
+  }
+
+  // Features that a quantity evaluates, and how they are fitted.
+  void read_part(Reader& table, const QuantityInfo& info, QuantitySpec& spec) {
+    spec.part.emplace();
+    std::vector<std::string> names;
+    for (const ProbeSpec& one : out_.probes) names.push_back(one.name);
+    const bool all_named = std::find(names.begin(), names.end(), "") == names.end();
+    if (info.probes == kEveryProbe) {
+      spec.part->probes = table.texts_or("probes", names);
+      for (const std::string& name : spec.part->probes) {
+        if (all_named) must_be_known(table, "probes", name, fmt::format("probe '{}'", name), names);
+      }
+      if (spec.part->probes.empty()) table.fault("needs a [[probe]]");
+      if (out_.part) spec.part->nominal = out_.part->mesh;
+      return;
+    }
+    for (const char* key : info.probes == 1 ? std::vector{"probe"} : std::vector{"probe", "to"}) {
+      const std::size_t before = table.faults();
+      const std::string name = table.text(key);
+      spec.part->probes.push_back(name);
+      if (table.faults() > before || !all_named) continue;
+      if (must_be_known(table, key, name, "probe", names)) must_suit(table, key, name, spec);
+    }
+    if (info.has_fit) spec.part->minimum_zone = table.choice_or("fit", 0, kFits) == 0;
+  }
+
+  // A probe measures a kind of feature; a quantity is of some kinds only.
+  void must_suit(Reader& table, std::string_view key, const std::string& name,
+                 const QuantitySpec& spec) {
+    const auto probe = std::find_if(out_.probes.begin(), out_.probes.end(),
+                                    [&](const ProbeSpec& one) { return one.name == name; });
+    if (probe->feature.targets.empty()) return;  // its fault has been noted
+    const FeatureKind kind = probe->feature.kind;
+    const auto kinds = kinds_of(spec.name);
+    if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) return;
+    std::vector<std::string_view> wanted;
+    for (const FeatureKind one : kinds) wanted.push_back(name_of(one));
+    table.fault(key, fmt::format("is a {}; {} is of: {}", name_of(kind), spec.name,
+                                 fmt::join(wanted, ", ")));
+  }
+
+  // One quantity, or one for each circle, ball bar or location error.
+  void add(Reader& table, const QuantityInfo& info, QuantitySpec& spec) {
+    if (info.circles > 0) {
+      add_circles(table, spec, static_cast<std::size_t>(info.circles));
+    } else if (spec.name == "ball_bar_deviation") {
+      add_bars(spec);
+    } else if (spec.name == "location_error") {
+      add_location_errors(spec);
+    } else {
+      out_.quantities.push_back(std::move(spec));
+    }
+  }
+
+  // Ball bars are evaluated one by one.
+  void add_bars(const QuantitySpec& all) {
+    for (std::size_t i = 0; i < all.ball->bar_centres.size(); ++i) {
+      QuantitySpec one = all;
+      one.sections = {all.sections[i]};
+      one.ball->bar_centres = {all.ball->bar_centres[i]};
+      out_.quantities.push_back(std::move(one));
+    }
+  }
+
+  // The one asked for or every location error of the machine, and what it truly is where no other
+  // reference is given.
+  void add_location_errors(const QuantitySpec& all) {
+    const auto truth = out_.errors.find(out_.truth);
+    std::vector<plant::ErrorName> names = location_errors(out_.machine.chain);
+    if (all.ball->error) names = {*all.ball->error};
+    const bool is_true_of_each =
+        std::none_of(out_.cases.begin(), out_.cases.end(),
+                     [](const CaseSpec& one) { return one.truth.has_value(); });
+    for (const plant::ErrorName& name : names) {
+      QuantitySpec one = all;
+      one.ball->error = name;
+      if (one.reference.empty() && truth != out_.errors.end() && is_true_of_each) {
+        const double unit = is_linear(name.direction) ? um : urad;
+        one.reference = fmt::format("{:g} {} true", truth->second.location(name) / unit,
+                                    unit_of_location(name));
+      }
+      out_.quantities.push_back(std::move(one));
+    }
+  }
+
+  // Circles are evaluated one by one, or in pairs of directions: a quantity for each.
+  void add_circles(Reader& table, const QuantitySpec& all, std::size_t together) {
+    if (table.has("sections") && (all.sections.empty() || all.sections.size() % together != 0)) {
+      table.fault("sections", together == 1
+                                  ? "must name at least one turn of a circle"
+                                  : "must name pairs of turns of a circle, one in each direction");
+    }
+    for (std::size_t i = 0; i + together <= all.sections.size(); i += together) {
+      QuantitySpec one = all;
+      const auto first = all.sections.begin() + static_cast<std::ptrdiff_t>(i);
+      one.sections.assign(first, first + static_cast<std::ptrdiff_t>(together));
+      out_.quantities.push_back(std::move(one));
+    }
+  }
+
+  bool checks_cases_;
+  Scenario& out_;
+};
+
+}  // namespace
+
+void read_quantity(Reader& table, bool checks_cases, Scenario& out) {
+  QuantityReader(checks_cases, out).read(table);
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,15 @@
+/// Reads the quantities that a scenario evaluates.
+#pragma once
+
+#include "sim/config/reader.h"
+#include "sim/model/scenario.h"
+
+namespace servomill::sim {
+
+/// One [[quantity]], added to those of `out`: of circles, ball bars and location errors one for
+/// each of them. A quantity at fault in its name is left out.
+/// @param out           all but its quantities has been read
+/// @param checks_cases  names of cases are looked up; not where a case has no right name
+void read_quantity(Reader& table, bool checks_cases, Scenario& out);
+
+}  // namespace servomill::sim

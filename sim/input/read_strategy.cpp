@@ -1,0 +1,146 @@
+#include "sim/input/read_strategy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+#include "sim/input/known_name.h"
+#include "strategies/registry.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr double kNoBound = 1e300;  // of a parameter's specification
+constexpr std::array<std::string_view, 2> kSigns = {"generate", "correct"};
+
+void read_model(Reader& table, std::span<const std::string> error_models, StrategySpec& strategy) {
+  strategy.sign = table.choice_or("sign", 1, kSigns) == 0 ? strategies::Sign::generate
+                                                          : strategies::Sign::correct;
+  strategy.model = table.text("model");
+  if (table.is("model", Value::Type::text)) {
+    must_be_known(table, "model", strategy.model, "error model", error_models);
+  }
+}
+
+// Tells if a text does not even begin like a number with its unit.
+bool is_word(Reader& table, std::string_view key) {
+  if (!table.is(key, Value::Type::text)) return false;
+  const std::string text = table.text(key);
+  return text.find_first_of("0123456789") == std::string::npos;
+}
+
+bool is_one_of(const std::string& word, const ParameterSpec& spec) {
+  return std::find(spec.words.begin(), spec.words.end(), word) != spec.words.end();
+}
+
+// The word of a parameter that is given, or its default; false if that is none of its words.
+bool read_word(Reader& table, const ParameterSpec& spec, Parameters& out) {
+  const bool given = table.has(spec.name);
+  if (given && !table.is(spec.name, Value::Type::text)) return false;
+  const std::string word = given ? table.text(spec.name) : std::string(spec.default_text);
+  if (!is_one_of(word, spec)) return false;
+  out.set(spec.name, std::string_view(word));
+  return true;
+}
+
+// A parameter that has no words but these.
+void read_other_word(Reader& table, const ParameterSpec& spec, Parameters& out) {
+  // numbers stand for words, too: iterations = 1
+  if (table.has(spec.name) && table.is(spec.name, Value::Type::integer)) {
+    const std::string word = std::to_string(table.integer(spec.name));
+    if (is_one_of(word, spec)) {
+      out.set(spec.name, std::string_view(word));
+      return;
+    }
+  }
+  table.raw(spec.name);
+  const std::string near = table.is(spec.name, Value::Type::text)
+                               ? did_you_mean(table.text(spec.name), spec.words)
+                               : std::string();
+  table.fault(spec.name, fmt::format("must be one of {}{}", fmt::join(spec.words, ", "), near));
+  out.set(spec.name, spec.words.front());
+}
+
+void read_number(Reader& table, const ParameterSpec& spec, Parameters& out) {
+  const bool given = table.has(spec.name);
+  const ParsedUnit unit = parse_unit(spec.unit);
+  const double factor = unit.unit ? unit.unit->factor : 1.0;
+  const Quantity quantity = unit.unit ? unit.unit->quantity : kNumber;
+  const Rule least = at_least(spec.min * factor);
+  const Rules rules = {least, at_most(spec.max * factor)};
+  if (given && !spec.words.empty() && is_word(table, spec.name)) {
+    const std::string word = table.text(spec.name);
+    table.fault(spec.name, fmt::format("must be a number or {}{}", fmt::join(spec.words, ", "),
+                                       did_you_mean(word, spec.words)));
+    out.set(spec.name, 0.0);
+  } else if (given || spec.default_text.empty()) {
+    const double value = spec.max < kNoBound    ? table.real(spec.name, quantity, rules)
+                         : spec.min > -kNoBound ? table.real(spec.name, quantity, {least})
+                                                : table.real(spec.name, quantity);
+    out.set(spec.name, value);
+  } else {
+    out.set(spec.name, std::stod(std::string(spec.default_text)) * factor);
+  }
+}
+
+void read_parameter(Reader& table, const ParameterSpec& spec, Parameters& out) {
+  if (read_word(table, spec, out)) return;
+  if (spec.is_number) {
+    read_number(table, spec, out);
+  } else {
+    read_other_word(table, spec, out);
+  }
+}
+
+bool adds_start(const StrategySpec& one) {
+  return one.entry->holds_error_at_reference != nullptr &&
+         one.entry->holds_error_at_reference(one.parameters);
+}
+
+// Tells if an earlier strategy for the same model adds the value at the start already.
+bool repeats_start(const StrategySpec& strategy, const std::vector<StrategySpec>& earlier) {
+  return adds_start(strategy) &&
+         std::any_of(earlier.begin(), earlier.end(), [&](const StrategySpec& other) {
+           return other.entry == strategy.entry && other.model == strategy.model &&
+                  adds_start(other);
+         });
+}
+
+}  // namespace
+
+void read_strategy(Reader& table, std::span<const std::string> error_models, CaseSpec& spec) {
+  const auto names = strategies::names();
+  const std::size_t before = table.faults();
+  const std::size_t index = table.choice("type", names);
+  if (table.faults() > before) {
+    table.skip_rest();
+    return;
+  }
+  StrategySpec strategy;
+  strategy.entry = strategies::find(names[index]);
+  strategy.place = table.place("type");
+  if (strategy.entry->reads_errors) read_model(table, error_models, strategy);
+  for (const ParameterSpec& parameter : strategy.entry->parameters) {
+    if (table.has(parameter.name)) {
+      strategy.key_places.emplace(parameter.name, table.place(parameter.name));
+    }
+    read_parameter(table, parameter, strategy.parameters);
+  }
+  if (strategy.entry->uses_feedback_hardware && spec.needs_feedback_hardware()) {
+    table.fault("type", "a case has one feedback hardware: this is the second");
+  }
+  if (repeats_start(strategy, spec.strategies)) {
+    table.fault("type",
+                fmt::format("a second {} strategy for this model adds the value at the start once "
+                            "more; use axis = \"all\", or at_reference = \"zero\" for all but one",
+                            strategy.entry->name));
+  }
+  spec.strategies.push_back(std::move(strategy));
+}
+
+}  // namespace servomill::sim

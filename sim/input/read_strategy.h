@@ -1,0 +1,17 @@
+/// Reads the strategies of a case.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "sim/config/reader.h"
+#include "sim/model/scenario.h"
+
+namespace servomill::sim {
+
+/// One [[case.strategy]], added to those of `spec`: type, sign, model and the parameters that the
+/// registry lists for that type. A strategy at fault in its type is left out.
+/// @param error_models  names of all models of the scenario
+void read_strategy(Reader& table, std::span<const std::string> error_models, CaseSpec& spec);
+
+}  // namespace servomill::sim
