@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/records/hdf5_file.h"
+#include "sim/records/hdf5_group.h"
 #include "sim/system/background.h"
 
 namespace servomill::sim {

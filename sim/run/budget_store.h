@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "sim/records/hdf5_file.h"
+#include "sim/records/output_file.h"
 #include "sim/run/budget.h"
 
 namespace servomill::sim {

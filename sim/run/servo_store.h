@@ -8,7 +8,7 @@
 #include "sim/frequency/bode.h"
 #include "sim/frequency/step_response.h"
 #include "sim/model/scenario.h"
-#include "sim/records/hdf5_file.h"
+#include "sim/records/output_file.h"
 
 namespace servomill::sim {
 

@@ -6,7 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/records/hdf5_file.h"
+#include "sim/records/input_file.h"
+#include "sim/records/output_file.h"
 #include "sim/run/run.h"
 
 namespace servomill::sim {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/model/scenario.h"
-#include "sim/records/hdf5_file.h"
+#include "sim/records/hdf5_group.h"
 
 namespace servomill::sim {
 

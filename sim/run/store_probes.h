@@ -8,7 +8,8 @@
 
 #include "sim/evaluation/part_fit.h"
 #include "sim/evaluation/probed_part.h"
-#include "sim/records/hdf5_file.h"
+#include "sim/records/hdf5_group.h"
+#include "sim/records/input_file.h"
 
 namespace servomill::sim {
 

@@ -12,7 +12,7 @@
 
 #include "plant/vocabulary/simd.h"
 #include "sim/model/scenario.h"
-#include "sim/records/hdf5_file.h"
+#include "sim/records/output_file.h"
 #include "sim/sweep/selection.h"
 #include "sim/sweep/sweep.h"
 #include "sim/sweep/table_columns.h"

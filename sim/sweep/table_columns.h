@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "sim/model/scenario.h"
-#include "sim/records/hdf5_file.h"
+#include "sim/records/hdf5_dataset.h"
+#include "sim/records/input_file.h"
 
 namespace servomill::sim {
 

@@ -12,10 +12,11 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/user_file.h"
-#include "sim/records/hdf5_file.h"
+#include "sim/records/input_file.h"
 #include "sim/sweep/sweep.h"
 #include "sim/sweep/table_columns.h"
 #include "sim/system/output_name.h"
+#include "sim/system/system_error.h"
 
 namespace servomill::sim {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "sim/model/scenario.h"
-#include "sim/records/hdf5_file.h"
+#include "sim/records/input_file.h"
 #include "sim/sweep/selection.h"
 
 namespace servomill::sim {

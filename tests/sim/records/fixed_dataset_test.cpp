@@ -7,7 +7,8 @@
 #include <limits>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/records/hdf5_file.h"
+#include "sim/records/input_file.h"
+#include "sim/records/output_file.h"
 
 namespace servomill::sim::fixed_dataset_test {
 namespace {

@@ -1,5 +1,3 @@
-#include "sim/records/hdf5_file.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -9,6 +7,9 @@
 #include <functional>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/records/input_file.h"
+#include "sim/records/output_file.h"
+#include "sim/system/system_error.h"
 
 namespace servomill::sim::hdf5_file_test {
 namespace {

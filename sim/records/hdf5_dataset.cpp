@@ -1,0 +1,67 @@
+#include "sim/records/hdf5_dataset.h"
+
+#include <hdf5.h>
+#include <hdf5_hl.h>
+#include <array>
+#include <cassert>
+
+#include "sim/system/utf8.h"
+
+namespace servomill::sim {
+
+Hdf5Dataset::Hdf5Dataset(Hdf5Handle id, std::size_t columns)
+    : Hdf5Object(std::move(id)), columns_(columns) {}
+
+void Hdf5Dataset::make_scale(const std::string& name) {
+  const Hdf5Lock lock;
+  written(H5DSset_scale(id_.get(), name.c_str()), id_.get());
+}
+
+void Hdf5Dataset::attach_scale(Hdf5Dataset& scale, unsigned dimension) {
+  const Hdf5Lock lock;
+  written(H5DSattach_scale(id_.get(), scale.id_.get(), dimension), id_.get());
+}
+
+void Hdf5Dataset::write(std::size_t first, std::span<const double> values) {
+  const Hdf5Lock lock;
+  const hsize_t begin = first, count = values.size();
+  const Hdf5Handle in_file(written(H5Dget_space(id_.get()), id_.get()));
+  H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, &begin, nullptr, &count, nullptr);
+  const Hdf5Handle in_memory = hdf5_handle(H5Screate_simple(1, &count, nullptr));
+  written(H5Dwrite(id_.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(), H5P_DEFAULT,
+                   values.data()),
+          id_.get());
+}
+
+void Hdf5Dataset::write_text(std::size_t row, std::string_view text) {
+  const Hdf5Lock lock;
+  constexpr std::string_view kCut = "...";
+  std::string room(text.substr(0, columns_));
+  if (text.size() > columns_) {
+    const std::size_t end = utf8_start(text, columns_ - kCut.size());
+    room = std::string(text.substr(0, end)) + std::string(kCut);
+  }
+  room.resize(columns_, '\0');
+  const std::array<hsize_t, 2> begin = {row, 0}, block = {1, columns_};
+  const Hdf5Handle in_file(written(H5Dget_space(id_.get()), id_.get()));
+  H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, begin.data(), nullptr, block.data(), nullptr);
+  const Hdf5Handle in_memory = hdf5_handle(H5Screate_simple(2, block.data(), nullptr));
+  written(H5Dwrite(id_.get(), H5T_C_S1, in_memory.get(), in_file.get(), H5P_DEFAULT, room.data()),
+          id_.get());
+}
+
+void Hdf5Dataset::append(std::size_t rows, std::span<const std::vector<std::uint8_t>> chunks) {
+  assert(chunks.size() == columns_);
+  const Hdf5Lock lock;
+  const std::array<hsize_t, 2> size = {rows_ + rows, columns_};
+  written(H5Dset_extent(id_.get(), size.data()), id_.get());
+  for (std::size_t column = 0; column < columns_; ++column) {
+    const std::array<hsize_t, 2> begin = {rows_, column};
+    const std::vector<std::uint8_t>& chunk = chunks[column];
+    written(H5Dwrite_chunk(id_.get(), H5P_DEFAULT, 0, begin.data(), chunk.size(), chunk.data()),
+            id_.get());
+  }
+  rows_ += rows;
+}
+
+}  // namespace servomill::sim

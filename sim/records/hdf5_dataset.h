@@ -1,0 +1,45 @@
+/// Datasets of an HDF5 file that is being written.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/records/hdf5_object.h"
+
+namespace servomill::sim {
+
+/// Description of a dataset, for readers and plots.
+struct Meaning {
+  std::string units;      // as CF has them: "mm", "s", "1"
+  std::string long_name;  // a phrase for the label of a plot
+};
+
+class Hdf5Dataset : public Hdf5Object {
+ public:
+  /// Makes this dataset the scale of a dimension called `name`.
+  void make_scale(const std::string& name);
+  /// Gives the dimension (0 rows, 1 columns) its scale.
+  void attach_scale(Hdf5Dataset& scale, unsigned dimension);
+
+  /// Replaces numbers of a dataset of fixed size, from row `first` on.
+  void write(std::size_t first, std::span<const double> values);
+  /// Replaces one row of texts. A text longer than the room ends with "...".
+  void write_text(std::size_t row, std::string_view text);
+
+  /// Adds rows at the end of an extendible dataset: of each column one chunk, encoded as the
+  /// dataset says. Only the last chunks may hold fewer rows than the chunks are long.
+  void append(std::size_t rows, std::span<const std::vector<std::uint8_t>> chunks);
+
+ private:
+  friend class Hdf5Group;
+  Hdf5Dataset(Hdf5Handle id, std::size_t columns);
+
+  std::size_t rows_ = 0;
+  std::size_t columns_;
+};
+
+}  // namespace servomill::sim

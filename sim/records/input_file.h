@@ -1,0 +1,54 @@
+/// HDF5 files that are read: by path, with every fault named.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "sim/records/hdf5_library.h"
+
+namespace servomill::sim {
+
+/// A file to read. Paths are absolute: "/cases/table/servo/time".
+/// All members throw InputError that names the file and what it lacks.
+class InputFile {
+ public:
+  /// @throws SystemError if another process writes it
+  explicit InputFile(std::string path);
+
+  const std::string& path() const { return path_; }
+  bool has(const std::string& object) const;
+  std::vector<std::string> groups(const std::string& group) const;    // in the order of making
+  std::vector<std::string> datasets(const std::string& group) const;  // in the order of making
+
+  /// Lengths of the dimensions; none for one value.
+  std::vector<std::size_t> shape(const std::string& dataset) const;
+  /// All values, row by row.
+  std::vector<double> values(const std::string& dataset) const;
+
+  /// The same of some rows of a list.
+  std::vector<double> values(const std::string& dataset, std::size_t first,
+                             std::size_t count) const;
+  /// Some rows of one column of a table, or of a list (column 0).
+  std::vector<double> column(const std::string& dataset, std::size_t column, std::size_t first,
+                             std::size_t count) const;
+  /// Some rows of a list of texts.
+  std::vector<std::string> texts(const std::string& dataset, std::size_t first,
+                                 std::size_t count) const;
+
+  bool has_attribute(const std::string& object, const std::string& name) const;
+  std::string text(const std::string& object, const std::string& name) const;
+  double number(const std::string& object, const std::string& name) const;
+  std::vector<double> numbers(const std::string& object, const std::string& name) const;
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const;
+  std::vector<std::string> children(const std::string& group, bool groups) const;
+  Hdf5Handle open(const std::string& object) const;
+  Hdf5Handle open_attribute(const std::string& object, const std::string& name) const;
+
+  std::string path_;
+  Hdf5Handle file_;
+};
+
+}  // namespace servomill::sim

@@ -1,0 +1,112 @@
+#include "sim/records/output_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <unistd.h>
+
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/user_file.h"
+#include "sim/system/output_name.h"
+#include "sim/system/system_error.h"
+
+namespace servomill::sim {
+namespace {
+
+std::string system_reason() { return std::strerror(errno); }
+
+// The library would cut the file before it finds it locked.
+void refuse_to_cut_locked(const std::string& path) {
+  if (writer_of(path) != Writer::alive) return;
+  throw SystemError(path, "cannot be made", "another process writes it");
+}
+
+}  // namespace
+
+OutputFile::OutputFile(std::string path, bool force) : path_(std::move(path)), force_(force) {
+  path_ = output_target(path_, existing_of(force_));
+  partial_path_ = path_ + ".partial";
+  if (!force_) refuse_partial(partial_path_);
+  const Hdf5Lock lock;
+  prepare_hdf5();
+  const Hdf5Handle creation = group_creation(H5P_FILE_CREATE);
+  const Hdf5Handle access = hdf5_handle(H5Pcreate(H5P_FILE_ACCESS));
+  // closing the file closes what was taken from it; the oldest format has no "open" mark that would
+  // make the file of a killed run unreadable
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  if (force_) refuse_to_cut_locked(partial_path_);
+  const unsigned flag = force_ ? H5F_ACC_TRUNC : H5F_ACC_EXCL;
+  file_ = Hdf5Handle(H5Fcreate(partial_path_.c_str(), flag, creation.get(), access.get()));
+  if (file_.get() < 0) throw SystemError(partial_path_, "cannot be made", hdf5_reason());
+}
+
+OutputFile::OutputFile(std::string path, bool force, Hdf5Handle file)
+    : path_(std::move(path)),
+      partial_path_(path_ + ".partial"),
+      force_(force),
+      file_(std::move(file)) {}
+
+OutputFile OutputFile::resumed(std::string path, bool force) {
+  const Hdf5Lock lock;
+  prepare_hdf5();
+  const Hdf5Handle access = hdf5_handle(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  Hdf5Handle file(H5Fopen((path + ".partial").c_str(), H5F_ACC_RDWR, access.get()));
+  if (file.get() < 0) {
+    refuse_if_locked(path + ".partial");
+    throw InputError({path + ".partial"}, fmt::format("cannot be opened: {}", hdf5_reason()));
+  }
+  return {std::move(path), force, std::move(file)};
+}
+
+OutputFile OutputFile::reopened(std::string path) {
+  const std::string partial = path + ".partial";
+  // a link does not replace what another run has left or still writes
+  if (::link(path.c_str(), partial.c_str()) != 0) {
+    if (errno == EEXIST) {
+      throw InputError({partial}, "is there as well, of another run; use --force to overwrite");
+    }
+    throw SystemError(path, "cannot be renamed", system_reason());
+  }
+  if (::unlink(path.c_str()) != 0) {
+    const std::string reason = system_reason();
+    ::unlink(partial.c_str());
+    throw SystemError(path, "cannot be renamed", reason);
+  }
+  return resumed(std::move(path), false);
+}
+
+OutputFile::OutputFile(OutputFile&&) noexcept = default;
+OutputFile::~OutputFile() = default;
+
+void OutputFile::remove_unless_committed() {
+  temporary_ = std::make_unique<TemporaryFile>(TemporaryFile::existing(partial_path_));
+}
+
+Hdf5Group OutputFile::root() {
+  const Hdf5Lock lock;
+  return Hdf5Group(Hdf5Handle(written(H5Gopen2(file_.get(), "/", H5P_DEFAULT), file_.get())));
+}
+
+void OutputFile::commit() {
+  const Hdf5Lock lock;
+  assert(file_.get() >= 0);
+  written(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), file_.get());
+  const herr_t closed = H5Fclose(file_.get());
+  if (closed < 0) throw SystemError(partial_path_, "cannot be written", hdf5_reason());
+  file_ = Hdf5Handle();
+
+  // the data must be on the disk before the name says that they are
+  const int descriptor = open(partial_path_.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
+  if (!synced) throw SystemError(partial_path_, "cannot be written", system_reason());
+  close(descriptor);
+  give_name(partial_path_, path_, existing_of(force_));
+}
+
+}  // namespace servomill::sim
