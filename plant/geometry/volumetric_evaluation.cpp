@@ -1,17 +1,15 @@
 #include "plant/geometry/volumetric_evaluation.h"
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <limits>
 
-#include "plant/geometry/turn.h"
+#include "plant/geometry/axis_steps.h"
 
 namespace servomill::plant {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 static_assert(kMachineJoints == kJoints && kErrorComponents == kErrorDirections);
@@ -37,195 +35,7 @@ StraightKernel straight_kernel_of(const StraightProgram& program, SimdLevel leve
   return at_simd_level(level, [&]<SimdLevel l>() { return make_straight_kernel<l>(program); });
 }
 
-Vector3d turn_of_location(const ChainAxis& axis, const ErrorModel& errors) {
-  Vector3d angles;
-  for (int i = 0; i < 3; ++i) {
-    angles[i] = errors.location({kAllAxes[static_cast<std::size_t>(i) + 3], axis.axis, true});
-  }
-  return angles;
-}
-
-using Functions = std::array<ErrorFunction, kErrorDirections>;
-
-// The errors of an axis that grow with its coordinate: [direction]. A linear axis goes along L d
-// instead of d, whose location errors thus count as well.
-Functions functions_of(const ChainAxis& axis, const ErrorModel& errors) {
-  Functions all;
-  for (const Axis direction : kAllAxes) {
-    all[static_cast<std::size_t>(index_of(direction))] =
-        errors.component({direction, axis.axis, false});
-  }
-  const Vector3d angles = turn_of_location(axis, errors);
-  if (!is_linear(axis.axis) || angles.isZero(0.0)) return all;
-  const Vector3d d = Vector3d::Unit(index_of(axis.axis)), Ld = TurnOf(angles).matrix() * d;
-  for (int i = 0; i < 3; ++i) {
-    ErrorFunction& f = all[static_cast<std::size_t>(i)];
-    f = f + polynomial({0.0, Ld[i] - d[i]});
-  }
-  return all;
-}
-
-// Geometric errors of one axis.
-struct Faults {
-  Vector3d shift, angles;  // location errors
-  bool has_functions = false, has_angles = false;
-
-  Faults(const ChainAxis& axis, const ErrorModel& errors, const Functions& functions)
-      : angles(turn_of_location(axis, errors)) {
-    for (std::size_t i = 0; i < kErrorComponents; ++i) {
-      if (functions[i].is_zero()) continue;
-      has_functions = true;
-      if (i >= 3) has_angles = true;
-    }
-    for (int i = 0; i < 3; ++i) {
-      shift[i] = errors.location({kAllAxes[static_cast<std::size_t>(i)], axis.axis, true});
-    }
-  }
-  bool has_location() const { return !shift.isZero(0.0) || !angles.isZero(0.0); }
-};
-
-void write(const Matrix3d& R, double (&out)[3][3]) {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) out[i][j] = R(i, j);
-  }
-}
-
-// C L J L^-1 C^-1 with C = Trans(centre), L = Rot(R) Trans(t), and J = one of three constant
-// matrices, as each coordinate of a turned vector has a part that stays, one that goes with the
-// cosine, and one that goes with the sine.
-void write_tilted_turn(const Matrix3d& R, const Vector3d& t, VolumetricStep& step) {
-  const Vector3d axis = Vector3d::Unit(step.direction), centre = Vector3d::Map(step.centre);
-  const auto part = [&](const Matrix3d& J, const Vector3d& d, double* out) {
-    const Matrix3d M = R * J * R.transpose();
-    for (int i = 0; i < 3; ++i) Vector3d::Map(out + 3 * i) = M.row(i);
-    Vector3d::Map(out + 9) = d - M * centre - R * (J * t);
-  };
-  const Matrix3d still = axis * axis.transpose();
-  Matrix3d across;
-  for (int i = 0; i < 3; ++i) across.col(i) = axis.cross(Vector3d::Unit(i));
-  part(still, centre + R * t, step.still);
-  part(Matrix3d::Identity() - still, Vector3d::Zero(), step.turning[0]);
-  part(across, Vector3d::Zero(), step.turning[1]);
-}
-
-bool is_turn(const VolumetricStep& step) {
-  return step.move == VolumetricMove::turn || step.move == VolumetricMove::tilted_turn;
-}
-bool is_frame(const VolumetricStep& step) {
-  return step.move == VolumetricMove::enter_frame || step.move == VolumetricMove::leave_frame;
-}
-bool is_shift(const VolumetricStep& step) {
-  return step.move == VolumetricMove::shift || step.move == VolumetricMove::faulty_shift;
-}
-
 }  // namespace
-
-// --- tables -------------------------------------------------------------------------------------
-
-TableLookup::TableLookup(const LinearTable& table)
-    : first_(table.s.front()), last_(table.s.back()), last_error_(table.error.back()) {
-  const std::size_t points = table.s.size();
-  for (std::size_t i = 0; i + 1 < points; ++i) {
-    const double slope = (table.error[i + 1] - table.error[i]) / (table.s[i + 1] - table.s[i]);
-    intervals_.push_back({table.s[i], table.error[i], slope});
-  }
-  if (points == 1) intervals_.push_back({first_, last_error_, 0.0});
-  const std::size_t buckets = 2 * points;
-  const double width = (last_ - first_) / static_cast<double>(buckets);
-  buckets_per_s_ = width > 0.0 ? 1.0 / width : 0.0;
-  for (std::size_t b = 0; b <= buckets; ++b) {
-    // one bucket early, so that rounding of the bucket's number does no harm
-    const double begin = first_ + width * (static_cast<double>(b) - 1.0);
-    const auto above = std::upper_bound(table.s.begin(), table.s.end() - 1, begin);
-    const auto interval = std::max<std::ptrdiff_t>(above - table.s.begin() - 1, 0);
-    interval_of_bucket_.push_back(static_cast<std::uint32_t>(interval));
-  }
-}
-
-double TableLookup::value(double at) const {
-  if (!(at >= first_)) return intervals_.front().error;
-  if (at >= last_) return last_error_;
-  const auto bucket = static_cast<std::size_t>((at - first_) * buckets_per_s_);
-  std::size_t i = interval_of_bucket_[std::min(bucket, interval_of_bucket_.size() - 1)];
-  while (i + 1 < intervals_.size() && intervals_[i + 1].s <= at) ++i;
-  return intervals_[i].error + intervals_[i].slope * (at - intervals_[i].s);
-}
-
-// --- functions ----------------------------------------------------------------------------------
-
-void PreparedFunctions::add(std::size_t axis, std::size_t component, std::size_t joint,
-                            const ErrorFunction& f) {
-  if (f.is_zero()) return;
-  for (std::size_t i = 0; i < f.polynomial.size(); ++i) {
-    add_coefficient(i, component, axis, f.polynomial[i]);
-  }
-  for (const Harmonic& h : f.harmonics) {
-    all_waves_.push_back({axis, component, h.amplitude, h.omega(), h.phase});
-  }
-  for (const LinearTable& t : f.tables) tables_.push_back({axis, component, joint, TableLookup(t)});
-  functions_.axes = std::max(functions_.axes, axis + 1);
-  functions_.has_angles = functions_.has_angles || component >= 3;
-}
-
-void PreparedFunctions::add_reversals(std::size_t axis, std::size_t component, std::size_t joint,
-                                      const ErrorFunction& f) {
-  for (const Reversal& r : f.reversals) {
-    if (r.is_zero()) continue;
-    const Play play{static_cast<int>(joint), r.distance};
-    const auto place = std::find(plays_.begin(), plays_.end(), play) - plays_.begin();
-    if (static_cast<std::size_t>(place) == plays_.size()) plays_.push_back(play);
-    Reversal half = r;
-    for (double& w : half.width) w *= 0.5;
-    reversals_.push_back({axis, component, joint, static_cast<std::size_t>(place), half});
-  }
-}
-
-void PreparedFunctions::add_coefficient(std::size_t power, std::size_t component, std::size_t axis,
-                                        double value) {
-  if (value == 0.0) return;  // does not raise the degree
-  if (power >= powers_.size()) powers_.resize(power + 1);
-  powers_[power].e[component][axis] += value;
-}
-
-// Waves that differ in amplitude only share a sine.
-void PreparedFunctions::join_waves() {
-  const auto same = [](const Wave& a, const Wave& b) {
-    return a.axis == b.axis && a.omega == b.omega && a.phase == b.phase;
-  };
-  std::size_t wave = 0;
-  for (std::size_t i = 0; i < all_waves_.size(); ++i) {
-    const Wave& first = all_waves_[i];
-    const auto begin = all_waves_.begin(), here = begin + static_cast<std::ptrdiff_t>(i);
-    if (std::any_of(begin, here, [&](const Wave& w) { return same(w, first); })) continue;
-    const std::size_t lane = wave % kLaneWidth;
-    if (lane == 0) waves_.emplace_back(VolumetricWaves{});
-    waves_.back().omega[lane] = first.omega;
-    waves_.back().phase[lane] = first.phase;
-    waves_.back().axis[lane] = static_cast<std::uint8_t>(first.axis);
-    std::for_each(here, all_waves_.end(), [&](const Wave& w) {
-      if (!same(w, first)) return;
-      VolumetricHarmonic& h = harmonics_.emplace_back(VolumetricHarmonic{wave, w.component, {}});
-      h.amplitude[w.axis] = w.amplitude;
-    });
-    ++wave;
-  }
-  functions_.number_of_waves = wave;
-  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-  harmonics_.emplace_back(VolumetricHarmonic{kNone, 0, {}});
-}
-
-VolumetricFunctions PreparedFunctions::finish() {
-  join_waves();
-  constexpr std::size_t kCubic = 4;  // coefficients
-  powers_.resize(std::max(powers_.size(), kCubic));
-  functions_.polynomial = powers_.data();
-  functions_.degree = powers_.size() - 1;
-  functions_.waves = waves_.data();
-  functions_.harmonics = harmonics_.data();
-  functions_.has_terms = !waves_.empty() || !tables_.empty() || !reversals_.empty();
-  functions_.is_cubic = powers_.size() == kCubic && !functions_.has_terms;
-  return functions_;
-}
 
 // --- preparation --------------------------------------------------------------------------------
 
@@ -234,11 +44,7 @@ VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const Erro
     : kernel_(kernel_of(level, std::any_of(chain.axes.begin(), chain.axes.end(),
                                            [](const ChainAxis& a) { return a.is_inclined; }))) {
   for (auto a = chain.axes.rbegin(); a != chain.axes.rend(); ++a) {
-    if (a->is_inclined) {
-      add_inclined_steps_of(*a, errors);
-    } else {
-      add_steps_of(*a, errors);
-    }
+    add(*a, errors);
     if (!is_linear(a->axis)) rotary_.push_back(*a);
   }
   find_ends();
@@ -249,54 +55,18 @@ VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const Erro
   if (is_straight_) straight_kernel_ = straight_kernel_of(straight_, level);
 }
 
-// In the frame of an inclined axis, of which the centre is the origin, nothing is inclined.
-void VolumetricEvaluation::add_inclined_steps_of(const ChainAxis& axis, const ErrorModel& errors) {
-  VolumetricStep frame{};
-  frame.joint = static_cast<std::uint8_t>(axis.joint);
-  Vector3d::Map(frame.centre) = axis.centre;
-  write(axis.R_MA, frame.R);
-  ChainAxis upright = axis;
-  upright.centre.setZero();
-  frame.move = VolumetricMove::enter_frame;
-  steps_.push_back(frame);
-  add_steps_of(upright, errors);
-  frame.move = VolumetricMove::leave_frame;
-  steps_.push_back(frame);
-}
-
-void VolumetricEvaluation::add_steps_of(const ChainAxis& axis, const ErrorModel& errors) {
-  const auto functions = functions_of(axis, errors);
-  const Faults faults(axis, errors, functions);
+void VolumetricEvaluation::add(const ChainAxis& axis, const ErrorModel& errors) {
+  const AxisFunctions functions = functions_of(axis, errors);
   const auto joint = static_cast<std::size_t>(axis.joint);
   for (std::size_t i = 0; i < kErrorComponents; ++i) {
     functions_.add(joint, i, joint, functions[i]);
     functions_.add_reversals(joint, i, joint, functions[i]);
   }
-  VolumetricStep step{};
-  step.direction = static_cast<std::uint8_t>(index_of(axis.axis) % 3);
-  step.joint = static_cast<std::uint8_t>(axis.joint);
-  step.has_angles = faults.has_angles;
-  Vector3d::Map(step.centre) = axis.centre;
-  const Matrix3d R = TurnOf(faults.angles).matrix();  // L = Rot(angles) Trans(shift)
-  const bool linear = is_linear(axis.axis), workpiece = axis.side == Side::workpiece;
-  if (linear) {
-    step.move = VolumetricMove::shift;
-    if (faults.has_functions) step.move = VolumetricMove::faulty_shift;
-    if (workpiece) Vector3d::Map(step.lever_slope) = R.col(step.direction);
-    step.has_lever = workpiece || !axis.centre.isZero(0.0);
-    steps_.push_back(step);
-  } else {
-    step.has_lever = !axis.centre.isZero(0.0);
-    VolumetricStep fault = step;
-    fault.move = VolumetricMove::fault;
-    step.move = faults.has_location() ? VolumetricMove::tilted_turn : VolumetricMove::turn;
-    write_tilted_turn(R, faults.shift, step);
-    program_.has_turns = true;
-    program_.senses[joint - kLinearJoints] = axis.sense == Sense::table ? -1.0 : 1.0;
-    if (faults.has_functions && !workpiece) steps_.push_back(fault);
-    steps_.push_back(step);
-    if (faults.has_functions && workpiece) steps_.push_back(fault);
-  }
+  const std::vector<VolumetricStep> steps = steps_of(axis, errors, functions);
+  steps_.insert(steps_.end(), steps.begin(), steps.end());
+  if (is_linear(axis.axis)) return;
+  program_.has_turns = true;
+  program_.senses[joint - kLinearJoints] = axis.sense == Sense::table ? -1.0 : 1.0;
 }
 
 void VolumetricEvaluation::find_ends() {
