@@ -1,60 +1,22 @@
 #include "plant/drives/exact_step.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+
+#include "plant/drives/drive_rates.h"
 
 namespace servomill::plant {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kEventLength = 10e-9;  // s: events are located in a sub-step no longer than this
-constexpr double kCoastRate = 1e-3;     // rate x finest sub-step: coast() is exact to its cube
-constexpr double kFrictionRate = 1e-3;  // the same for the rates of friction, which are solved for
 constexpr int kMostHalvings = 26;
 constexpr double kNewtonShare = 0.02;  // of the tolerance
 constexpr double kNoTravel = 1e-14;    // m: a reversal that moves less in a sub-step is none
-
-double fastest_rate_of(const FeedDriveParams& p) {
-  double rate = fastest_rate(drive_equations(p, false, false));
-  if (p.friction.kind == FrictionKind::set_valued) {
-    rate = std::max(rate, fastest_rate(drive_equations(p, true, false)));
-  }
-  return rate;
-}
-
-// The rates (1/s) with which friction acts on the slide, each with what it is made of.
-struct FrictionRate {
-  double rate;
-  const char* formula;
-};
-std::vector<FrictionRate> friction_rates(const FeedDriveParams& p) {
-  const FrictionParams& f = p.friction;
-  const double M = p.slide_mass();
-  if (f.kind == FrictionKind::regularised) {
-    return {{std::max(f.Fs_positive, f.Fs_negative) / (f.v0 * M),
-             "the slope of the regularised friction, breakaway / (regularisation_velocity mass),"}};
-  }
-  if (f.kind == FrictionKind::lugre) {
-    const double Fc = std::min(f.Fc_positive, f.Fc_negative);
-    return {{std::sqrt(f.sigma0 / M), "the bristles' stiffness, sqrt(bristle_stiffness / mass),"},
-            {f.sigma1 / M, "the bristles' damping, bristle_damping / mass,"},
-            {f.sigma0 * kStribeckEnd * f.vs / Fc, "6.5 vs sigma0 / Fc"}};
-  }
-  return {};
-}
-
-// Halvings of the base period that give the finest sub-step.
-int halvings_of(const FeedDriveParams& p, double base_period) {
-  double finest = std::min(kEventLength, kCoastRate / fastest_rate_of(p));
-  for (const FrictionRate& f : friction_rates(p)) finest = std::min(finest, kFrictionRate / f.rate);
-  return std::max(0, static_cast<int>(std::ceil(std::log2(base_period / finest))));
-}
 
 double direction(SlideMode slide) { return slide == SlideMode::negative ? -1.0 : 1.0; }
 
@@ -162,7 +124,7 @@ double ExactStep::force(const LaneState& s, double F) const {
 struct ExactStep::Rows {
   std::array<double, Propagator::kSlideRows> slide{};
   std::array<double, Propagator::kInnerRows> inner{};
-  bool looks_within;  // whether the inner rows are wanted
+  bool looks_within;  // the inner rows are wanted, too
 
   void add(const Propagator& P, std::size_t column, double factor) {
     for (std::size_t n = 0; n < slide.size(); ++n) slide[n] += P.slide[column][n] * factor;
@@ -429,21 +391,6 @@ void ExactStep::advance(LaneState& s, double command, double F, Tick step) const
     }
   }
   s.control.halvings = coarsest - wanted;
-}
-
-std::vector<std::string> unrepresentable(const FeedDriveParams& p, double base_period) {
-  constexpr double kLongestToFinest = 1000.0;  // sub-steps in a base period
-  std::vector<std::string> faults;
-  const double limit = kLongestToFinest / base_period;
-  const auto demand = [&](double rate, const char* what) {
-    if (rate <= limit) return;
-    faults.push_back(
-        fmt::format("{} makes a rate of {:.3g} 1/s; the exact step resolves up to {:.3g} 1/s", what,
-                    rate, limit));
-  };
-  demand(fastest_rate_of(p), "the stiffness or damping of the drive");
-  for (const FrictionRate& f : friction_rates(p)) demand(f.rate, f.formula);
-  return faults;
 }
 
 }  // namespace servomill::plant

@@ -122,8 +122,4 @@ class ExactStep {
   std::vector<Linear> linear_;
 };
 
-/// Why the exact step cannot represent these parameters, each as a rule with the figures; empty for
-/// a set that it can. Values that no drive can have are the business of implausible().
-std::vector<std::string> unrepresentable(const FeedDriveParams& params, double base_period);
-
 }  // namespace servomill::plant

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-#include "plant/drives/exact_step.h"
+#include "plant/drives/drive_rates.h"
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_drive.h"

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "plant/drives/cvode_drive.h"
+#include "plant/drives/drive_rates.h"
 #include "plant/drives/exact_step.h"
 #include "tests/plant/drives/random_drive.h"
 
