@@ -1,0 +1,47 @@
+/// One move as a part of the scaled path, and the corners between two of them.
+#pragma once
+
+#include "controllers/path/path_limits.h"
+#include "controllers/path/stretch_limits.h"
+#include "plant/vocabulary/axes.h"
+#include "plant/vocabulary/move.h"
+
+namespace servomill::controllers {
+
+/// A move on the scaled path: joints in metres, rotary ones times the rotary radius.
+struct Leg {
+  bool rapid = false, rotary_only = false;
+  bool stop_after = false, exact_corners = false;
+  Joints tangent_begin, tangent_end;  // unit, scaled
+  double length = 0.0;                // m, scaled
+  double tolerance = 0.0;             // m
+  double feed = 0.0;                  // m/s along the scaled path
+};
+
+/// Speeds and tolerances of legs, and the corners at which the motion stops.
+class LegRules {
+ public:
+  /// @param limits  of the scaled joints
+  LegRules(const JointLimits& limits, const PathOptions& options)
+      : limits_(limits), options_(options) {}
+
+  /// Distance (m) that the path may keep from the programmed one.
+  double tolerance_of(const Move& move) const;
+
+  FeedLimit feed_limit(const Move& move, const Leg& leg) const;
+
+  /// Programmed speed (m/s) along the scaled path, where it goes straight.
+  double speed_along(const Leg& leg, const Move& move) const;
+
+  /// Tells if the motion stops between two legs: from rapid to feed, from rotary-only to other
+  /// moves, at reversals, at the corners of G61, and where a stop is faster than a rounding.
+  bool must_stop(const Leg& from, const Leg& to) const;
+
+ private:
+  bool stopping_is_faster(const Leg& from, const Leg& to, const Joints& turn) const;
+
+  JointLimits limits_;
+  PathOptions options_;
+};
+
+}  // namespace servomill::controllers

@@ -1,0 +1,365 @@
+// Planning of a program: collects its moves into motions from rest to rest.
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "controllers/path/chain_speeds.h"
+#include "controllers/path/path_leg.h"
+#include "controllers/path/trajectory.h"
+#include "plant/vocabulary/arc_sweep.h"
+#include "plant/vocabulary/interrupt.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr double kLeastChord = 1e-9;    // m, points closer than this to the last are skipped
+constexpr double kLeastChain = 1e-12;   // m, below this there is no motion
+constexpr double kChordAngle = 0.1;     // rad, longest chord of an arc
+constexpr double kSameCircle = 1e-9;    // m, by which circles that are meant to be one may differ
+constexpr double kChordsPerWindow = 4;  // chords of an arc in the half-width of its window
+
+// Metres of the scaled path per unit of each joint.
+Joints scale_of(const PathOptions& options) {
+  Joints scale = Joints::Ones();
+  scale.tail<kJoints - kLinearJoints>().setConstant(options.rotary_radius);
+  return scale;
+}
+
+// Returns true if an arc continues another one, on the same circle and in the same direction.
+bool is_same_circle(const ArcSweep& one, const ArcSweep& next, const Joints& step) {
+  const auto near = [](double a, double b) { return std::abs(a - b) < kSameCircle; };
+  const bool is_flat = near(one.along_begin, one.along_end) &&
+                       near(next.along_begin, next.along_end) &&
+                       step.tail<kJoints - kLinearJoints>().isZero(0.0);
+  return is_flat && one.c == next.c && (one.sweep > 0.0) == (next.sweep > 0.0) &&
+         near(one.centre_a, next.centre_a) && near(one.centre_b, next.centre_b) &&
+         near(one.r_begin, next.r_begin) && near(one.r_end, next.r_end) &&
+         near(one.r_begin, one.r_end);
+}
+
+}  // namespace
+
+// Collects moves into chains and plans each when it ends.
+class Planner {
+ public:
+  Planner(const JointLayout& layout, const JointLimits& limits, const PathOptions& options,
+          const Joints& start, const TipMotions& tip)
+      : layout_(layout),
+        options_(options),
+        tip_(tip),
+        scale_(scale_of(options)),
+        limits_{limits.v.cwiseProduct(scale_), limits.a.cwiseProduct(scale_),
+                limits.j.cwiseProduct(scale_)},
+        rules_(limits_, options) {
+    assert(options.tolerance > 0.0 && options.exact_tolerance > 0.0);
+    assert(options.rotary_tolerance > 0.0 && options.rotary_radius > 0.0);
+    assert(options.feed_override > 0.0 && options.rapid_override > 0.0);
+    assert(options.block_time >= 0.0 && options.tolerance_share > 0.0);
+    out_.rotary_radius_ = options.rotary_radius;
+    out_.start_ = out_.end_ = start;
+    words_ = layout.words(start);
+    restart();
+  }
+
+  Trajectory run(const MoveRange& moves) {
+    out_.moves_.reserve(moves.size());
+    std::size_t next = 0;
+    for (const Move& move : moves) {
+      throw_if_interrupted();
+      const std::size_t i = next++;
+      out_.moves_.push_back({move.s_begin, move.s_end, move.line, move.kind == MoveKind::rapid});
+      switch (move.kind) {
+        case MoveKind::rapid:
+        case MoveKind::feed:
+        case MoveKind::arc:
+          if (move.tool_control == ToolControl::none)
+            add_motion(move, i);
+          else
+            add_tip_motion(move, i);
+          break;
+        case MoveKind::dwell:
+          add_dwell(move, i);
+          break;
+        case MoveKind::tool:
+        case MoveKind::stop:
+        case MoveKind::end:
+          finish_chain();
+          break;
+        case MoveKind::spindle:
+        case MoveKind::coolant:
+        case MoveKind::message:
+          break;
+      }
+    }
+    finish_chain();
+    out_.duration_ = t_;
+    return std::move(out_);
+  }
+
+ private:
+  using Chain = Trajectory::Chain;
+
+  Joints scaled(const Joints& Q) const { return Q.cwiseProduct(scale_); }
+
+  void add_motion(const Move& move, std::size_t index) {
+    assert(move.kind == MoveKind::rapid || move.feed > 0.0);
+    const Joints Q_end = layout_.joints(move.end_machine);
+    const Joints u_end = scaled(Q_end);
+    const Joints step = u_end - u_;
+    if (move.kind != MoveKind::arc && step.isZero(0.0)) {
+      if (move.path_mode == PathMode::exact_stop) finish_chain();
+      return;
+    }
+    Leg leg;
+    leg.rapid = move.kind == MoveKind::rapid;
+    leg.stop_after = move.path_mode == PathMode::exact_stop;
+    leg.exact_corners = move.path_mode == PathMode::exact_path;
+    std::optional<ArcSweep> arc;
+    if (move.kind == MoveKind::arc) {
+      arc = arc_sweep(move, words_.head<3>());
+      leg.tangent_begin = arc_tangent(*arc, step, 0.0);
+      leg.tangent_end = arc_tangent(*arc, step, 1.0);
+    } else {
+      leg.rotary_only = step.head<kLinearJoints>().isZero(0.0);
+      leg.tangent_begin = leg.tangent_end = step.normalized();
+    }
+    leg.length = arc ? arc->length() : step.norm();
+    leg.tolerance = rules_.tolerance_of(move);
+    leg.feed = rules_.speed_along(leg, move);
+    if (last_ && rules_.must_stop(*last_, leg)) finish_chain();
+    ChainSpeeds::Span span = begin_span(index, leg);
+    span.feed = speeds_.index_of(rules_.feed_limit(move, leg));
+    if (arc) {
+      const bool continues = last_ && last_arc_ && is_same_circle(*last_arc_, *arc, step);
+      if (!continues) arc_index_ = static_cast<int>(index);
+      // on one circle the joint of two arcs is a point like any other
+      if (continues && !skipped_) vertices_.set_last_arc(arc_index_);
+      add_arc(*arc, move, step, arc_index_);
+    } else {
+      add_point(u_end, move, leg.feed, -1);
+    }
+    span.last = last_vertex();
+    if (span.last > span.first) speeds_.spans.push_back(span);
+    last_move_ = index;
+    u_ = u_end;
+    Q_ = Q_end;
+    words_ = move.end_machine;
+    last_ = leg;
+    last_arc_ = arc;
+    if (leg.stop_after) finish_chain();
+  }
+
+  // A move under tool control is one leg of many chords. Their inner ends lie on a curve, as the
+  // points of an arc do.
+  void add_tip_motion(const Move& move, std::size_t index) {
+    const TipMotion* motion = tip_.of(index);
+    assert(motion != nullptr);
+    const std::span<const JointChord> chords = tip_.chords_of(*motion);
+    const Leg leg = tip_leg(move, *motion, chords);
+    if (leg.length == 0.0) {
+      if (leg.stop_after) finish_chain();
+      return;
+    }
+    if (last_ && rules_.must_stop(*last_, leg)) finish_chain();
+    const double time = time_of(*motion);
+    double from = 0.0;
+    for (const JointChord& chord : chords) {
+      const bool inner = &chord != &chords.back();
+      ChainSpeeds::Span span = begin_span(index, leg);
+      span.feed = speeds_.index_of(FeedLimit{});
+      span.share = static_cast<std::uint32_t>(shares_.size());
+      const double chord_time = time * (chord.fraction - from);
+      add_chord(chord, chord_time, inner ? static_cast<int>(index) : -1);
+      if (skipped_) continue;
+      span.last = last_vertex();
+      speeds_.spans.push_back(span);
+      shares_.push_back({from, chord.fraction});
+      speeds_.times.push_back(chord_time);
+      from = chord.fraction;
+    }
+    if (from > 0.0) shares_.back().to = 1.0;
+    last_move_ = index;
+    Q_ = chords.back().end;
+    u_ = scaled(Q_);
+    words_ = layout_.words(Q_);
+    last_ = leg;
+    last_arc_.reset();
+    if (leg.stop_after) finish_chain();
+  }
+
+  std::uint32_t last_vertex() const { return static_cast<std::uint32_t>(vertices_.size() - 1); }
+  const Joints& last_u() const { return vertices_.u(vertices_.size() - 1); }
+
+  ChainSpeeds::Span begin_span(std::size_t move, const Leg& leg) const {
+    ChainSpeeds::Span span;
+    span.move = static_cast<std::uint32_t>(move);
+    span.first = last_vertex();
+    span.rapid = leg.rapid;
+    return span;
+  }
+
+  void add_chord(const JointChord& chord, double time, int arc) {
+    const Joints u = scaled(chord.end);
+    const double length = (u - last_u()).norm();
+    skipped_ = length < kLeastChord;
+    if (skipped_) return;
+    const double speed = time > 0.0 ? length / time : limits_.v.norm();
+    vertices_.push_back(
+        {u, chord.tolerance_linear, chord.tolerance_rotary * options_.rotary_radius, speed, arc});
+  }
+
+  // Tangents where it begins and ends to move; length 0 if it does not.
+  Leg tip_leg(const Move& move, const TipMotion& motion, std::span<const JointChord> chords) const {
+    Leg leg;
+    leg.rapid = move.kind == MoveKind::rapid;
+    leg.stop_after = move.path_mode == PathMode::exact_stop;
+    leg.exact_corners = move.path_mode == PathMode::exact_path;
+    leg.tolerance = chords.empty() ? 0.0 : chords.front().tolerance_linear;
+    Joints at = u_;
+    for (const JointChord& chord : chords) {
+      const Joints step = scaled(chord.end) - at;
+      const double length = step.norm();
+      at += step;
+      if (length < kLeastChord) continue;
+      if (leg.length == 0.0) leg.tangent_begin = step / length;
+      leg.tangent_end = step / length;
+      leg.length += length;
+    }
+    const double time = time_of(motion);
+    leg.feed = time > 0.0 ? leg.length / time : limits_.v.norm();
+    return leg;
+  }
+
+  // s, least by feed and block time; 0: none
+  double time_of(const TipMotion& motion) const {
+    return std::max(motion.time, options_.block_time);
+  }
+
+  Joints arc_tangent(const ArcSweep& arc, const Joints& step, double fraction) const {
+    Joints t = step;
+    t.head<kLinearJoints>() = linear_joints(arc.derivative(fraction));
+    return t.normalized();
+  }
+
+  // X Y Z in the order of the layout.
+  Eigen::Vector3d linear_joints(const Eigen::Vector3d& p) const {
+    AxisWords words = AxisWords::Zero();
+    words.head<3>() = p;
+    return layout_.joints(words).head<kLinearJoints>();
+  }
+
+  void add_arc(const ArcSweep& arc, const Move& move, const Joints& step, int index) {
+    const double radius = std::max(arc.r_begin, arc.r_end), sweep = std::abs(arc.sweep);
+    const double window = std::sqrt(12.0 * rules_.tolerance_of(move) * radius);
+    const double chord = std::min(kChordAngle, window / kChordsPerWindow / radius);
+    const int n = std::max(1, static_cast<int>(std::ceil(sweep / chord)));
+    const Joints u_begin = u_;
+    for (int i = 1; i <= n; ++i) {
+      const double fraction = static_cast<double>(i) / n;
+      Joints u = u_begin + step * fraction;
+      u.head<kLinearJoints>() = linear_joints(arc.point(fraction));
+      if (i == n) u = u_begin + step;
+      add_point(u, move, 0.0, i < n ? index : -1);
+    }
+  }
+
+  void add_point(const Joints& u, const Move& move, double speed, int arc) {
+    PathVertex vertex{u, rules_.tolerance_of(move), options_.rotary_tolerance, speed, arc};
+    if (move.path_mode != PathMode::continuous) {
+      vertex.tolerance_rotary *= options_.exact_tolerance / options_.tolerance;
+    }
+    vertex.tolerance_rotary *= options_.rotary_radius;
+    skipped_ = (u - last_u()).norm() < kLeastChord;
+    if (!skipped_) vertices_.push_back(vertex);
+  }
+
+  void add_dwell(const Move& move, std::size_t index) {
+    assert(move.value >= 0.0);
+    finish_chain();
+    Chain chain;
+    chain.t = t_;
+    chain.duration = move.value;
+    chain.begin = chain.end = Q_;
+    chain.spans.push_back({static_cast<std::uint32_t>(index)});
+    t_ += chain.duration;
+    out_.chains_.push_back(std::move(chain));
+  }
+
+  void restart() {
+    Q_ = out_.end_;
+    u_ = scaled(Q_);
+    vertices_.clear();
+    vertices_.push_back(PathVertex{u_, 0.0, 0.0, 0.0, -1});
+    speeds_.clear();
+    shares_.clear();
+    last_.reset();
+    last_arc_.reset();
+    skipped_ = false;
+  }
+
+  void finish_chain() {
+    if (!last_) return;
+    if (skipped_) reach_end();
+    if (vertices_.size() > 1) {
+      Chain chain;
+      chain.t = t_;
+      chain.begin = out_.end_;
+      chain.end = Q_;
+      chain.path = smooth(std::move(vertices_), limits_.j);
+      chain.path.pieces.shrink_to_fit();
+      chain.law = fastest_law(chain.path, speeds_, limits_, options_);
+      chain.duration = chain.law.duration;
+      chain.spans.assign(speeds_.spans.begin(), speeds_.spans.end());
+      chain.shares = std::move(shares_);
+      t_ += chain.duration;
+      out_.chains_.push_back(std::move(chain));
+    }
+    out_.end_ = Q_;
+    restart();
+  }
+
+  // The end lies within kLeastChord of the last vertex, but not on it.
+  void reach_end() {
+    if ((u_ - last_u()).norm() <= kLeastChain) return;
+    const double speed = vertices_.speed(vertices_.size() - 1);
+    if (speeds_.spans.empty()) {
+      ChainSpeeds::Span span = begin_span(last_move_, *last_);
+      span.first = 0;
+      span.feed = speeds_.index_of(FeedLimit{});
+      speeds_.spans.push_back(span);
+    }
+    vertices_.push_back({u_, options_.tolerance, options_.rotary_tolerance, speed, -1});
+    speeds_.spans.back().last = last_vertex();
+    if (speeds_.spans.back().share != Chain::kWhole) shares_.back().to = 1.0;
+  }
+
+  const JointLayout& layout_;
+  PathOptions options_;
+  const TipMotions& tip_;
+  Joints scale_;
+  JointLimits limits_;  // scaled
+  LegRules rules_;
+  Trajectory out_;
+  double t_ = 0.0;
+  // of the chain being collected
+  AxisWords words_;                   // where it is, machine coordinates
+  Joints Q_, u_;                      // the same, joints; scaled
+  std::optional<ArcSweep> last_arc_;  // of the leg before, if it was an arc
+  int arc_index_ = -1;                // of the circle that is being followed
+  Polyline vertices_;
+  ChainSpeeds speeds_;
+  std::vector<Chain::Share> shares_;  // of chords of moves under tool control
+  std::optional<Leg> last_;
+  std::size_t last_move_ = 0;
+  bool skipped_ = false;  // the last point was too close to the one before
+};
+
+Trajectory plan(const MoveRange& moves, const JointLayout& layout, const Joints& start,
+                const JointLimits& limits, const PathOptions& options, const TipMotions& tip) {
+  return Planner(layout, limits, options, start, tip).run(moves);
+}
+
+}  // namespace servomill::controllers
