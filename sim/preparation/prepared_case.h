@@ -15,6 +15,7 @@
 #include "sim/evaluation/part_fit.h"
 #include "sim/evaluation/probed_part.h"
 #include "sim/model/scenario.h"
+#include "sim/preparation/case_program.h"
 
 namespace servomill::sim {
 
@@ -84,14 +85,5 @@ class PreparedCase {
 /// @throws InputError with the faults of all cases: gains that are unstable included
 std::vector<PreparedCase> prepare_cases(const Scenario& scenario,
                                         PreparationCache* cache = nullptr);
-
-/// Interprets the program of a case as its machine would (work offset, tools, parameters).
-/// @param warnings  what the NC put right is added; may be nullptr
-MoveList read_program(const Scenario& scenario, const CaseSpec& spec,
-                      std::vector<Fault>* warnings = nullptr);
-
-/// Kinematics in the NC of a machine for tool centre point control.
-std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(
-    const MachineSettings& machine);
 
 }  // namespace servomill::sim

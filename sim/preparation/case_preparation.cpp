@@ -1,0 +1,296 @@
+#include "sim/preparation/case_preparation.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <utility>
+
+#include "controllers/conversational/conversational.h"
+#include "controllers/path/slowed_motion.h"
+#include "controllers/path/travel.h"
+#include "plant/vocabulary/input_error.h"
+#include "sim/evaluation/nominal_part.h"
+#include "sim/preparation/case_faults.h"
+#include "sim/preparation/case_program.h"
+#include "sim/preparation/plan_cutting.h"
+#include "sim/preparation/rewritten_text.h"
+#include "strategies/gcode.h"
+
+namespace servomill::sim {
+namespace {
+
+// Title of a rewritten program.
+std::string header_of(const Scenario& scenario, const CaseSpec& spec) {
+  return fmt::format("{}, case {}", scenario.title, spec.name);
+}
+
+// Place of the key that a strategy's fault names first; of the strategy if it is not given.
+Place place_in(const StrategySpec& spec, const std::string& complaint) {
+  Place place = spec.place;
+  std::size_t first = std::string::npos;
+  for (const auto& [key, at] : spec.key_places) {
+    const std::size_t found = complaint.find(key);
+    if (found >= first) continue;
+    first = found;
+    place = at;
+  }
+  return place;
+}
+
+const plant::ErrorModel& errors_of(const Scenario& scenario, const std::string& model) {
+  static const plant::ErrorModel kNone;
+  const auto found = scenario.errors.find(model);
+  return found == scenario.errors.end() ? kNone : found->second;
+}
+
+void add(MemoKey& key, const StrategySpec& spec) {
+  key.add(spec.entry->name);
+  key.add(spec.sign);
+  for (const ParameterSpec& parameter : spec.entry->parameters) {
+    key.add(spec.parameters.is_word(parameter.name));
+    if (spec.parameters.is_word(parameter.name)) {
+      key.add(spec.parameters.word(parameter.name));
+    } else {
+      key.add(spec.parameters.number(parameter.name));
+    }
+  }
+}
+
+void add(MemoKey& key, const plant::Stock& stock) {
+  key.add(stock.solids().size());
+  for (const plant::StockSolid& solid : stock.solids()) {
+    key.add(solid.index());
+    if (const auto* box = std::get_if<plant::StockBox>(&solid)) {
+      const auto& [from, to, turned] = *box;
+      key.add(from);
+      key.add(to);
+      key.add(turned);
+    } else {
+      const auto& [centre, radius, from, to] = std::get<plant::StockCylinder>(solid);
+      key.add(centre);
+      for (const double value : {radius, from, to}) key.add(value);
+    }
+  }
+}
+
+void add(MemoKey& key, const std::map<int, plant::Cutter>& cutters) {
+  key.add(cutters.size());
+  for (const auto& [number, cutter] : cutters) {
+    const auto& [radius, corner_radius, length, teeth, helix] = cutter;
+    key.add(number);
+    key.add(teeth);
+    for (const double value : {radius, corner_radius, length, helix}) key.add(value);
+  }
+}
+
+controllers::PathOptions path_options(const Scenario& scenario, const MachineSettings& machine) {
+  controllers::PathOptions options;
+  options.tolerance = machine.nc.path_tolerance;
+  options.rotary_tolerance = machine.nc.rotary_tolerance;
+  options.feed_override = scenario.program.feed_override;
+  options.block_time = machine.nc.block_time;
+  options.tolerance_share = machine.nc.tolerance_share;
+  return options;
+}
+
+}  // namespace
+
+CasePreparation::CasePreparation(const Scenario& scenario, const CaseSpec& spec,
+                                 PreparationCache& cache)
+    : scenario_(scenario),
+      spec_(spec),
+      machine_(scenario.machine_of(spec)),
+      start_(machine_.chain.layout.joints(machine_start(scenario, spec))),
+      cache_(cache) {}
+
+SharedProgram CasePreparation::program() const {
+  const controllers::ProgramSetup setup = program_setup(scenario_, spec_);
+  MemoKey key;
+  const auto shared = cache_.texts.shared(scenario_.program.shared_text);
+  key.add_shared(shared.get());
+  for (const auto& [name, text] : scenario_.program.subroutines) {
+    key.add(name);
+    key.add(text);
+  }
+  add(key, setup);
+  return cache_.programs.get(key, [&] {
+    std::vector<Fault> warnings;
+    MoveList moves = read_program(scenario_, spec_, &warnings);
+    refuse_unnumbered_tools(moves, scenario_.program.file);
+    InterpretedProgram out(std::move(moves), std::move(warnings), setup);
+    out.text = shared;
+    return out;
+  });
+}
+
+double CasePreparation::least_time(const InterpretedProgram& program) const {
+  return controllers::least_time(program.moves, machine_.chain.layout.words(start_),
+                                 path_options(scenario_, machine_));
+}
+
+SharedModel CasePreparation::model(const std::string& name) const {
+  const plant::ErrorModel& errors = errors_of(scenario_, name);
+  MemoKey key;
+  add(key, machine_.chain);
+  add(key, errors);
+  return cache_.models.get(key, [&] { return plant::VolumetricModel(machine_.chain, errors); });
+}
+
+SharedStrategy CasePreparation::strategy(const StrategySpec& spec,
+                                         const Eigen::Vector3d& tip) const {
+  const auto gain = [&](std::size_t j) {
+    return spec.entry->reads_gains ? machine_.nc.cascade[j].Kv
+                                   : std::numeric_limits<double>::quiet_NaN();
+  };
+  Joints Kv;
+  Kv << gain(0), gain(1), gain(2), gain(3), gain(4);
+  const Joints shift = machine_.chain.layout.joints(spec_.work_offset);
+  MemoKey key;
+  add(key, spec);
+  add(key, machine_.chain);
+  add(key, errors_of(scenario_, spec.model));
+  key.add(tip);
+  key.add(machine_.nc.lower);
+  key.add(machine_.nc.upper);
+  key.add(start_);
+  key.add(shift);
+  key.add(Kv);
+  return cache_.strategies.get(key, [&] {
+    return make(spec, {machine_.chain.layout, *model(spec.model), tip, machine_.nc.lower,
+                       machine_.nc.upper, start_, shift, Kv});
+  });
+}
+
+// A strategy knows the fault, but not the place of the key.
+SharedStrategy CasePreparation::make(const StrategySpec& spec,
+                                     const strategies::Belief& machine) const {
+  try {
+    return spec.entry->make(spec.parameters, spec.sign, machine);
+  } catch (const InputError& error) {
+    const std::string& why = error.faults().front().message;
+    throw InputError(place_in(spec, why),
+                     fmt::format("case {}: strategy {}: {}", spec_.name, spec.entry->name, why));
+  }
+}
+
+// A rewritten program is G-code for LinuxCNC, whatever it was before.
+controllers::ProgramSetup CasePreparation::setup_of_rewritten() const {
+  controllers::ProgramSetup setup = controllers::conversational::gcode_setup(
+      program_text(scenario_.program), program_setup(scenario_, spec_));
+  setup.reader = controllers::Reader::linuxcnc;
+  return setup;
+}
+
+std::shared_ptr<const RewrittenProgram> CasePreparation::rewritten(
+    const SharedMoves& moves, const SharedStrategy& strategy) const {
+  MemoKey key;
+  key.add_shared(moves.get());
+  key.add_shared(strategy.get());
+  key.add(header_of(scenario_, spec_));
+  add(key, program_setup(scenario_, spec_));
+  add(key, scenario_.machine.chain.layout);
+  return cache_.rewritten.get(key, [&] {
+    RewrittenText written =
+        through_text(rewrite(*strategy, moves->all()),
+                     {scenario_.program.file, spec_.name, header_of(scenario_, spec_),
+                      scenario_.machine.chain.layout, setup_of_rewritten()});
+    return RewrittenProgram{moves, strategy, std::move(written.moves), std::move(written.text)};
+  });
+}
+
+// Motion of the linear axes under TCP control.
+controllers::TipMotions CasePreparation::tip_motions(
+    const MoveList& moves, const InterpretedProgram& program,
+    const controllers::JointLimits& limits, const controllers::PathOptions& options) const {
+  if (program.first_tip_move() == nullptr) return {};
+  return controllers::tip_motions(moves, *tool_centre_point(machine_), program.tips, start_, limits,
+                                  options, scenario_.program.file);
+}
+
+// A strategy knows the line that it cannot rewrite, not the file.
+std::vector<Move> CasePreparation::rewrite(const strategies::Strategy& strategy,
+                                           const std::vector<Move>& moves) const {
+  try {
+    return strategy.rewrite(moves);
+  } catch (const InputError& error) {
+    const Fault& fault = error.faults().front();
+    throw InputError({scenario_.program.file, fault.place.line, 0},
+                     fmt::format("case {}: {}", spec_.name, fault.message));
+  }
+}
+
+SharedMotion CasePreparation::motion(const SharedMoves& moves,
+                                     const InterpretedProgram& program) const {
+  const controllers::JointLimits limits = {machine_.nc.v_max, machine_.nc.a_max, machine_.nc.j_max};
+  const controllers::PathOptions options = path_options(scenario_, machine_);
+  MemoKey key;
+  key.add_shared(moves.get());
+  add(key, machine_.chain.layout);
+  if (program.first_tip_move() != nullptr) add(key, machine_.chain);
+  key.add(start_);
+  key.add(machine_.nc.lower);
+  key.add(machine_.nc.upper);
+  add(key, limits);
+  add(key, options);
+  return cache_.motions.get(key, [&] { return plan(moves, program, limits, options); });
+}
+
+PlannedMotion CasePreparation::plan(const SharedMoves& moves, const InterpretedProgram& program,
+                                    const controllers::JointLimits& limits,
+                                    const controllers::PathOptions& options) const {
+  controllers::TipMotions tip = tip_motions(*moves, program, limits, options);
+  auto faults = controllers::travel_faults(*moves, machine_.chain.layout, start_, machine_.nc.lower,
+                                           machine_.nc.upper, scenario_.program.file, tip);
+  if (!faults.empty()) throw InputError(std::move(faults));
+  if (const auto slowed = controllers::slowed_inverse_time(*moves, machine_.chain.layout, start_,
+                                                           limits, options)) {
+    tip.slowed.push_back(*slowed);
+  }
+  double blocks = 0.0;
+  for (const Move& move : *moves) blocks += is_motion(move.kind) ? 1.0 : 0.0;
+  return PlannedMotion{
+      moves, controllers::plan(*moves, machine_.chain.layout, start_, limits, options, tip), blocks,
+      std::move(tip.slowed)};
+}
+
+SharedCutting CasePreparation::cutting(const SharedProgram& program) const {
+  if (!spec_.cutting) return nullptr;
+  const CuttingPlanInputs inputs = {program,
+                                    machine_.chain,
+                                    start_,
+                                    scenario_.program.work_offset + spec_.work_offset,
+                                    scenario_.stock,
+                                    scenario_.program.cutters,
+                                    scenario_.cutting->coefficients,
+                                    scenario_.program.file,
+                                    scenario_.cutting->place};
+  MemoKey key;
+  key.add_shared(program.get());
+  add(key, machine_.chain);
+  key.add(start_);
+  key.add(inputs.work_offset);
+  add(key, inputs.stock);
+  add(key, inputs.cutters);
+  for (const plant::NamedCoefficient& K : plant::kCuttingCoefficients) {
+    key.add(inputs.coefficients.*K.member);
+  }
+  return cache_.cuttings.get(key, [&] { return plan_cutting(inputs); });
+}
+
+double CasePreparation::distance_of_plan() const {
+  if (!scenario_.part) return 0.0;
+  const std::shared_ptr<const TriangleMesh>& mesh = scenario_.part->mesh;
+  MemoKey key;
+  key.add_shared(mesh.get());
+  for (const ProbeSpec& probe : scenario_.probes) {
+    for (const plant::ProbeTarget& target : probe.feature.targets) key.add(target.point);
+  }
+  return cache_.plan_distances
+      .get(key,
+           [&] {
+             return PlanDistance{mesh, largest_distance(scenario_.probes, *mesh)};
+           })
+      ->distance;
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,77 @@
+/// The steps that prepare a case, each of which asks the cache first.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "controllers/path/trajectory.h"
+#include "plant/geometry/volumetric.h"
+#include "sim/model/scenario.h"
+#include "sim/preparation/preparation_cache.h"
+#include "strategies/strategy.h"
+
+namespace servomill::sim {
+
+using SharedModel = std::shared_ptr<const plant::VolumetricModel>;
+using SharedProgram = std::shared_ptr<const InterpretedProgram>;
+using SharedStrategy = std::shared_ptr<const strategies::Strategy>;
+using SharedCutting = std::shared_ptr<const PlannedCutting>;
+using SharedMotion = std::shared_ptr<const PlannedMotion>;
+
+/// All steps throw InputError with what they find wrong.
+class CasePreparation {
+ public:
+  /// All must outlive this.
+  CasePreparation(const Scenario& scenario, const CaseSpec& spec, PreparationCache& cache);
+
+  /// Position (m, rad) from which the program starts.
+  const Joints& start() const { return start_; }
+
+  /// The original program as the NC reads it.
+  SharedProgram program() const;
+
+  /// Duration (s) of the program at its feeds alone: no plan is faster.
+  double least_time(const InterpretedProgram& program) const;
+
+  /// Model of the errors of that name; without a name, of a machine without errors.
+  SharedModel model(const std::string& name) const;
+
+  /// @param tip  p_ST (m) of the first tool that works
+  SharedStrategy strategy(const StrategySpec& spec, const Eigen::Vector3d& tip) const;
+
+  /// The program that a strategy makes of `moves`, as LinuxCNC reads its text.
+  std::shared_ptr<const RewrittenProgram> rewritten(const SharedMoves& moves,
+                                                    const SharedStrategy& strategy) const;
+
+  /// The planned motion along `moves`.
+  /// @param program  the original one
+  SharedMotion motion(const SharedMoves& moves, const InterpretedProgram& program) const;
+
+  /// The cutting force along the original program; nullptr: this case runs in air.
+  SharedCutting cutting(const SharedProgram& program) const;
+
+  /// The largest distance (m) of a nominal point from the part; 0 without a part.
+  double distance_of_plan() const;
+
+ private:
+  SharedStrategy make(const StrategySpec& spec, const strategies::Belief& machine) const;
+  controllers::ProgramSetup setup_of_rewritten() const;
+  controllers::TipMotions tip_motions(const MoveList& moves, const InterpretedProgram& program,
+                                      const controllers::JointLimits& limits,
+                                      const controllers::PathOptions& options) const;
+  std::vector<Move> rewrite(const strategies::Strategy& strategy,
+                            const std::vector<Move>& moves) const;
+  PlannedMotion plan(const SharedMoves& moves, const InterpretedProgram& program,
+                     const controllers::JointLimits& limits,
+                     const controllers::PathOptions& options) const;
+
+  const Scenario& scenario_;
+  const CaseSpec& spec_;
+  const MachineSettings& machine_;
+  Joints start_;
+  PreparationCache& cache_;
+};
+
+}  // namespace servomill::sim

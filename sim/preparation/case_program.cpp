@@ -1,0 +1,64 @@
+#include "sim/preparation/case_program.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "controllers/gcode/interpreter.h"
+#include "sim/input/subroutine_files.h"
+
+namespace servomill::sim {
+
+controllers::ProgramText program_text(const ProgramSpec& program) {
+  return controllers::ProgramText::of_shared_text(program.shared_text, program.file);
+}
+
+AxisWords machine_start(const Scenario& scenario, const CaseSpec& spec) {
+  return scenario.program.start + scenario.program.work_offset + spec.work_offset;
+}
+
+controllers::ProgramSetup program_setup(const Scenario& scenario, const CaseSpec& spec) {
+  controllers::ProgramSetup setup;
+  setup.parameters = scenario.program.parameters;
+  setup.work_offset[0] = scenario.program.work_offset + spec.work_offset;
+  setup.tools = scenario.program.tools;
+  setup.reader = scenario.program.reader;
+  setup.decimal_point = scenario.program.decimal_point;
+  setup.feed = scenario.program.first_feed;
+  setup.start = machine_start(scenario, spec);
+  setup.machine = tool_centre_point(scenario.machine_of(spec));
+  setup.subroutine_file = [texts = scenario.program.subroutines, file = scenario.program.file](
+                              const std::string& name) -> std::optional<controllers::ProgramText> {
+    const auto found = texts.find(name);
+    if (found == texts.end()) return std::nullopt;
+    return controllers::ProgramText::of_text(found->second, subroutine_file(file, name));
+  };
+  return setup;
+}
+
+std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(
+    const MachineSettings& machine) {
+  return std::make_shared<const controllers::ToolCentrePoint>(
+      machine.chain, machine.nc.lower, machine.nc.upper,
+      controllers::kGreatCircleShare * machine.nc.rotary_tolerance);
+}
+
+MoveList read_program(const Scenario& scenario, const CaseSpec& spec,
+                      std::vector<Fault>* warnings) {
+  const ProgramSpec& program = scenario.program;
+  try {
+    controllers::Interpreter interpreter(program_text(program), program_setup(scenario, spec));
+    MoveList moves = interpreter.rest_held();
+    if (warnings != nullptr) {
+      warnings->insert(warnings->end(), interpreter.warnings().begin(),
+                       interpreter.warnings().end());
+    }
+    return moves;
+  } catch (const InputError&) {  // stopped at the first fault; the user wants all of them
+    auto faults = controllers::check_program(program_text(program), program_setup(scenario, spec));
+    if (faults.empty()) throw;
+    throw InputError(std::move(faults));
+  }
+}
+
+}  // namespace servomill::sim
