@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <optional>
 
 #include "plant/cutting/cutting_force.h"
 #include "plant/cutting/engagement.h"
 #include "plant/cutting/removed_volume.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
-#include "sim/model/work_frame.h"
+#include "sim/preparation/tool_passes.h"
 
 namespace servomill::sim {
 namespace {
@@ -20,34 +18,14 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kCoarse = 2 * mm, kFinest = 0.25 * mm;  // between rows of the table
-constexpr double kChord = 0.05 * um;    // between the path and the straight steps that remove
-constexpr double kBehind = 10 * um;     // of a cutter, material that it meets is not yet removed
 constexpr double kRubbed = 20 * um;     // of material that a tool rubs, thickness not told
 constexpr double kTangent = 1 * um;     // over which the direction of feed is taken
 constexpr double kForceShare = 0.02;    // of the larger force, by which linear may be wrong,
 constexpr double kForceTol = 0.5;       // N, at least
 constexpr double kUsualChip = 50 * um;  // feed per tooth at which forces are compared
-constexpr int kFirstParts = 8;          // of a curved move
-constexpr int kMostHalvings = 12;
-constexpr double kOddShare =
-    0.381966;  // where whole turns in a step do not pass for a straight one
 constexpr std::size_t kMostWarnings = 5;
 
-// One move of the program with what turns in the spindle.
-struct Stage {
-  std::size_t piece;
-  int tool;
-  const plant::Cutter* cutter;  // nullptr: not known
-  double turns;                 // 1/s, of the spindle; 0: it stands
-  bool clockwise;
-  bool is_straight;
-  // where the removing steps end: shares of the piece, and positions of all passes up to there
-  std::vector<double> shares = {};
-  std::vector<std::size_t> counts = {};
-  Eigen::AlignedBox3d tips = {};  // in G
-};
-
-// Where a tool is deepest in material, beyond its flutes.
+// Deepest cut of a tool beyond its flutes, and its place.
 struct Shank {
   int line = 0;
   double flutes = 0.0, depth = 0.0;  // m; depth 0: nowhere
@@ -56,14 +34,10 @@ struct Shank {
 class Planner {
  public:
   explicit Planner(const CuttingPlanInputs& in)
-      : in_(in),
-        path_(in.program->path),
-        frame_(work_frame(in.chain, in.work_offset)),
-        Q_near_(in.start) {}
+      : in_(in), path_(in.program->path), passes_(in), stages_(passes_.stages()) {}
 
   PlannedCutting plan() {
-    find_stages();
-    const plant::RemovedVolume removed = remove();
+    const plant::RemovedVolume removed = passes_.remove();
     removed_ = &removed;
     for (const Stage& stage : stages_) add_rows(stage);
     if (!touches_) refuse_untouched();
@@ -79,112 +53,6 @@ class Planner {
   }
 
  private:
-  void find_stages() {
-    int tool = 0, direction = 0;
-    double speed = 0.0;
-    std::size_t piece = 0;
-    for (const Move& move : in_.program->moves) {
-      throw_if_interrupted();
-      if (move.kind == MoveKind::tool) tool = move.number;
-      if (move.kind == MoveKind::spindle) {
-        direction = move.direction;
-        speed = move.value;
-      }
-      if (!is_motion(move.kind)) continue;
-      const int in_spindle = tool != 0 ? tool : move.tool_offset;
-      const auto cutter = in_.cutters.find(in_spindle);
-      const auto p = path_.piece(piece);
-      const bool turns = (p.end - p.begin).tail<3>() != Vector3d::Zero() || p.is_great_circle;
-      stages_.push_back({piece++, in_spindle,
-                         cutter == in_.cutters.end() ? nullptr : &cutter->second,
-                         direction == 0 ? 0.0 : std::abs(speed) / (2.0 * std::numbers::pi),
-                         direction >= 0, move.kind != MoveKind::arc && !turns});
-    }
-  }
-
-  // Where the tool is, at a share of a piece.
-  plant::CutterPosition position(const Stage& stage, double share) {
-    const ProgramPath::Piece p = path_.piece(stage.piece);
-    const JointLayout& layout = in_.chain.layout;
-    const double length = p.s_end - p.s_begin;
-    // where s stands, the nearest joints choose the place
-    const Joints near = length > 0.0 ? Q_near_ : layout.joints(p.begin + share * (p.end - p.begin));
-    Q_near_ = path_.joints(stage.piece, p.s_begin + share * length, layout, near);
-    const ToolPose pose = plant::forward(in_.chain, Q_near_, in_.program->tips.at(p.tool_offset));
-    return {frame_.point(pose.p_WT), frame_.direction(pose.k_W).normalized()};
-  }
-
-  // Passes of the cutters over the whole program, in steps that are as good as straight.
-  plant::RemovedVolume remove() {
-    std::vector<plant::CutterPass> passes;
-    const plant::Cutter* before = nullptr;
-    std::size_t count = 0;
-    for (Stage& stage : stages_) {
-      throw_if_interrupted();
-      std::vector<plant::CutterPosition> positions = {position(stage, 0.0)};
-      stage.shares = {0.0};
-      const int parts = stage.is_straight ? 1 : kFirstParts;
-      for (int n = 1; n <= parts; ++n) {
-        throw_if_interrupted();
-        throw_if_interrupted();
-        const double end = static_cast<double>(n) / parts;
-        add_steps(stage, end, position(stage, end), positions, 0);
-      }
-      for (const auto& at : positions) stage.tips.extend(at.tip);
-      if (stage.cutter != nullptr) {
-        if (stage.cutter != before) passes.push_back({*stage.cutter, {}});
-        for (const auto& at : positions) {
-          stage.counts.push_back(++count);
-          passes.back().positions.push_back(at);
-        }
-      } else {
-        stage.counts.assign(stage.shares.size(), count);
-      }
-      before = stage.cutter;
-    }
-    return plant::RemovedVolume(passes);
-  }
-
-  // How far the cutter is from where a straight step would have it, at a share of it.
-  static double departure(const Stage& stage, const plant::CutterPosition& from,
-                          const plant::CutterPosition& to, const plant::CutterPosition& at,
-                          double share) {
-    const double reach = stage.cutter != nullptr ? stage.cutter->length : 0.0;
-    const Vector3d tip = at.tip - (from.tip + share * (to.tip - from.tip));
-    const Vector3d axis = at.axis - (from.axis + share * (to.axis - from.axis)).normalized();
-    return tip.norm() + reach * axis.norm();
-  }
-
-  void add_steps(Stage& stage, double end, const plant::CutterPosition& at_end,
-                 std::vector<plant::CutterPosition>& positions, int halvings) {
-    const plant::CutterPosition from = positions.back();
-    if (!stage.is_straight && halvings < kMostHalvings) {
-      const double begin = stage.shares.back();
-      const auto at_share = [&](double share) {
-        return position(stage, begin + share * (end - begin));
-      };
-      const plant::CutterPosition at = at_share(0.5);
-      if (departure(stage, from, at_end, at, 0.5) > kChord ||
-          departure(stage, from, at_end, at_share(kOddShare), kOddShare) > kChord) {
-        const double middle = 0.5 * (begin + end);
-        add_steps(stage, middle, at, positions, halvings + 1);
-        add_steps(stage, end, at_end, positions, halvings + 1);
-        return;
-      }
-    }
-    stage.shares.push_back(end);
-    positions.push_back(at_end);
-  }
-
-  // Positions up to the last one that lies well behind a place of the piece.
-  std::size_t positions_before(const Stage& stage, double share) const {
-    const ProgramPath::Piece p = path_.piece(stage.piece);
-    const double behind = share - 0.5 * kBehind / (p.s_end - p.s_begin);
-    const auto next = std::upper_bound(stage.shares.begin(), stage.shares.end(), behind);
-    const auto last = std::max<std::ptrdiff_t>(0, next - stage.shares.begin() - 1);
-    return stage.counts[static_cast<std::size_t>(last)];
-  }
-
   void add_rows(const Stage& stage) {
     const ProgramPath::Piece p = path_.piece(stage.piece);
     const double length = p.s_end - p.s_begin;
@@ -258,10 +126,11 @@ class Planner {
     const double at = std::max(share, std::min(0.5, kBehind / length));
     const double ahead = std::min(1.0, at + kTangent / length);
     const double behind = std::max(0.0, at - kTangent / length);
-    const plant::CutterPosition here = position(stage, at);
+    const plant::CutterPosition here = passes_.position(stage, at);
     const Vector3d tangent =
-        (position(stage, ahead).tip - position(stage, behind).tip) / ((ahead - behind) * length);
-    const std::size_t n = positions_before(stage, at);
+        (passes_.position(stage, ahead).tip - passes_.position(stage, behind).tip) /
+        ((ahead - behind) * length);
+    const std::size_t n = passes_.positions_before(stage, at);
     const plant::IsMaterial is_material = [&](const Vector3d& x) {
       return in_.stock.contains(x) && !removed_->contains(x, n);
     };
@@ -283,8 +152,8 @@ class Planner {
     const plant::CuttingForce force =
         plant::average_force(in_.coefficients, stage.cutter->teeth, frame.feed, arcs);
     row.chip = tangent.norm() / (stage.turns * stage.cutter->teeth);
-    row.shear = frame_.R_WG * frame.axes * force.shear;
-    row.edge = frame_.R_WG * frame.axes * force.edge;
+    row.shear = passes_.frame().R_WG * frame.axes * force.shear;
+    row.edge = passes_.frame().R_WG * frame.axes * force.edge;
     touches_ = meets_ = true;
     return row;
   }
@@ -296,7 +165,7 @@ class Planner {
     return at.axis.dot(farthest - at.tip);
   }
 
-  // Of a straight piece of a tool that looks for material, inside of finished walls.
+  // Radius of a straight piece of a tool that looks for material, inside of finished walls.
   static double body_radius(const plant::Cutter& cutter) {
     return std::max(cutter.radius - kRubbed, 0.5 * cutter.radius);
   }
@@ -395,9 +264,8 @@ class Planner {
 
   const CuttingPlanInputs& in_;
   const ProgramPath& path_;
-  PartFrame frame_;
-  Joints Q_near_;
-  std::vector<Stage> stages_;
+  ToolPasses passes_;
+  const std::vector<Stage>& stages_;
   const plant::RemovedVolume* removed_ = nullptr;
   std::vector<CuttingTable::Row> rows_;
   bool cut_before_ = false, meets_ = false, touches_ = false;
