@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "sim/sweep/sweep.h"
+#include "sim/sweep/run_sweep.h"
 
 namespace servomill::sim {
 

@@ -3,29 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <condition_variable>
-#include <deque>
-#include <mutex>
+#include <exception>
 #include <set>
-#include <thread>
+#include <string_view>
+#include <utility>
 
 #include "plant/vocabulary/interrupt.h"
 #include "sim/config/document.h"
 #include "sim/input/scenario_document.h"
 #include "sim/preparation/estimate.h"
-#include "sim/preparation/preparation_cache.h"
-#include "sim/system/background.h"
+#include "sim/run/run.h"
 
 namespace servomill::sim {
 namespace {
 
-constexpr auto kProgressPeriod = std::chrono::milliseconds(20);  // an interrupt waits for it, too
-constexpr std::uint64_t kProbes = 8;          // points tried before all are given up
-constexpr std::uint64_t kMostChecked = 256;   // points that `check` reads
-constexpr std::size_t kBatchesPerThread = 4;  // at least, so that threads end together
-constexpr std::size_t kWaitingPerThread = 2;  // batches that may wait to be written
+constexpr std::uint64_t kProbes = 8;         // points tried before all are given up
+constexpr std::uint64_t kMostChecked = 256;  // points that `check` reads
 
 // Values of these keys name files, which stand beside the scenario.
 bool names_a_file(const std::string& key) {
@@ -235,187 +228,6 @@ void Sweep::check() const {
     } catch (const InputError& error) {
       throw at_the_list(error, design().point(point));
     }
-  }
-}
-
-namespace {
-
-// Hands out batches of neighbours among the points that are to be run.
-class Todo {
- public:
-  Todo(const Selection& selection, const std::vector<bool>& done)
-      : selection_(selection), done_(done) {}
-
-  std::uint64_t count() const {
-    return selection_.size() -
-           static_cast<std::uint64_t>(std::count(done_.begin(), done_.end(), true));
-  }
-  std::vector<std::uint64_t> next(std::size_t most) {
-    const std::scoped_lock lock(mutex_);
-    std::vector<std::uint64_t> points;
-    for (; place_ < selection_.size() && points.size() < most; ++place_) {
-      if (!done_.empty() && done_[place_]) continue;
-      points.push_back(selection_.point(place_));
-    }
-    return points;
-  }
-
- private:
-  const Selection& selection_;
-  const std::vector<bool>& done_;
-  std::mutex mutex_;
-  std::uint64_t place_ = 0;
-};
-
-// Batches on their way from the threads that run them to the one that takes the results.
-class Results {
- public:
-  explicit Results(std::size_t most) : most_(most) {}
-
-  void put(std::vector<SweepPoint> batch) {
-    std::unique_lock lock(mutex_);
-    room_.wait(lock, [&] { return waiting_.size() < most_ || closed_; });
-    waiting_.push_back(std::move(batch));
-    news_.notify_one();
-  }
-  // Nothing, if there was none within some time.
-  std::optional<std::vector<SweepPoint>> take(std::chrono::milliseconds patience) {
-    std::unique_lock lock(mutex_);
-    if (!news_.wait_for(lock, patience, [&] { return !waiting_.empty(); })) return std::nullopt;
-    std::vector<SweepPoint> batch = std::move(waiting_.front());
-    waiting_.pop_front();
-    room_.notify_one();
-    return batch;
-  }
-  // Nobody takes any more: whoever waits for room goes on.
-  void close() {
-    const std::scoped_lock lock(mutex_);
-    closed_ = true;
-    room_.notify_all();
-  }
-
- private:
-  std::size_t most_;
-  std::mutex mutex_;
-  std::condition_variable room_, news_;
-  std::deque<std::vector<SweepPoint>> waiting_;
-  bool closed_ = false;
-};
-
-bool same_question(const ComparisonRow& a, const ComparisonRow& b) {
-  return a.case_name == b.case_name && a.quantity == b.quantity && a.axis == b.axis &&
-         a.statistic == b.statistic && a.sections == b.sections && a.unit == b.unit;
-}
-
-// Runs the points of one batch: those that can be read together, the others are refused.
-void run_points(const Sweep& sweep, const std::vector<std::uint64_t>& points, const StopFlag& stop,
-                std::atomic<float>& progress, const BatchControl& control, Results& results) {
-  std::vector<SweepPoint> refused, read;
-  std::vector<Scenario> scenarios;
-  for (const std::uint64_t point : points) {
-    SweepPoint one{point, sweep.design().point(point), {}};
-    try {
-      scenarios.push_back(sweep.at(point));
-      read.push_back(std::move(one));
-      continue;
-    } catch (const InputError& error) {
-      one.result = {PointStatus::refused, in_one_line(error), {}};
-    } catch (const Interrupted&) {
-      throw;
-    } catch (const std::exception& error) {
-      one.result = {PointStatus::failed, error.what(), {}};
-    }
-    refused.push_back(std::move(one));
-  }
-  if (!refused.empty()) results.put(std::move(refused));
-  const std::vector<ComparisonRow> wanted = sweep.quantities();
-  const auto tell = [&](std::vector<EndedPoint>&& ended) {
-    std::vector<SweepPoint> told;
-    for (EndedPoint& one : ended) {
-      const auto& rows = one.result.rows;
-      if (!rows.empty() &&
-          !std::equal(wanted.begin(), wanted.end(), rows.begin(), rows.end(), same_question)) {
-        one.result = {PointStatus::refused,
-                      "asks for other quantities or cases than the scenario without its sweep",
-                      {}};
-      }
-      told.push_back(std::move(read[one.place]));
-      told.back().result = std::move(one.result);
-    }
-    results.put(std::move(told));
-  };
-  run_batch(scenarios, stop, progress, tell, control);
-}
-
-}  // namespace
-
-void run_sweep(const Sweep& sweep, const Selection& selection, const std::vector<bool>& done,
-               const SweepControl& control) {
-  static const StopFlag kNever = false;
-  const StopFlag& stop = control.stop != nullptr ? *control.stop : kNever;
-  Todo todo(selection, done);
-  const std::uint64_t count = todo.count();
-  const auto threads = static_cast<unsigned>(std::clamp<std::uint64_t>(
-      thread_count(control.threads), 1, std::max<std::uint64_t>(count, 1)));
-  const std::size_t batch =
-      std::clamp<std::size_t>(count / (kBatchesPerThread * threads), 1, control.batch);
-
-  PreparationCache cache;
-  const BatchControl batch_control = {control.keep, &cache, rows_at_once(threads)};
-  // signals are large: those of few points wait
-  Results results(control.keep == Keep::series ? 1 : kWaitingPerThread * threads);
-  std::vector<std::atomic<float>> shares(threads);  // of the batches in work
-  std::atomic<std::uint64_t> ended = 0;             // points of batches that were
-  std::atomic<unsigned> running = threads;
-  std::atomic<bool> given_up = false;
-  std::vector<std::exception_ptr> failures(threads);
-  const auto work = [&](std::size_t thread) {
-    try {
-      while (!stop && !given_up) {
-        const std::vector<std::uint64_t> points = todo.next(batch);
-        if (points.empty()) break;
-        run_points(sweep, points, stop, shares[thread], batch_control, results);
-        shares[thread] = 0.0F;
-        ended += points.size();
-      }
-    } catch (const Interrupted&) {
-      given_up = true;  // what has ended is there
-    } catch (...) {
-      failures[thread] = std::current_exception();
-    }
-    --running;
-  };
-  const auto tell_progress = [&] {
-    if (!control.progress || count == 0) return;
-    double points = static_cast<double>(ended);
-    for (const auto& share : shares) points += static_cast<double>(batch) * share;
-    control.progress(std::min(1.0, points / static_cast<double>(count)));
-  };
-  std::vector<std::jthread> pool;
-  // should the results not be writable, no further batch begins
-  struct NoMore {
-    std::atomic<bool>& given_up;
-    Results& results;
-    ~NoMore() {
-      given_up = true;
-      results.close();
-    }
-  };
-  {
-    const NoMore no_more{given_up, results};
-    for (std::size_t t = 0; t < threads; ++t) pool.emplace_back(work, t);
-    for (bool last = false; !last;) {
-      last = running == 0;  // what they put before is there by now
-      while (auto points = results.take(last ? std::chrono::milliseconds(0) : kProgressPeriod)) {
-        if (control.batch_done) control.batch_done(std::move(*points));
-        tell_progress();
-      }
-      tell_progress();
-    }
-  }
-  pool.clear();
-  for (const std::exception_ptr& failure : failures) {
-    if (failure) std::rethrow_exception(failure);
   }
 }
 

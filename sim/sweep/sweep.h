@@ -2,17 +2,15 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "sim/evaluation/comparison.h"
 #include "sim/input/scenario_source.h"
 #include "sim/model/design.h"
 #include "sim/model/scenario.h"
 #include "sim/preparation/estimate.h"
-#include "sim/run/batch.h"
-#include "sim/sweep/selection.h"
 
 namespace servomill::sim {
 
@@ -59,33 +57,5 @@ class Sweep {
   ScenarioSource source_;
   Scenario base_;
 };
-
-/// One point that was run.
-struct SweepPoint {
-  std::uint64_t index = 0;          // counted from 0
-  std::vector<std::string> values;  // TOML, for each key
-  BatchResult result;
-};
-
-/// Most points that are run together.
-inline constexpr std::size_t kBatchPoints = 16;
-
-struct SweepControl {
-  unsigned threads = 0;              // 0: as many as there are cores
-  std::size_t batch = kBatchPoints;  // at least 1
-  const StopFlag* stop = nullptr;
-  Keep keep = Keep::comparison;
-  std::function<void(double)> progress;  // share done, 0 to 1; called from one thread
-  /// Points that ended, as soon and in the order in which they do; called from one thread. What it
-  /// throws ends the sweep.
-  std::function<void(std::vector<SweepPoint>&&)> batch_done;
-};
-
-/// Runs the points of a selection that are not done, in batches of neighbours. The result of a
-/// point depends neither on the batches nor on the number of threads. A fault at a point is its
-/// result.
-/// @param done  by place in the selection
-void run_sweep(const Sweep& sweep, const Selection& selection, const std::vector<bool>& done,
-               const SweepControl& control);
 
 }  // namespace servomill::sim

@@ -13,8 +13,8 @@
 #include "plant/vocabulary/simd.h"
 #include "sim/model/scenario.h"
 #include "sim/records/output_file.h"
+#include "sim/sweep/run_sweep.h"
 #include "sim/sweep/selection.h"
-#include "sim/sweep/sweep.h"
 #include "sim/sweep/table_columns.h"
 
 namespace servomill::sim {

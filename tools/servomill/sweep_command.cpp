@@ -10,6 +10,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/simd.h"
 #include "sim/sweep/point_series.h"
+#include "sim/sweep/run_sweep.h"
 #include "sim/sweep/sweep.h"
 #include "sim/sweep/table.h"
 #include "sim/sweep/table_csv.h"

@@ -8,7 +8,7 @@
 
 #include "plant/vocabulary/simd.h"
 #include "sim/evaluation/comparison.h"
-#include "sim/sweep/sweep.h"
+#include "sim/sweep/run_sweep.h"
 #include "sim/sweep/table.h"
 
 namespace servomill::tools {

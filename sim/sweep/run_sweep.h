@@ -1,0 +1,44 @@
+/// Runs the points of a sweep on several threads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sim/run/batch.h"
+#include "sim/sweep/selection.h"
+#include "sim/sweep/sweep.h"
+
+namespace servomill::sim {
+
+/// One point that was run.
+struct SweepPoint {
+  std::uint64_t index = 0;          // counted from 0
+  std::vector<std::string> values;  // TOML, for each key
+  BatchResult result;
+};
+
+/// Most points that are run together.
+inline constexpr std::size_t kBatchPoints = 16;
+
+struct SweepControl {
+  unsigned threads = 0;              // 0: as many as there are cores
+  std::size_t batch = kBatchPoints;  // at least 1
+  const StopFlag* stop = nullptr;
+  Keep keep = Keep::comparison;
+  std::function<void(double)> progress;  // share done, 0 to 1; called from one thread
+  /// Points that ended, as soon and in the order in which they do; called from one thread. What it
+  /// throws ends the sweep.
+  std::function<void(std::vector<SweepPoint>&&)> batch_done;
+};
+
+/// Runs the points of a selection that are not done, in batches of neighbours. The result of a
+/// point depends neither on the batches nor on the number of threads. A fault at a point is its
+/// result.
+/// @param done  by place in the selection
+void run_sweep(const Sweep& sweep, const Selection& selection, const std::vector<bool>& done,
+               const SweepControl& control);
+
+}  // namespace servomill::sim
