@@ -9,7 +9,9 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "strategies/compensation.h"
+#include "strategies/grid_table.h"
 #include "strategies/pose_compensation.h"
+#include "strategies/tabulate.h"
 
 namespace servomill::strategies {
 namespace {
@@ -120,66 +122,20 @@ const std::array<ParameterSpec, 15>& specs() {
   return kSpecs;
 }
 
-// Equidistant points of one axis.
-struct Line {
-  int joint = 0;
-  double first = 0.0;      // m
-  double spacing = 1.0;    // m
-  std::size_t points = 2;  // at least
-
-  double at(std::size_t i) const { return first + static_cast<double>(i) * spacing; }
-  double last() const { return at(points - 1); }
-};
-
-// Values at the points of one to three lines that cross; linear in each coordinate between the
-// corners of a cell, constant beyond the ends.
-struct Table {
-  std::vector<Line> lines;
-  std::vector<Eigen::Vector3d> value;  // m, of X, Y, Z; the first line's points are neighbours
-
-  Eigen::Vector3d at(const Joints& Q) const {
-    Eigen::Vector3d corner[1 << kLinearJoints];
-    const std::size_t axes = lines.size();
-    double share[kLinearJoints];  // of the cell, that has been passed
-    std::size_t base = 0, step[kLinearJoints], size = 1;
-    for (std::size_t a = 0; a < axes; ++a) {
-      const Line& line = lines[a];
-      const auto last = static_cast<double>(line.points - 1);
-      const double u = std::clamp((Q[line.joint] - line.first) / line.spacing, 0.0, last);
-      const auto i = std::min(static_cast<std::size_t>(u), line.points - 2);
-      share[a] = u - static_cast<double>(i);
-      base += i * size;
-      step[a] = size;
-      size *= line.points;
-    }
-    for (std::size_t c = 0; c < std::size_t{1} << axes; ++c) {
-      std::size_t place = base;
-      for (std::size_t a = 0; a < axes; ++a) place += (c >> a & 1U) * step[a];
-      corner[c] = value[place];
-    }
-    for (std::size_t a = axes; a-- > 0;) {  // from corners to the point, axis by axis
-      for (std::size_t c = 0; c < std::size_t{1} << a; ++c) {
-        corner[c] += share[a] * (corner[c + (std::size_t{1} << a)] - corner[c]);
-      }
-    }
-    return corner[0];
-  }
-};
-
 class Tables final : public SetPointPart {
  public:
-  Tables(const SetPointEntry& entry, const std::vector<Table>& tables)
+  Tables(const SetPointEntry& entry, const std::vector<GridTable>& tables)
       : entry_(entry), tables_(tables) {}
   SetPointEntry entry() const override { return entry_; }
   Joints offset(const Joints& Q_ref) const override {
     Joints sum = Joints::Zero();
-    for (const Table& table : tables_) sum.head<3>() += table.at(Q_ref);
+    for (const GridTable& table : tables_) sum.head<3>() += table.at(Q_ref);
     return sum;
   }
 
  private:
   SetPointEntry entry_;
-  const std::vector<Table>& tables_;
+  const std::vector<GridTable>& tables_;
 };
 
 // The error that the tables approximate.
@@ -208,21 +164,21 @@ constexpr double kAnySigma = 1.0;  // of rotary axes, which stand as programmed
 
 class CompensationTable final : public Strategy {
  public:
-  CompensationTable(const SetPointEntry& entry, std::vector<Table> tables, Sign sign,
+  CompensationTable(const SetPointEntry& entry, std::vector<GridTable> tables, Sign sign,
                     const Belief& belief)
       : entry_(entry), tables_(std::move(tables)), sign_(sign), belief_(belief) {}
   std::unique_ptr<SetPointPart> set_point() const override {
     return std::make_unique<Tables>(entry_, tables_);
   }
-  // What X, Y and Z cannot; lines, lattice and spacing left aside.
+  // Errors that X, Y and Z cannot compensate; points and spacing left aside.
   std::optional<Leftover> uncorrectable(const Joints& Q) const override {
     return strategies::uncorrectable(belief_, sign_, DisplacedAxes::linear, kAnySigma, Q);
   }
   std::vector<BeyondTable> beyond_tables(const Joints& Q) const override {
     constexpr double kRounding = 1e-9;  // m
     std::vector<BeyondTable> out;
-    for (const Table& table : tables_) {
-      for (const Line& line : table.lines) {
+    for (const GridTable& table : tables_) {
+      for (const GridLine& line : table.lines) {
         const double q = Q[line.joint];
         if (q < line.first - kRounding) out.push_back({line.joint, line.first});
         if (q > line.last() + kRounding) out.push_back({line.joint, line.last()});
@@ -233,7 +189,7 @@ class CompensationTable final : public Strategy {
 
  private:
   SetPointEntry entry_;
-  std::vector<Table> tables_;
+  std::vector<GridTable> tables_;
   Sign sign_;
   Belief belief_;
 };
@@ -265,86 +221,6 @@ bool is_power_of_two_spacing(double spacing) {
   return std::abs(exponent - std::round(exponent)) < 1e-9;
 }
 
-// "table over X", "lattice over X, Y, Z"
-std::string name_of(const std::vector<Line>& lines, const JointLayout& layout) {
-  std::string name;
-  for (const Line& line : lines) {
-    name += fmt::format("{}{}", name.empty() ? "" : ", ", layout.letter_of(line.joint));
-  }
-  return fmt::format("{} over {}", lines.size() == 1 ? "table" : "lattice", name);
-}
-
-// Refuses tables that the NC would refuse, by the names that its operator reads.
-void check_points(const std::vector<Line>& lines, const JointLayout& layout, const Parameters& p) {
-  constexpr double kLine = 256, kLattice = 25.0 * 25.0 * 25.0;
-  const double usual = lines.size() == 1 ? kLine : kLattice;
-  const double most = p.is_word("max_points") ? usual : p.number("max_points");
-  double all = 1.0;
-  std::string product;
-  for (const Line& line : lines) {
-    all *= static_cast<double>(line.points);
-    product += fmt::format("{}{}", product.empty() ? "" : " x ", line.points);
-  }
-  if (all <= most) return;
-  if (lines.size() > 1) product += fmt::format(" = {:.0f}", all);
-  throw InputError({}, fmt::format("{}: {} points; the NC accepts at most {} (max_points); use a "
-                                   "larger spacing_mm or from_mm and to_mm",
-                                   name_of(lines, layout), product, most));
-}
-
-// Calls f(point) for all points of the lines, (i, j, k) of each, the first line's first.
-template <class F>
-void for_all_points(const std::vector<Line>& lines, F f) {
-  std::array<std::size_t, kLinearJoints> point{};
-  for (std::size_t a = 0; a < lines.size();) {
-    f(point);
-    for (a = 0; a < lines.size() && ++point[a] == lines[a].points; ++a) point[a] = 0;
-  }
-}
-
-void check_slopes(const Table& table, const JointLayout& layout, double max_ratio) {
-  std::size_t n = 0;
-  for_all_points(table.lines, [&](const auto& point) {
-    std::size_t size = 1;
-    for (std::size_t a = 0; a < table.lines.size(); ++a) {
-      const Line& line = table.lines[a];
-      const std::size_t before = size;
-      size *= line.points;
-      if (point[a] == 0) continue;
-      const double ratio =
-          (table.value[n] - table.value[n - before]).cwiseAbs().maxCoeff() / line.spacing;
-      if (ratio <= max_ratio) continue;
-      const char axis = layout.letter_of(line.joint);
-      throw InputError({}, fmt::format("{}: slope {:.2f} um/mm at {} = {:.3f} mm; the NC accepts "
-                                       "at most {:.2f} um/mm (max_step_ratio)",
-                                       name_of(table.lines, layout), ratio / (um / mm), axis,
-                                       line.at(point[a] - 1) / mm, max_ratio / (um / mm)));
-    }
-    ++n;
-  });
-}
-
-Line line_of(const Belief& belief, const Parameters& p, int joint) {
-  Line line;
-  line.joint = joint;
-  line.spacing = p.number("spacing_mm");
-  line.first = p.is_word("from_mm") ? belief.lower[joint] : p.number("from_mm");
-  const double to = p.is_word("to_mm") ? belief.upper[joint] : p.number("to_mm");
-  const char axis = belief.layout.letter_of(joint);
-  if (!(to > line.first)) {
-    throw InputError({}, fmt::format("table over {}: from_mm = {:g} must be < to_mm = {:g}", axis,
-                                     line.first / mm, to / mm));
-  }
-  const double intervals = std::max(1.0, std::ceil((to - line.first) / line.spacing - 1e-9));
-  constexpr double kMostIntervals = 1e7;
-  if (intervals > kMostIntervals) {
-    throw InputError({}, fmt::format("table over {}: {:.3g} points are more than any NC holds",
-                                     axis, intervals));
-  }
-  line.points = static_cast<std::size_t>(intervals) + 1;
-  return line;
-}
-
 // Axes that a table over `joint` moves.
 Eigen::Vector3d moved_by(const std::string& output, int joint, const JointLayout& layout) {
   const Eigen::Vector3d own = Eigen::Vector3d::Unit(joint), all = Eigen::Vector3d::Ones();
@@ -355,29 +231,6 @@ Eigen::Vector3d moved_by(const std::string& output, int joint, const JointLayout
     if (layout.has(j) && layout.letter_of(j) == output[0]) return Eigen::Vector3d::Unit(j);
   }
   throw InputError({}, fmt::format("output = \"{}\"; the machine has no such axis", output));
-}
-
-// @param moved  axes that the table moves
-// @param from_reference  of which it holds the change from the reference position only
-Table tabulate(const Belief& belief, const Parameters& p, Sign sign, std::vector<Line> lines,
-               const Eigen::Vector3d& moved, const Eigen::Vector3d& from_reference) {
-  check_points(lines, belief.layout, p);
-  Table table;
-  table.lines = std::move(lines);
-  const Iterations iterations = iterations_of(p);
-  const auto wanted = [&](const Joints& Q) {
-    return set_point_displacement(belief, sign, iterations, Q);
-  };
-  Joints Q = belief.reference;
-  const Eigen::Vector3d base = from_reference.cwiseProduct(wanted(Q));
-  for_all_points(table.lines, [&](const auto& point) {
-    for (std::size_t a = 0; a < table.lines.size(); ++a) {
-      Q[table.lines[a].joint] = table.lines[a].at(point[a]);
-    }
-    table.value.push_back(moved.cwiseProduct(wanted(Q) - base));
-  });
-  check_slopes(table, belief.layout, p.number("max_step_ratio"));
-  return table;
 }
 
 SetPointEntry entry_of(const Parameters& p) {
@@ -392,6 +245,49 @@ SetPointEntry entry_of(const Parameters& p) {
 
 bool holds_error_at_reference(const Parameters& p) { return p.word("at_reference") == "error"; }
 
+// One line for each axis that tables run over.
+std::vector<GridLine> lines_of(const Tabulation& of) {
+  std::vector<GridLine> lines;
+  const std::string& axes = of.p.word("axis");
+  for (int joint = 0; joint < kLinearJoints; ++joint) {
+    if (!of.machine.layout.has(joint)) continue;
+    const char axis = of.machine.layout.letter_of(joint);
+    if (axes != "all" && axes.find(axis) == std::string::npos) continue;
+    lines.push_back(of.line(joint));
+  }
+  if (lines.empty() || (axes != "all" && lines.size() < axes.size())) {
+    throw InputError({}, fmt::format("axis = \"{}\"; the machine has no such axis", axes));
+  }
+  return lines;
+}
+
+std::vector<GridTable> tables_of(const Tabulation& of) {
+  std::vector<GridLine> lines = lines_of(of);
+  const std::string& output = of.p.word("output");
+  Eigen::Vector3d from_reference = Eigen::Vector3d::Zero();
+  if (of.p.word("at_reference") == "zero") from_reference.setOnes();
+  std::vector<GridTable> tables;
+  if (of.p.word("form") == "lattice") {
+    if (output == "own" || output == "others") {
+      throw InputError({},
+                       fmt::format("output = \"{}\" belongs to form = \"lines\"; a lattice runs "
+                                   "over several axes",
+                                   output));
+    }
+    const Eigen::Vector3d moved = moved_by(output, lines.front().joint, of.machine.layout);
+    tables.push_back(of.table(std::move(lines), moved, from_reference));
+  } else {
+    // The tables of several axes are summed: each holds its change from the reference position, and
+    // the first one that moves an axis the value there.
+    for (const GridLine& line : lines) {
+      const Eigen::Vector3d moved = moved_by(output, line.joint, of.machine.layout);
+      tables.push_back(of.table({line}, moved, from_reference));
+      from_reference = from_reference.cwiseMax(moved);
+    }
+  }
+  return tables;
+}
+
 std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& belief) {
   if (p.word("form") == "exact") {
     return std::make_unique<ExactTable>(entry_of(p), sign, iterations_of(p),
@@ -402,40 +298,8 @@ std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& bel
                                      "3.2768, 6.5536), or set grid = \"free\"",
                                      p.number("spacing_mm") / mm));
   }
-  std::vector<Line> lines;
-  const std::string& axes = p.word("axis");
-  for (int joint = 0; joint < kLinearJoints; ++joint) {
-    if (!belief.layout.has(joint)) continue;
-    const char axis = belief.layout.letter_of(joint);
-    if (axes != "all" && axes.find(axis) == std::string::npos) continue;
-    lines.push_back(line_of(belief, p, joint));
-  }
-  if (lines.empty() || (axes != "all" && lines.size() < axes.size())) {
-    throw InputError({}, fmt::format("axis = \"{}\"; the machine has no such axis", axes));
-  }
-  const std::string& output = p.word("output");
-  Eigen::Vector3d from_reference = Eigen::Vector3d::Zero();
-  if (p.word("at_reference") == "zero") from_reference.setOnes();
-  std::vector<Table> tables;
-  if (p.word("form") == "lattice") {
-    if (output == "own" || output == "others") {
-      throw InputError({},
-                       fmt::format("output = \"{}\" belongs to form = \"lines\"; a lattice runs "
-                                   "over several axes",
-                                   output));
-    }
-    const Eigen::Vector3d moved = moved_by(output, lines.front().joint, belief.layout);
-    tables.push_back(tabulate(belief, p, sign, std::move(lines), moved, from_reference));
-  } else {
-    // The tables of several axes are summed: each holds its change from the reference position, and
-    // the first one that moves an axis the value there.
-    for (const Line& line : lines) {
-      const Eigen::Vector3d moved = moved_by(output, line.joint, belief.layout);
-      tables.push_back(tabulate(belief, p, sign, {line}, moved, from_reference));
-      from_reference = from_reference.cwiseMax(moved);
-    }
-  }
-  return std::make_unique<CompensationTable>(entry_of(p), std::move(tables), sign, belief);
+  return std::make_unique<CompensationTable>(entry_of(p), tables_of({belief, p, sign}), sign,
+                                             belief);
 }
 
 }  // namespace

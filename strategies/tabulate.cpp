@@ -1,0 +1,112 @@
+#include "strategies/tabulate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+#include "strategies/compensation.h"
+#include "strategies/pose_compensation.h"
+
+namespace servomill::strategies {
+namespace {
+
+// "table over X", "lattice over X, Y, Z"
+std::string name_of(const std::vector<GridLine>& lines, const JointLayout& layout) {
+  std::string name;
+  for (const GridLine& line : lines) {
+    name += fmt::format("{}{}", name.empty() ? "" : ", ", layout.letter_of(line.joint));
+  }
+  return fmt::format("{} over {}", lines.size() == 1 ? "table" : "lattice", name);
+}
+
+// Refuses tables that the NC would refuse, by the names that its operator reads.
+void check_points(const std::vector<GridLine>& lines, const JointLayout& layout,
+                  const Parameters& p) {
+  constexpr double kLine = 256, kLattice = 25.0 * 25.0 * 25.0;
+  const double usual = lines.size() == 1 ? kLine : kLattice;
+  const double most = p.is_word("max_points") ? usual : p.number("max_points");
+  double all = 1.0;
+  std::string product;
+  for (const GridLine& line : lines) {
+    all *= static_cast<double>(line.points);
+    product += fmt::format("{}{}", product.empty() ? "" : " x ", line.points);
+  }
+  if (all <= most) return;
+  if (lines.size() > 1) product += fmt::format(" = {:.0f}", all);
+  throw InputError({}, fmt::format("{}: {} points; the NC accepts at most {} (max_points); use a "
+                                   "larger spacing_mm or from_mm and to_mm",
+                                   name_of(lines, layout), product, most));
+}
+
+void check_slopes(const GridTable& table, const JointLayout& layout, double max_ratio) {
+  std::size_t n = 0;
+  for_all_points(table.lines, [&](const auto& point) {
+    std::size_t size = 1;
+    for (std::size_t a = 0; a < table.lines.size(); ++a) {
+      const GridLine& line = table.lines[a];
+      const std::size_t before = size;
+      size *= line.points;
+      if (point[a] == 0) continue;
+      const double ratio =
+          (table.value[n] - table.value[n - before]).cwiseAbs().maxCoeff() / line.spacing;
+      if (ratio <= max_ratio) continue;
+      const char axis = layout.letter_of(line.joint);
+      throw InputError({}, fmt::format("{}: slope {:.2f} um/mm at {} = {:.3f} mm; the NC accepts "
+                                       "at most {:.2f} um/mm (max_step_ratio)",
+                                       name_of(table.lines, layout), ratio / (um / mm), axis,
+                                       line.at(point[a] - 1) / mm, max_ratio / (um / mm)));
+    }
+    ++n;
+  });
+}
+
+}  // namespace
+
+GridLine Tabulation::line(int joint) const {
+  GridLine line;
+  line.joint = joint;
+  line.spacing = p.number("spacing_mm");
+  line.first = p.is_word("from_mm") ? machine.lower[joint] : p.number("from_mm");
+  const double to = p.is_word("to_mm") ? machine.upper[joint] : p.number("to_mm");
+  const char axis = machine.layout.letter_of(joint);
+  if (!(to > line.first)) {
+    throw InputError({}, fmt::format("table over {}: from_mm = {:g} must be < to_mm = {:g}", axis,
+                                     line.first / mm, to / mm));
+  }
+  const double intervals = std::max(1.0, std::ceil((to - line.first) / line.spacing - 1e-9));
+  constexpr double kMostIntervals = 1e7;
+  if (intervals > kMostIntervals) {
+    throw InputError({}, fmt::format("table over {}: {:.3g} points are more than any NC holds",
+                                     axis, intervals));
+  }
+  line.points = static_cast<std::size_t>(intervals) + 1;
+  return line;
+}
+
+GridTable Tabulation::table(std::vector<GridLine> lines, const Eigen::Vector3d& moved,
+                            const Eigen::Vector3d& from_reference) const {
+  check_points(lines, machine.layout, p);
+  GridTable table;
+  table.lines = std::move(lines);
+  const Iterations iterations = iterations_of(p);
+  const auto wanted = [&](const Joints& Q) {
+    return set_point_displacement(machine, sign, iterations, Q);
+  };
+  Joints Q = machine.reference;
+  const Eigen::Vector3d base = from_reference.cwiseProduct(wanted(Q));
+  for_all_points(table.lines, [&](const auto& point) {
+    for (std::size_t a = 0; a < table.lines.size(); ++a) {
+      Q[table.lines[a].joint] = table.lines[a].at(point[a]);
+    }
+    table.value.push_back(moved.cwiseProduct(wanted(Q) - base));
+  });
+  check_slopes(table, machine.layout, p.number("max_step_ratio"));
+  return table;
+}
+
+}  // namespace servomill::strategies
