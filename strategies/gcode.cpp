@@ -8,13 +8,11 @@
 #include <cmath>
 #include <cstdint>
 
-#include "plant/kinematics/straight_tool_path.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
-#include "plant/vocabulary/move_curve.h"
-#include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
 #include "strategies/pose_compensation.h"
+#include "strategies/programmed_way.h"
 #include "strategies/straightening.h"
 
 namespace servomill::strategies {
@@ -74,65 +72,6 @@ struct RewriteParams {
   double tolerance_turn = 0.0;    // rad
   double max_block_turn = 0.0;    // rad
   Joints shift = Joints::Zero();  // m, rad; of the part since the program was rewritten
-};
-
-auto rotary(const Joints& Q) { return Q.tail<kJoints - kLinearJoints>(); }
-
-// The joints of the ideal machine on the way of one programmed move.
-class ProgrammedWay {
- public:
-  ProgrammedWay(const plant::InverseKinematics& inverse, const Eigen::Vector3d& p_ST,
-                const Joints& Q_begin, const Move& move)
-      : inverse_(inverse), p_ST_(p_ST), line_(move.line), control_(move.tool_control) {
-    if (control_ == ToolControl::work_plane) {
-      throw InputError({{}, line_, 0}, "moves in a tilted work plane cannot be rewritten");
-    }
-    AxisWords begin = layout().words(Q_begin);
-    Q_end_ = layout().joints(move.end_machine);
-    const ToolPose pose = plant::forward(inverse.chain(), Q_begin, p_ST);
-    if (controls_tip()) begin.head<3>() = pose.p_WT;
-    curve_ = MoveCurve(begin, move);
-    k_begin_ = pose.k_W;
-    k_end_ = move.tool_axis;
-    if (controls_tip()) Q_end_ = with_tip(move.end_machine.head<3>(), Q_end_);
-    turn_ = rotary(Joints(Q_end_ - Q_begin));
-  }
-
-  bool controls_tip() const { return control_ != ToolControl::none; }
-  bool turns_axis() const { return control_ == ToolControl::tool_axis; }
-  double length() const { return curve_.length(); }  // m, of X Y Z or of the tip
-  const Eigen::Vector2d& turn() const { return turn_; }
-  // rad, what the feed is of where the tip stands
-  double angle() const { return turns_axis() ? angle_between(k_begin_, k_end_) : turn_.norm(); }
-  const Joints& end() const { return Q_end_; }
-
-  // @param Q_near  joints on the way nearby
-  Joints at(double t, const Joints& Q_near) const {
-    if (t >= 1.0) return Q_end_;
-    const AxisWords words = curve_.at(t);
-    if (!controls_tip()) return layout().joints(words);
-    if (!turns_axis()) return with_tip(words.head<3>(), layout().joints(words));
-    const plant::StraightToolPath circle({Eigen::Vector3d::Zero(), k_begin_},
-                                         {Eigen::Vector3d::Zero(), k_end_});
-    return inverse_.nearest({words.head<3>(), circle.at(t).k_W}, p_ST_, Q_near).Q;
-  }
-
- private:
-  const JointLayout& layout() const { return inverse_.chain().layout; }
-  Joints with_tip(const Eigen::Vector3d& p_WT, const Joints& Q_rotary) const {
-    const auto Q = plant::inverse_fixed_rotary(inverse_.chain(), p_WT, Q_rotary, p_ST_);
-    if (!Q) throw InputError({{}, line_, 0}, "the linear axes cannot bring the tip there");
-    return *Q;
-  }
-
-  const plant::InverseKinematics& inverse_;
-  const Eigen::Vector3d& p_ST_;
-  int line_;
-  ToolControl control_;
-  MoveCurve curve_;
-  Eigen::Vector3d k_begin_, k_end_;
-  Joints Q_end_;
-  Eigen::Vector2d turn_;
 };
 
 // Displaces one programmed move after the other and appends the blocks that result.
