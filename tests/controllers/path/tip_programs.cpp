@@ -91,4 +91,27 @@ double distance_to_line(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
   return (p - a).cross((b - a).normalized()).norm();
 }
 
+std::vector<NamedMachine> machines() {
+  return {{"table", table_machine(), "A"}, {"head", head_machine(), "B"}};
+}
+
+Eigen::Vector3d tip_velocity(const Planned& p, const Trajectory::Sample& now) {
+  const Eigen::Vector3d p_ST(0.0, 0.0, -100.0 * mm);
+  return plant::jacobian(p.machine.chain, now.Q_ref, p_ST).J_pQ * now.dQ_ref;
+}
+
+void expect_within_joint_limits(const Planned& p, double step) {
+  constexpr double kLimitRounding = 1e-6;  // of a joint limit
+  const JointLimits& limits = p.machine.limits;
+  Joints v = Joints::Zero(), a = v, j = v;
+  p.sample(step, [&](const Trajectory::Sample& now, const ToolPose&) {
+    v = v.cwiseMax(now.dQ_ref.cwiseAbs());
+    a = a.cwiseMax(now.ddQ_ref.cwiseAbs());
+    j = j.cwiseMax(now.dddQ_ref.cwiseAbs());
+  });
+  EXPECT_LE(v.cwiseQuotient(limits.v).maxCoeff(), 1.0 + kLimitRounding);
+  EXPECT_LE(a.cwiseQuotient(limits.a).maxCoeff(), 1.0 + kLimitRounding);
+  EXPECT_LE(j.cwiseQuotient(limits.j).maxCoeff(), 1.0 + kLimitRounding);
+}
+
 }  // namespace servomill::controllers::test

@@ -35,6 +35,16 @@ TipMachine table_machine();
 /// `[w X' b Y Z C B t]`: head-head, the tilt axis 80 mm above the spindle nose.
 TipMachine head_machine();
 
+/// A machine and the word of the axis that tilts.
+struct NamedMachine {
+  const char* name;
+  TipMachine machine;
+  std::string tilt;
+};
+
+/// Both machines.
+std::vector<NamedMachine> machines();
+
 /// A program that was planned.
 struct Planned {
   TipMachine machine;
@@ -51,6 +61,12 @@ struct Planned {
   void sample_line(int line, double step,
                    const std::function<void(const Trajectory::Sample&, const ToolPose&)>& f) const;
 };
+
+/// Velocity (m/s) of the tip of tool H1 in the workpiece.
+Eigen::Vector3d tip_velocity(const Planned& p, const Trajectory::Sample& now);
+
+/// Expects that no joint exceeds its speed, acceleration and jerk at any `step` (s).
+void expect_within_joint_limits(const Planned& p, double step = 0.5e-3);
 
 /// Distance of p from the straight line through a and b.
 double distance_to_line(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
