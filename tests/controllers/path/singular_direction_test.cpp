@@ -26,7 +26,7 @@ std::string past_the_pole(double distance) {
       distance);
 }
 
-// What is said takes the feed as constant and the path as programmed: to change the feed takes
+// The message assumes a constant feed and the programmed path: to change the feed takes
 // jerk, too, which near the pole leaves less than half; rounding within the tolerance gains some.
 void expect_about(double share, double said) {
   constexpr double kLess = 0.3, kMore = 1.15;
@@ -95,7 +95,7 @@ TEST(TipMotion, ATurnThatIsTooFastIsNoSingularDirection) {
   }
 }
 
-// Where speeds suffice but accelerations do not.
+// Speeds suffice here, accelerations do not.
 TEST(SingularDirection, AccelerationsAndJerksSlowTheMoveAsSaid) {
   for (auto [name, machine, tilt] : machines()) {
     machine.limits.j *= 1e3;
