@@ -269,83 +269,6 @@ void DialectWriter::name_end(DialectMotion& motion, const AxisWords& target) con
   }
 }
 
-// Those that the move does not bring to a position of its own; rotary axes first.
-std::vector<Axis> DialectWriter::lost_axes(const Move& move, const Block& block) const {
-  std::vector<Axis> out, unnamed;
-  for (const bool is_of_linear : {false, true}) {
-    for (const Axis axis : kAllAxes) {
-      if (axis == Axis::Z || is_linear(axis) != is_of_linear || !walk_.has(axis)) continue;
-      const bool is_polar = is_of_linear && block.request != nullptr && block.request->has_polar();
-      const bool is_named =
-          is_polar || (block.request != nullptr && block.request->has(letter(axis)));
-      const bool is_given = is_named && !block.state->is_incremental;
-      if (!is_lost_[static_cast<std::size_t>(index_of(axis))] || is_given) continue;
-      (walk_.programmed(axis) ? out : unnamed).push_back(axis);
-    }
-  }
-  if (unnamed.empty()) return out;
-  std::string axes;
-  for (const Axis axis : unnamed)
-    axes += fmt::format("{}{}", axes.empty() ? "" : ", ", letter(axis));
-  throw InputError(
-      {file_, move.line},
-      fmt::format(
-          "moves Z while the position of {0} is not known: the tool change or stop may have "
-          "moved it, and no block names it; name {0} in a rapid between it and this line, "
-          "or the start with --start",
-          axes));
-}
-
-// A tool change or a stop leaves axes wherever macro or operator takes them: Z goes down where the
-// program has them.
-void DialectWriter::restate_axes(const Move& move, const Block& block) {
-  const bool is_cycle =
-      block.request != nullptr && controllers::is_canned_cycle(block.request->motion_code());
-  const bool names_Z = block.request != nullptr && block.request->has('Z') && !is_cycle;
-  const std::optional<double> before = walk_.programmed(Axis::Z);
-  const double end = move.end_machine[index_of(Axis::Z)];
-  const bool changes_Z = before && std::abs(end - *before) > kSamePlace;
-  if (!names_Z && !changes_Z) return;
-  // behind a stop, out of the workpiece first
-  if (height_ && end > *height_ + kSamePlace) return;
-  const std::vector<Axis> lost = lost_axes(move, block);
-  if (lost.empty()) return;
-  restate_spindle_and_coolant();
-  for (std::size_t begin = 0, end_of = 0; begin < lost.size(); begin = end_of) {
-    const auto is_like_first = [&](Axis axis) {
-      return is_linear(axis) == is_linear(lost[begin]) &&
-             system_[static_cast<std::size_t>(index_of(axis))] ==
-                 system_[static_cast<std::size_t>(index_of(lost[begin]))];
-    };
-    while (end_of < lost.size() && is_like_first(lost[end_of])) ++end_of;
-    write_restated({lost.begin() + static_cast<std::ptrdiff_t>(begin),
-                    lost.begin() + static_cast<std::ptrdiff_t>(end_of)});
-  }
-}
-
-// @param axes  written last in the same coordinates
-void DialectWriter::write_restated(const std::vector<Axis>& axes) {
-  const int system = system_[static_cast<std::size_t>(index_of(axes.front()))];
-  DialectMotion motion;
-  motion.is_rapid = true;
-  motion.is_place = system == 0;
-  motion.work_system = std::max(system, 1);
-  motion.tool = tool_;
-  AxisWords origin = AxisWords::Zero(), target = AxisWords::Zero();
-  if (!motion.is_place) origin = settings_.work_offset[static_cast<std::size_t>(system - 1)];
-  for (const Axis axis : axes) target[index_of(axis)] = *walk_.programmed(axis);
-  target = on_grid(target - origin);
-  for (const Axis axis : axes) {
-    const int i = index_of(axis);
-    const auto k = static_cast<std::size_t>(i);
-    motion.words.emplace_back(axis, target[i] / printer_->unit(axis));
-    walk_.restate(axis, target[i] + origin[i]);
-    out_known_[k] = true;
-    is_lost_[k] = false;
-  }
-  printer_->motion(motion);
-}
-
 void DialectWriter::write_step(const Block& block, const Step& given) {
   restate_spindle_and_coolant();
   DialectMotion motion = motion_of(block, given);
@@ -381,8 +304,7 @@ void DialectWriter::write_step(const Block& block, const Step& given) {
     for (const auto& [axis, value] : motion.words) {
       at[index_of(axis)] = target[index_of(axis)];
       const auto k = static_cast<std::size_t>(index_of(axis));
-      out_known_[k] = true;
-      is_lost_[k] = false;
+      find_axis(k);
       is_optional_[k] = writes_optional_;
       system_[k] = motion.is_place ? 0 : motion.work_system;
       if (axis == Axis::Z) has_optional_height_ = false;

@@ -259,7 +259,7 @@ void DialectWriter::write_stop(int number) {
   printer_->stop(number == 1 ? 1 : 0);
   if (coolant_ != 0 || skipped_coolant_ != 0) known_coolant_.reset();
   forget_positions();
-  is_lost_.fill(true);
+  lose_axes();
   if (number != kPalletStop) return;
   has_pallets_ = true;
   printer_->retract();
@@ -287,12 +287,24 @@ void DialectWriter::change_tool(int number, const Block& block) {
   forget_positions();
   height_.reset();
   has_optional_height_ = false;
-  is_lost_.fill(true);
+  lose_axes();
 }
 
 void DialectWriter::forget_positions() {
   walk_.forget_positions();
   out_known_.fill(false);
+}
+
+void DialectWriter::lose_axes() {
+  is_lost_.fill(true);
+  if (!writes_optional_) skipped_lost_.fill(true);
+}
+
+// A block names it.
+void DialectWriter::find_axis(std::size_t axis) {
+  out_known_[axis] = true;
+  is_lost_[axis] = false;
+  if (!writes_optional_) skipped_lost_[axis] = false;
 }
 
 void DialectWriter::restate_spindle_and_coolant() {

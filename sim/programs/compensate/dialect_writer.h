@@ -54,6 +54,8 @@ class DialectWriter final : public ProgramWriter {
   void write_end();
   void change_tool(int number, const Block& block);
   void forget_positions();
+  void lose_axes();
+  void find_axis(std::size_t axis);
   void restate_spindle_and_coolant();
   void restate_coolant();
   bool rises(double height) const;
@@ -62,7 +64,11 @@ class DialectWriter final : public ProgramWriter {
   void write_reference(const Move& move, const Block& block, bool is_last);
   void restate_axes(const Move& move, const Block& block);
   std::vector<Axis> lost_axes(const Move& move, const Block& block) const;
+  std::vector<Axis> unnamed_lost(const AxisFlags& is_lost, const Block& block) const;
+  void refuse_doubtful_axes(double height, const Block& block) const;
+  bool is_restated_with(Axis one, Axis other) const;
   void write_restated(const std::vector<Axis>& axes);
+  void write_rapid_back(const std::vector<Axis>& axes);
   void write_step(const Block& block, const Step& step);
   void write_path_mode(const Block& block, const Move& move);
   DialectMotion motion_of(const Block& block, const Step& step) const;
@@ -91,6 +97,7 @@ class DialectWriter final : public ProgramWriter {
   /// Axes that blocks with '/' have moved: where they are is the operator's word. Named, they are
   /// written.
   AxisFlags is_optional_{};
+  AxisFlags skipped_lost_{};              // is_lost_ without the blocks with '/'
   std::optional<double> skipped_height_;  // m: height_ without the blocks with '/'
   bool writes_optional_ = false;          // a block with '/'
   bool has_optional_height_ = false;      // those have moved Z

@@ -17,6 +17,9 @@ namespace {
 using controllers::Group;
 
 constexpr auto kZ = static_cast<std::size_t>(2);
+constexpr std::string_view kUnwrittenSlash =
+    "no manual was found that says how the control writes blocks with '/'; take the slash away, "
+    "or leave them out by --block-delete";
 
 // Whole parts of a program depend on these.
 bool decides_about_the_rest(const controllers::ExecutedBlock& block) {
@@ -39,8 +42,9 @@ bool acts(const controllers::ExecutedBlock& block) {
 
 void DialectWriter::refuse_slash(const Block& block) const {
   if (printer_->has_optional_blocks() && !decides_about_the_rest(block)) return;
-  const std::size_t column = block.text.find('/') + 1;
-  throw InputError({file_, block.line, static_cast<int>(column)}, std::string(kSlash));
+  const int column = static_cast<int>(block.text.find('/')) + 1;
+  throw InputError({file_, block.line, column},
+                   std::string(printer_->has_optional_blocks() ? kSlash : kUnwrittenSlash));
 }
 
 void DialectWriter::write_optional(const Block& block) {
@@ -48,7 +52,7 @@ void DialectWriter::write_optional(const Block& block) {
   refuse_slash(block);
   if (acts(block)) restate_spindle_and_coolant();
   printer_->end_smoothing();
-  const AxisFlags known = out_known_, lost = is_lost_, moved_before = is_optional_;
+  const AxisFlags known = out_known_, moved_before = is_optional_;
   const std::optional<double> height = has_optional_height_ ? skipped_height_ : height_;
   const int coolant = skipped_coolant_;
   const std::string path = path_;
@@ -65,7 +69,6 @@ void DialectWriter::write_optional(const Block& block) {
   for (std::size_t i = 0; i < known.size(); ++i) {
     is_optional_[i] = is_optional_[i] || moved_before[i];
     out_known_[i] = out_known_[i] && known[i];
-    is_lost_[i] = is_lost_[i] || lost[i];
   }
   skipped_coolant_ = coolant;
   has_optional_height_ = is_optional_[kZ];

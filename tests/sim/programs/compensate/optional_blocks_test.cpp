@@ -124,8 +124,10 @@ TEST(OptionalBlocks, AreRefusedWhereTheRestDependsOnThem) {
     EXPECT_EQ(why(dialect, "/#1 = 5\nG0 X20\nM2\n"), slash);
     EXPECT_EQ(why(dialect, "/M30\nG0 X20\nM2\n"), slash);
   }
-  // which sign the control writes was not found
-  EXPECT_EQ(why(Dialect::heidenhain, "/G0 X20\nG0 X30 Y30\nM2\n"), slash);
+  EXPECT_EQ(
+      why(Dialect::heidenhain, "/G0 X20\nG0 X30 Y30\nM2\n"),
+      "plate.ngc:6:1: error: no manual was found that says how the control writes blocks with "
+      "'/'; take the slash away, or leave them out by --block-delete");
 }
 
 TEST(OptionalBlocks, AreRefusedWhereTheyLeaveAnotherState) {
@@ -157,6 +159,42 @@ TEST(OptionalBlocks, AreRefusedWhereTheProgramCannotRunWithoutThem) {
       "controls refuse it; write F, or give the feed with --feed; that is with the blocks with '/' "
       "left out: " +
           kRemedy);
+}
+
+// Behind a stop X and Y are where the operator has left them. Blocks with '/' that name them have
+// no need of their names again.
+TEST(OptionalBlocks, NameLostAxesForTheBlocksWithASlashBehindThem) {
+  const std::string program =
+      "M0\nG0 Z25\n/X40 Y20\n/G1 Z-3 F200\n/X60\n/G0 Z25\nG0 X70 Y10\nG0 Z2\nM2\n";
+  EXPECT_EQ(without_numbers(written_for(Dialect::siemens, program)),
+            "M0\nM3\nZ25\n/X40 Y20\n/G1 X40 Y20 Z-3 F200\n/G1 X60 Y20 F200\n/G0 Z25\n"
+            "G0 X70 Y10\nZ2\n");
+  // with errors, a rapid to the programmed X and Y would leave the corrected ones
+  for (const Dialect dialect : {Dialect::fanuc, Dialect::siemens}) {
+    Trial trial = dialect_trial(dialect, kStart + program);
+    trial.request.error_file.clear();  // those of the machine file
+    EXPECT_NO_THROW(trial.run());
+  }
+}
+
+TEST(OptionalBlocks, MustNotBeAloneInNamingLostAxes) {
+  const std::string why_not =
+      "moves Z behind a tool change or stop that may have moved X, Y, and the operator decides "
+      "about "
+      "the blocks with '/' between them; name X, Y in a rapid without '/' between it and this "
+      "line; "
+      "that cannot be expressed for siemens";
+  EXPECT_EQ(why(Dialect::siemens, "M0\n/G0 X40 Y20\nG0 Z10\nM2\n"),
+            "plate.ngc:8: error: " + why_not);
+  // Z comes down from 30 or goes up from 20
+  EXPECT_EQ(why(Dialect::siemens, "/G0 Z30\nM0\nG0 Z25\nX40 Y20\nM2\n"),
+            "plate.ngc:8: error: " + why_not);
+}
+
+// Skipped, the stop has moved nothing.
+TEST(OptionalBlocks, BringBackWhatAStopWithASlashHasLost) {
+  EXPECT_EQ(without_numbers(written_for(Dialect::siemens, "/M0\nG0 Z10\nX40 Y20\nM2\n")),
+            "/M0\nM3\n/X10 Y10\nZ10\nX40 Y20\n");
 }
 
 // Up first, or down last: which, the operator decides.
