@@ -21,7 +21,8 @@ ToolControl Interpreter::Machine::tool_control_of(int code) const {
   if (code != 434 && code != kVectorControl) return ToolControl::none;
   const int column = request().of(Group::g_tool_length).column;
   if (setup_.machine && setup_.machine->number_of_rotary_axes() == 0) {
-    fail(column, fmt::format("{}: the machine has no rotary axis", code_name('G', code)));
+    fail(column, fmt::format("{}: the machine has no rotary axis{}", code_name('G', code),
+                             code == kVectorControl ? "" : "; write G43 H"));
   }
   if (code == 434) return ToolControl::rotary_axes;
   if (!setup_.machine) {

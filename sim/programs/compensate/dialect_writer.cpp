@@ -74,9 +74,9 @@ constexpr std::array kRemedies = {
     Remedy{false, 100, 100, "enter tools and their lengths at the control"},
     Remedy{false, 281, 301, "write G53 G0 where the program goes to the place that it stores"},
     Remedy{false, 431, 432, "write G43 H with the number of a length that the control has"},
-    Remedy{false, 434, 435, "post-process the program to positions of the axes"},
-    Remedy{false, 531, 531, "post-process the program to positions of the axes"},
-    Remedy{false, 682, 682, "post-process the program to positions of the axes"},
+    Remedy{false, 434, 435, kWriteAxes},
+    Remedy{false, 531, 531, kWriteAxes},
+    Remedy{false, 682, 682, kWriteAxes},
     Remedy{true, 520, 530, "adaptive feed and feed stop are inputs of LinuxCNC; take it out"},
     Remedy{true, 700, 730, "write the modes out that it saves or restores"},
 };

@@ -148,8 +148,9 @@ void Walk::refuse_unknown_height(const ExecutedBlock& block, const AxisFlags& wa
 void Walk::refuse(const Move& move, const AxisFlags& was_known) const {
   if (move.tool_control != ToolControl::none) {
     throw InputError({options_.file, move.line},
-                     "moves under tool-centre-point control or in a tilted work plane cannot be "
-                     "compensated; post the program to moves of the axes");
+                     fmt::format("moves under tool-centre-point control or in a tilted work plane "
+                                 "cannot be compensated; {}",
+                                 kWriteAxes));
   }
   std::string axes;
   for (const Axis axis : kAllAxes) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "controllers/gcode/interpreter.h"
@@ -108,6 +109,10 @@ class Walk {
   AxisFlags known_{}, named_{};  // named_: since the start, others since positions were lost
   Directions directions_{};      // of travel, as programmed
 };
+
+/// Remedy for programs that move the tip and not the axes.
+inline constexpr std::string_view kWriteAxes =
+    "let the CAM system, or servomill post, write positions of the axes";
 
 /// Whether O-words skip the line.
 bool is_skipped(const controllers::ExecutedBlock& block);

@@ -11,6 +11,7 @@
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/units.h"
 #include "sim/config/option_value.h"
+#include "sim/preparation/prepared_case.h"
 #include "sim/programs/compensate/compensate.h"
 #include "sim/programs/compensate/walk.h"
 
@@ -124,6 +125,7 @@ WorkKnowledge read_work_knowledge(const CompensateRequest& request,
   WorkKnowledge known;
   known.setup = program_setup(request.inputs, request.program_file);
   choose_reader(request.inputs, machine.nc, known.setup);
+  known.setup.machine = tool_centre_point(machine);
   if (!request.inputs.parameter_file.empty()) {
     for (int system = 1; system <= controllers::kWorkSystems; ++system) {
       known.work_systems.insert(system);

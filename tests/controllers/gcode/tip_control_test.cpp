@@ -266,9 +266,10 @@ TEST(TipControlErrors, Planes) {
 TEST(TipControlErrors, MachinesThatCannotTurn) {
   TipMachine three = table_machine();
   three.chain = plant::make_chain(plant::parse_structure("[w X' b Y Z t]"));
-  expect_gallery(three, {{"G43.4 H1", "1:1: error: G43.4: the machine has no rotary axis"},
-                         {"G43.5 H1", "1:1: error: G43.5: the machine has no rotary axis"},
-                         {"G68.2 J1\nG53.1", "2:1: error: G53.1: the machine has no rotary axis"}});
+  expect_gallery(three,
+                 {{"G43.4 H1", "1:1: error: G43.4: the machine has no rotary axis; write G43 H"},
+                  {"G43.5 H1", "1:1: error: G43.5: the machine has no rotary axis"},
+                  {"G68.2 J1\nG53.1", "2:1: error: G53.1: the machine has no rotary axis"}});
   TipMachine four = table_machine();
   four.chain = plant::make_chain(plant::parse_structure("[w A' X' b Y Z t]"));
   expect_gallery(four, {{"G43.5 H1\nG0 I0.6 K0.8",

@@ -357,5 +357,29 @@ TEST(Compensate, ReversalBeforeAnAxisHasMovedIsReported) {
             "mean of both is taken there, up to 5.0 um remain");
 }
 
+// The machine is known, turned or not: what is missing are positions of its axes.
+TEST(Compensate, RefusesMovesOfTheTip) {
+  const std::string program =
+      "G21 G90 G17 G54\nT1 M6\nS1000 M3\nG0 X10 Y10 A10 C0\nG43.4 H1 Z20\nG1 Z5 F300\nM2\n";
+  const std::string remedy = "let the CAM system, or servomill post, write positions of the axes";
+  Trial trial(program);
+  trial.request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/generic_trunnion_ac.toml";
+  trial.request.error_file = written("none.toml", kNoErrors);
+  trial.request.inputs.parameter_file.clear();
+  trial.request.work_offsets = {"X=0,Y=0,Z=-90,A=0,C=0"};
+  trial.request.retract_Z = 0.0;
+  trial.request.program_number = 7;
+  EXPECT_EQ(refusal(trial),
+            "part.ngc:5: error: moves under tool-centre-point control or in a tilted work plane "
+            "cannot be compensated; " +
+                remedy);
+  for (const Dialect dialect : {Dialect::fanuc, Dialect::siemens, Dialect::heidenhain}) {
+    trial.request.dialect = dialect;
+    EXPECT_EQ(refusal(trial),
+              fmt::format("part.ngc:5:1: error: G43.4 cannot be expressed for {}; {}",
+                          kDialects[static_cast<std::size_t>(dialect)], remedy));
+  }
+}
+
 }  // namespace
 }  // namespace servomill::sim::compensate_test
