@@ -18,7 +18,9 @@ struct KnownCode {
   Group group;
 };
 
-// Codes that are read. Numbers and groups: B-63944EN, list of preparatory functions (M).
+// Codes that are read. Numbers and groups: B-63944EN, list of preparatory functions (M). G69 and
+// G50 end rotation and scaling: B-63944EN-2/02 p. 211; G15 ends polar coordinates: Series 16/18-C,
+// operator's manual for machining centers, section 9.2.
 constexpr std::array kCodes = {
     KnownCode{0, Group::motion},         KnownCode{10, Group::motion},
     KnownCode{20, Group::motion},        KnownCode{30, Group::motion},
@@ -92,7 +94,8 @@ bool FanucMachine::is_switch() const {
 }
 
 // G50.1 ends the mirror image of the axes named, G52 of 0 their local coordinates in all of G54 ...
-// G59, G92.1 of 0 their shift by G92 (M).
+// G59, G92.1 of 0 their shift by G92 (M: none of Fanuc's manuals was found; G52 of 0 is so in those
+// of two controls that follow them, GSK 980MDc p. 61 and Mitsubishi M700V p. 531).
 void FanucMachine::run_switch() {
   if (block_->words.front().letter != 'G') fail("G5.1, G50.1, G52 and G92.1 begin their block");
   if (has(Group::contour)) return;

@@ -7,7 +7,7 @@
 /// [476] TNC 426 (280 476) user's manual: p. 192 M126, M94 (V)
 /// [472] TNC 426B (280 472) ISO: p. 122 M91, M92 (V)
 /// [410] TNC 410 user's manual: p. 79 CC, C, full circle, tolerance (V)
-/// [ISO] TNC 410, 426, 430 ISO: p. 159 M136, p. 164 M116 (V)
+/// [ISO] TNC 410, 426, 430 ISO: p. 159 M136, p. 164 M116, p. 169 M128 and its end by M129 (V)
 /// [530] iTNC 530 user's manual: p. 520 M126, MP7682; 340 49x-04 ISO: p. 290 M128 (V)
 /// [PIL] TNC 310 pilot: p. 8 pole, angle reference axes (V)
 /// [155] TNC 155: p. 15 functions at the start and at the end of a block (V)

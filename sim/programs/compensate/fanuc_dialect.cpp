@@ -40,6 +40,8 @@ class Fanuc final : public IsoDialect {
       if (!settings_.lacks(function)) put(std::move(line));
     };
     put("G17 G40 G64 G80 G90 G94");
+    // Ends of rotation and scaling: B-63944EN-2/02 p. 211; of polar coordinates: Series 16/18-C,
+    // operator's manual for machining centers, section 9.2; of the others none was found (M).
     put_unless("surface-speed", "G97");
     put("G69");
     put_unless("polar", "G15");

@@ -41,7 +41,7 @@ class Heidenhain final : public DialectPrinter {
     path_mode(PathMode::continuous, 0.0);
     if (settings_.has_rotary_axes) {
       put("PLANE RESET STAY");
-      put("M129");
+      put("M129");  // ends M128: TNC 410, 426, 430 ISO manual p. 169
       put("M127");  // rotary axes as programmed, not on the shorter path
       put("M117");  // F of rotary axes in deg/min: TNC 410, 426, 430 ISO manual p. 164
     }
@@ -211,10 +211,9 @@ class Heidenhain final : public DialectPrinter {
     }
     if (!settings_.preset) assume("the active preset is G54");
     // No manual was found that describes how these end; scaling: TNC 410 p. 186, TNC 620 p. 256
-    assume(
-        settings_.has_rotary_axes
-            ? "CYCL DEF 7, 8, 10, PLANE RESET and M129 end shift, mirror image, rotation and tilt"
-            : "CYCL DEF 7, 8 and 10 end shift, mirror image and rotation");
+    assume(settings_.has_rotary_axes
+               ? "CYCL DEF 7, 8, 10 and PLANE RESET end shift, mirror image, rotation and tilt"
+               : "CYCL DEF 7, 8 and 10 end shift, mirror image and rotation");
     if (!tool_) {
       throw Unsayable{
           "moves before a tool is called; the control takes axis and length of the tool called: "
