@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "controllers/conversational/conversational.h"
+#include "controllers/gcode/macro/macro_program.h"
 #include "controllers/gcode/parser.h"
 #include "plant/vocabulary/input_error.h"
 
@@ -15,6 +16,7 @@ std::set<std::string> called_subroutines(ProgramText text) {
   if (conversational::is_conversational(text, Reader::any)) {
     return conversational::called_programs(std::move(text));
   }
+  if (macro::is_macro_program(text, Reader::any)) return macro::called_programs(std::move(text));
   std::set<std::string> names;
   Parser parser;
   Block block;

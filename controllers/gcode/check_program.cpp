@@ -7,6 +7,7 @@
 #include "controllers/conversational/conversational.h"
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/line_reader.h"
+#include "controllers/gcode/macro/macro_program.h"
 #include "controllers/gcode/program_text.h"
 #include "controllers/gcode/request.h"
 
@@ -63,7 +64,9 @@ std::vector<Fault> syntax_faults(ProgramText& text, const ProgramSetup& setup) {
 std::vector<Fault> check_program(ProgramText text, ProgramSetup setup,
                                  std::vector<Fault>* warnings) {
   std::vector<Fault> faults;
-  if (!conversational::is_conversational(text, setup.reader)) faults = syntax_faults(text, setup);
+  const bool is_gcode = !conversational::is_conversational(text, setup.reader) &&
+                        !macro::is_macro_program(text, setup.reader);
+  if (is_gcode) faults = syntax_faults(text, setup);
   const std::string file = text.file();
   try {
     Interpreter interpreter(std::move(text), std::move(setup));

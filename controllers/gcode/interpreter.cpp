@@ -11,6 +11,7 @@
 
 #include "controllers/conversational/conversational.h"
 #include "controllers/gcode/interpreter_machine.h"
+#include "controllers/gcode/macro/macro_program.h"
 #include "controllers/gcode/message_text.h"
 #include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/units.h"
@@ -94,8 +95,15 @@ ReadingOptions Interpreter::Machine::reading_options() {
 }
 
 const PossibleReaders* Interpreter::Machine::possible_readers() {
-  if (texts_.front().lines.is_generated()) return nullptr;
-  if (!possible_readers_) possible_readers_.emplace(texts_.front().lines, *setup_at_start_);
+  if (possible_readers_) return &*possible_readers_;
+  const ProgramText& lines = texts_.front().lines;
+  if (lines.is_generated()) {
+    const std::optional<ProgramText> written = lines.source()->written();
+    if (!written) return nullptr;
+    possible_readers_.emplace(*written, *setup_at_start_);
+  } else {
+    possible_readers_.emplace(lines, *setup_at_start_);
+  }
   return &*possible_readers_;
 }
 
@@ -109,6 +117,15 @@ void Interpreter::Machine::store_setup_offset(int system) {
   if (setup_.work_rotation[k] != 0.0) {
     parameters_.set(parameter::work_rotation(system), setup_.work_rotation[k] / deg);
   }
+}
+
+int Interpreter::Machine::integer(char letter, double tolerance) const {
+  const double value = request_[letter];
+  const double nearest = std::round(value);
+  if (!(std::abs(value - nearest) <= tolerance) || std::abs(nearest) > 1e9) {
+    fail_at(letter, fmt::format("{}{}; must be an integer", letter, value));
+  }
+  return static_cast<int>(nearest);
 }
 
 // ---------------------------------------------------------------- speed, feed, tool and the like
@@ -267,7 +284,17 @@ Interpreter::Interpreter(ProgramText text, ProgramSetup setup) {
   if (conversational::is_conversational(text, setup.reader)) {
     text = conversational::as_gcode(std::move(text), setup);
   }
+  if (!macro::is_macro_program(text, setup.reader)) {
+    machine_ = std::make_unique<Machine>(std::move(text), std::move(setup));
+    return;
+  }
+  const auto control = std::make_shared<macro::ControlState>();
+  text = macro::as_gcode(std::move(text), setup, control);
   machine_ = std::make_unique<Machine>(std::move(text), std::move(setup));
+  control->system_variable = [machine = machine_.get()](long number, std::string& why) {
+    return machine->macro_variable(number, why);
+  };
+  control->is_inch = [machine = machine_.get()] { return machine->is_inch(); };
 }
 Interpreter::Interpreter(std::string text, std::string file, ProgramSetup setup)
     : Interpreter(ProgramText::of_text(std::move(text), std::move(file)), std::move(setup)) {}

@@ -85,7 +85,15 @@ class Interpreter::Machine {
 
   const std::vector<Fault>& warnings() const { return warnings_; }
 
+  /// A system variable of Fanuc and Haas, behind the block that ran last.
+  /// @param why  set to the reason where a simulation cannot know it
+  std::optional<double> macro_variable(long number, std::string& why) const;
+  bool is_inch() const { return state_.unit != mm; }
+
  private:
+  std::optional<double> macro_position(long number, std::string& why) const;
+  std::optional<double> macro_mode(long number, std::string& why) const;
+
   struct Text {
     ProgramText lines;
     PercentRule percent;
@@ -130,6 +138,9 @@ class Interpreter::Machine {
   const ProgramText& text() const { return texts_[text_].lines; }
   const std::string& file() const { return text().file(); }
   int line() const { return text().number(); }
+  bool is_of_other_language() const {
+    return text().is_generated() && !text().source()->is_of_control();
+  }
   [[noreturn]] void fail(int column, std::string message) const {
     throw InputError({file(), line(), column}, std::move(message));
   }

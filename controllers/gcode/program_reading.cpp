@@ -31,7 +31,7 @@ bool Interpreter::Machine::read_block() {
     for (Fault& one : source.take_warnings()) warnings_.push_back(std::move(one));
   }
   if (!is_there) return end_of_text(), true;
-  if (is_generated) return read_generated_line(), true;
+  if (is_of_other_language()) return read_generated_line(), true;
   if (is_blank(line_)) return true;
   if (flow_.jumps > 0) ++flow_.lines;
   with_place_of_fault([this] { flow_.skip_to ? read_skipped_line() : read_executed_line(); });
@@ -44,9 +44,14 @@ void Interpreter::Machine::with_place_of_fault(const Action& action) {
   try {
     action();
   } catch (const InputError& error) {
-    if (flow_.calls.empty() && !is_rewritten_) throw;
+    const LineSource* source = text().source();
+    if (flow_.calls.empty() && !is_rewritten_ && source == nullptr) throw;
     Fault fault = error.faults().front();
     if (is_rewritten_) fault.place.column = original_column(fault.place.column);
+    if (source != nullptr) {
+      fault.place.column = source->original_column(fault.place.column);
+      fault.message += source->call_stack();
+    }
     if (!flow_.calls.empty()) fault.message += call_stack();
     throw InputError({fault});
   }
@@ -168,6 +173,7 @@ int Interpreter::Machine::original_column(int column) const {
 
 void Interpreter::Machine::warn(int column, std::string message) {
   if (is_rewritten_) column = original_column(column);
+  if (text().is_generated()) column = text().source()->original_column(column);
   warnings_.push_back({{file(), line(), column}, std::move(message)});
 }
 
@@ -215,7 +221,8 @@ void Interpreter::Machine::saw_percent() {
     if (!has_rule(setup_.reader, ReaderRule::percent_at_end) || flow_.skip_to || text_ != 0) {
       fail(1, std::string(kMisplacedPercent));
     }
-    if (setup_.reader == Reader::any && has_more_words()) fail(1, std::string(kPercentInside));
+    const bool may_go_on = setup_.reader == Reader::any && !text().is_generated();
+    if (may_go_on && has_more_words()) fail(1, std::string(kPercentInside));
     return run_end(ReaderRule::percent_at_end);
   }
   if (meaning != Percent::end) return;
@@ -341,12 +348,13 @@ std::optional<ExecutedBlock> Interpreter::Machine::next_block() {
   ExecutedBlock out;
   out.call_depth = static_cast<int>(flow_.calls.size());
   read_block();
+  if (text().is_generated()) out.call_depth += text().source()->call_depth();
   out.text = line_;
   out.moves = out_;
   out.file = &texts_[read_from].lines.file();
   const bool is_generated = texts_[read_from].lines.is_generated();  // many lines of one block
   out.line = is_generated ? texts_[read_from].lines.number() : here_.mark.line + 1;
-  out.is_repeated = out.line + (is_generated ? 1 : 0) <= texts_[read_from].last_line;
+  out.is_repeated = out.line + (is_of_other_language() ? 1 : 0) <= texts_[read_from].last_line;
   texts_[read_from].last_line = std::max(texts_[read_from].last_line, out.line);
   out.state = &state_;
   if (block_.pieces.empty()) return out;
@@ -383,15 +391,6 @@ void Interpreter::Machine::assign_parameters() {
     if (system_name(name)) fail(a.column, fmt::format("parameter #<{}> is read-only", name));
     parameters_.set(name, new_numbers_[i].second);
   }
-}
-
-int Interpreter::Machine::integer(char letter, double tolerance) const {
-  const double value = request_[letter];
-  const double nearest = std::round(value);
-  if (!(std::abs(value - nearest) <= tolerance) || std::abs(nearest) > 1e9) {
-    fail_at(letter, fmt::format("{}{}; must be an integer", letter, value));
-  }
-  return static_cast<int>(nearest);
 }
 
 }  // namespace servomill::controllers

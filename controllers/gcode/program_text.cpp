@@ -41,6 +41,8 @@ struct ProgramText::Reader {
   bool has_failed() const { return !text && std::ferror(file.get()) != 0; }
 };
 
+std::optional<ProgramText> LineSource::written() const { return std::nullopt; }
+
 ProgramText::ProgramText() = default;
 ProgramText::ProgramText(ProgramText&&) noexcept = default;
 ProgramText& ProgramText::operator=(ProgramText&&) noexcept = default;

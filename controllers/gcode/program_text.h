@@ -12,6 +12,8 @@
 
 namespace servomill::controllers {
 
+class ProgramText;
+
 /// Writes the lines of a program in another language as lines in G-code.
 class LineSource {
  public:
@@ -22,6 +24,15 @@ class LineSource {
   virtual bool next(std::string& line, Place& place) = 0;
   /// Warnings since the last call.
   virtual std::vector<Fault> take_warnings() = 0;
+  /// True for blocks of a control, which its rules apply to; false for lines as LinuxCNC has them.
+  virtual bool is_of_control() const { return false; }
+  /// Column in the program as written of one in the line that came last.
+  virtual int original_column(int column) const { return column; }
+  /// Programs that call each other: how many, and "; in O9010, called in part.nc:12".
+  virtual int call_depth() const { return 0; }
+  virtual std::string call_stack() const { return {}; }
+  /// The program as written, from its first line.
+  virtual std::optional<ProgramText> written() const;
 };
 
 inline bool is_blank(std::string_view line) {
@@ -64,6 +75,8 @@ class ProgramText {
   const std::string& file() const { return file_; }
   /// True for lines of a `LineSource`.
   bool is_generated() const { return source_ != nullptr; }
+  /// That source, or nullptr.
+  const LineSource* source() const { return source_.get(); }
   /// Column of the block that the line handed out last comes from; 0: of its own.
   int column() const { return column_; }
   std::vector<Fault> take_warnings() {

@@ -156,6 +156,24 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
     {circular_pocket, "G12 and G13 with I",
      "read as a full circle of radius I about the position, from its +X side", "Mach", kMach,
      "Using Mach3Mill, G12 and G13 (circular pocket); from memory"},
+    {macro_statement, "variables, IF, GOTO and WHILE of custom macro B",
+     "run as the control runs them: a variable that is not set is vacant, and its word left out",
+     "Fanuc, Haas", kFanuc | kHaas,
+     "Haas 96-8000, June 1999, p. 365 to 376; Fanuc B-63944EN, custom macro, from memory, "
+     "B-63324EN/03 p. 619 (numbers are double precision)"},
+    {variable_increment, "a variable or an expression in the word of a length or an angle",
+     "rounded to 0.001 mm, 0.0001 inch or 0.001 degrees", "Fanuc, Haas", kFanuc | kHaas,
+     "Haas 96-8000, June 1999, p. 374 (three places, four in inches); Fanuc B-63944EN, variables "
+     "(least input increment), from memory"},
+    {macro_call, "G65", "read as a call of the program P with its words as variables",
+     "Fanuc, Haas", kFanuc | kHaas,
+     "Fanuc B-63684EN/01 p. 278 (arguments I and II); Haas 96-8000, June 1999, p. 365"},
+    {modal_macro_call, "G66 and G67",
+     "read as a call of the program P behind each block that moves", "Fanuc", kFanuc | kHaas,
+     "Fanuc B-63944EN, modal call, from memory; Mitsubishi M700V, Programming manual, 13.5"},
+    {macro_output, "POPEN, DPRNT, BPRNT, PCLOS, and values for outputs and timers",
+     "without effect on motion", "Fanuc, Haas", kFanuc | kHaas,
+     "Fanuc B-63944EN, external output commands, from memory"},
 });
 
 constexpr bool is_in_order() {

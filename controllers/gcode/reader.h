@@ -71,6 +71,11 @@ enum class ReaderRule : std::uint8_t {
   rapid_at_start,
   centre_off_plane,
   circular_pocket,
+  macro_statement,
+  variable_increment,
+  macro_call,
+  modal_macro_call,
+  macro_output,
   count
 };
 

@@ -34,6 +34,12 @@ enum class WordDifference : std::uint8_t {
   decimal_point,
   scale_factor,
   circular_pocket,
+  common_variable,
+  angle_range,
+  remainder,
+  variable_dwell,
+  argument_point,
+  return_block,
   count
 };
 

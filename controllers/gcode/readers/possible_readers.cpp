@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "controllers/gcode/macro/macro_program.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 
@@ -47,7 +48,14 @@ int stop_of(Reader reader, ProgramText text, ProgramSetup setup) {
 }  // namespace
 
 PossibleReaders::PossibleReaders(const ProgramText& text, const ProgramSetup& setup) {
+  ProgramText again = text.again();
+  const int macro_line = macro::first_macro_line(again);
   for (const Control& control : kControls) {
+    const bool has_macros = control.reader == Reader::fanuc || control.reader == Reader::haas;
+    if (macro_line > 0 && !has_macros) {
+      stops_.push_back({std::string(control.name), macro_line});
+      continue;
+    }
     const int line = stop_of(control.reader, text.again(), setup);
     if (line == 0) {
       possible_ |= bit(control.reader);

@@ -103,6 +103,24 @@ const std::vector<Example>& examples() {
        "G12 I4. F300.\nM2\n",
        "p.nc:1:1",
        {"F300\nG1 X4\nG2 I-4\nG1 X0\nM2\n", ""}},
+      {common_variable, "IF[#100EQ#0]GOTO9\nG0 X1.\nN9 M2\n", "p.nc:1:4", {"M2\n", ""}},
+      {angle_range,
+       "#1=ATAN[-1.]/[1.]\nIF[#1LT0]GOTO9\nG0 A#1\nN9 M2\n",
+       "p.nc:1:4",
+       {"G0 A315\nM2\n", ""}},
+      {remainder,
+       "#1=-7. MOD 3.\nIF[#1LT-5]GOTO9\nG0 X#1\nN9 M2\n",
+       "p.nc:1:8",
+       {"G0 X-1\nM2\n", ""}},
+      {variable_dwell,
+       "#1=500\nIF[#1LT0]GOTO9\nG4 P#1\nN9 M2\n",
+       "p.nc:3:4",
+       {"G4 P0.5\nM2\n", ""}},
+      {argument_point, "G65 P1 X10\nM2\nO1\nG0 X#24\nM99\n", "p.nc:1:8", {}},
+      {return_block,
+       "M98 P100\nG0 Y9.\nN5 M2\nO100\nM99 P5\nG0 X9.\nIF[1EQ1]GOTO5\nN5 M99\n",
+       "p.nc:5:1",
+       {"M2\n", "G0 Y9\nM2\n"}},
   };
   return all;
 }
@@ -122,8 +140,10 @@ TEST(WordDifferences, AreRefusedWithBothReadings) {
     // lengths are in millimetres unless a control that counts increments is chosen
     const bool is_of_fanuc = one.difference == WordDifference::decimal_point;
     const Reader reader = is_of_fanuc ? Reader::fanuc : Reader::any;
+    const bool is_called = one.difference == WordDifference::return_block;
+    const std::string stack = is_called ? "; in O100, called in p.nc:1" : "";
     EXPECT_EQ(moves_of(one.program, setup_for(reader, DecimalPoint::unset)),
-              one.place + ": error: " + both_readings(one.difference));
+              one.place + ": error: " + both_readings(one.difference) + stack);
   }
 }
 
@@ -132,6 +152,7 @@ TEST(WordDifferences, AReaderHasOneOfThem) {
     for (const Reader reader : {Reader::fanuc, Reader::haas, Reader::mach, Reader::grbl}) {
       if (one.difference == WordDifference::decimal_point ||
           one.difference == WordDifference::dwell_increments ||
+          one.difference == WordDifference::argument_point ||
           one.difference == WordDifference::override_codes) {
         continue;
       }

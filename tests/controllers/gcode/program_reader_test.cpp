@@ -176,6 +176,18 @@ const std::vector<Example>& examples() {
       {ReaderRule::home_with_motion, "G0 G92 X1.\nX2.\nM2\n", "G92 X1\nG0 X2\nM2\n", "p.nc:1:1"},
       {ReaderRule::rotation, "G68 X0. Y0. R90.\nG0 X1. Y0.\nG69\nM2\n", "G0 X0 Y1\nM2\n",
        "p.nc:1:1"},
+      {ReaderRule::macro_statement, "IF[1EQ1]GOTO9\nG0 X9.\nN9 G0 X1.\nM2\n", "G0 X1\nM2\n",
+       "p.nc:1:1"},
+      {ReaderRule::variable_increment,
+       "G0 X[POW[1.1,4]]\nM2\n",
+       "G0 X1.464\nM2\n",
+       "p.nc:1:4",
+       {},
+       Reader::fanuc},
+      {ReaderRule::macro_call, "G65 P10\nM2\nO10\nG0 X1.\nM99\n", "G0 X1\nM2\n", "p.nc:1:1"},
+      {ReaderRule::modal_macro_call, "G66 P10\nG0 X1.\nM2\nO10\nY1.\nM99\n", "G0 X1\nY1\nM2\n",
+       "p.nc:1:1"},
+      {ReaderRule::macro_output, "POPEN\nG0 X1.\nM2\n", "G0 X1\nM2\n", "p.nc:1:1"},
   };
   return all;
 }

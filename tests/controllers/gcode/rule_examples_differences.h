@@ -107,6 +107,23 @@ inline std::vector<DifferenceExample> difference_examples() {
        "R 25.4 0 0 | R 25.4 0 0 a1 b0 c0", "helmancnc.com, Haas address codes", increments},
       {scale_factor, 1, Reader::fanuc, "G51 X0. Y0. Z0. P2000\nG0 X1.\nG50\nX1.\nM2\n",
        "R 2 0 0 | R 1 0 0", "Fanuc B-63682EN/01 p. 117"},
+      {common_variable, 0, Reader::fanuc, "#5=#100\nIF[#5NE#0]GOTO9\nG0 X1.\nN9 M2\n", "R 1 0 0",
+       fanuc},
+      {angle_range, 0, Reader::fanuc, "#1=ATAN[-1.]/[1.]\n#2=ASIN[-1.]\nG0 A#1 B#2\nM2\n",
+       "R 0 0 0 a315 b270 c0", fanuc},
+      {remainder, 0, Reader::fanuc, "#1=-7. MOD 3.\n#2=7.6 MOD 3.\nG0 X#1 Y#2\nM2\n", "R -1 2 0",
+       "Fanuc B-64304EN, from memory"},
+      {variable_dwell, 0, Reader::fanuc, "#1=500\nG4 P#1\nM2\n", "W 0.5", fanuc},
+      {argument_point, 0, Reader::fanuc, "G65 P1 X10 S3\nM2\nO1\nG0 X#24 Y#19\nM99\n", "R 10 3 0",
+       "Fanuc B-63684EN/01 p. 278"},
+      {argument_point, 1, Reader::fanuc, "G65 P1 X10 S3\nM2\nO1\nG0 X#24 Y#19\nM99\n", "R 0.01 3 0",
+       "Fanuc B-63684EN/01 p. 278", increments},
+      {return_block, 0, Reader::fanuc,
+       "#1=1.\nM98 P100\nG0 X9.\nN5 G0 Y1.\nM2\nO100\nG0 X#1\nM99 P5\n", "R 1 0 0 | R 1 1 0",
+       "Fanuc B-64124EN/01, subprogram, from memory"},
+      {return_block, 1, Reader::haas,
+       "#1=0\nM98 P100\nG0 Y9.\nM2\nO100\nN5 #1=#1+1.\nG0 X#1\nIF[#1EQ2]GOTO6\nM99 P5\nN6 M99\n",
+       "R 1 0 0 | R 2 0 0 | R 2 9 0", "Haas 96-8000, June 1999, p. 376"},
   };
 }
 

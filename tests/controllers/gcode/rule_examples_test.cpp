@@ -11,6 +11,7 @@
 #include "rule_examples_differences.h"
 #include "rule_examples_frames.h"
 #include "rule_examples_lines.h"
+#include "rule_examples_macros.h"
 #include "rule_examples_motion.h"
 
 namespace servomill::controllers {
@@ -19,7 +20,7 @@ namespace {
 std::vector<RuleExample> rule_examples() {
   std::vector<RuleExample> all;
   for (const auto& family : {line_examples(), motion_examples(), cycle_examples(),
-                             offset_examples(), frame_examples()}) {
+                             offset_examples(), frame_examples(), macro_examples()}) {
     all.insert(all.end(), family.begin(), family.end());
   }
   return all;

@@ -1,0 +1,180 @@
+// Statements of custom macro B: assignments, branches and loops.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "controllers/gcode/macro/macro_source.h"
+#include "controllers/gcode/number_text.h"
+
+namespace servomill::controllers::macro {
+
+void MacroSource::run_statement(Statement statement, std::size_t begin) {
+  switch (statement) {
+    case Statement::blank:
+      return emit_as_written();
+    case Statement::percent:
+      return percent();
+    case Statement::program_number:
+      return program_number();
+    case Statement::words:
+      return read_words_of_line();
+    case Statement::output:
+      return reading_.apply(ReaderRule::macro_output, here(static_cast<int>(begin) + 1));
+    default:
+      break;
+  }
+  reading_.apply(ReaderRule::macro_statement, here(static_cast<int>(begin) + 1));
+  if (line_.is_optional) {
+    reading_.warn(here(1),
+                  "a macro statement that the operator may skip runs as if the switch is "
+                  "off; --block-delete leaves it out");
+  }
+  switch (statement) {
+    case Statement::assignment:
+      return assignment(begin);
+    case Statement::if_:
+      return condition(begin);
+    case Statement::while_:
+      return while_line(begin);
+    case Statement::do_:
+      loop_of_line();
+      return;
+    case Statement::end:
+      return end_of_loop();
+    default:
+      return go_to(begin);
+  }
+}
+
+void MacroSource::nothing_behind(const Cursor& cursor) {
+  if (cursor.at_end()) return;
+  refuse(cursor.column(),
+         fmt::format("unexpected '{}' behind a macro statement, which stands in a block of "
+                     "its own",
+                     cursor.peek()));
+}
+
+void MacroSource::assignment(std::size_t begin) {
+  Expression expression(line_.body, begin, context());
+  Cursor& cursor = expression.cursor();
+  cursor.accept("#");
+  const long number = expression.variable_number();
+  if (!cursor.accept("=")) refuse(cursor.column(), "'=' expected behind a variable");
+  const MacroValue value = expression.assigned_value();
+  nothing_behind(cursor);
+  const Place place = here(static_cast<int>(begin) + 1);
+  if (variables_.is_of_system(number)) return write_system_variable(number, value, place);
+  variables_.write(number, value, place);
+}
+
+void MacroSource::write_system_variable(long number, MacroValue value, const Place& place) {
+  if (number == 3000) {
+    reading_.fail(
+        place, fmt::format("the program stops itself with an alarm (#3000={}){}{}",
+                           value.value_or(0.0), line_.comment.empty() ? "" : ": ", line_.comment));
+  }
+  if (number == 3006) return stop_with_message();
+  const bool is_without_effect =
+      (number >= 3001 && number <= 3004) || (number >= 1100 && number <= 1139);
+  if (is_without_effect) return reading_.apply(ReaderRule::macro_output, place);
+  const std::string_view name = system_variable_name(number);
+  std::string_view remedy = "what it changes is not simulated";
+  if (name == "a work offset") remedy = "set it with G10 L2";
+  if (name == "a tool offset")
+    remedy = "give it in the tool table (--tools), and take the line out";
+  reading_.fail(place, fmt::format("#{} is {} and is not set from here: {}", number,
+                                   name.empty() ? "a variable of the control" : name, remedy));
+}
+
+void MacroSource::stop_with_message() {
+  more_.push_back("M0");
+  if (!line_.comment.empty()) return emit("(MSG," + comment_text(line_.comment) + ")");
+}
+
+void MacroSource::condition(std::size_t begin) {
+  Expression expression(line_.body, begin, context());
+  Cursor& cursor = expression.cursor();
+  cursor.accept("IF");
+  const bool holds = expression.condition();
+  const std::size_t at = cursor.at();
+  const Statement then = statement_at(line_.body, at);
+  if (then == Statement::go_to) {
+    if (holds) go_to(at);
+    return;
+  }
+  if (!cursor.accept("THEN")) refuse(cursor.column(), "GOTO or THEN expected behind IF[...]");
+  const Statement statement = statement_at(line_.body, cursor.at());
+  const bool is_macro = statement == Statement::assignment || statement == Statement::go_to ||
+                        statement == Statement::output || statement == Statement::if_;
+  if (!is_macro) refuse(cursor.column(), "a macro statement is expected behind THEN");
+  if (holds) run_statement(statement, cursor.at());
+}
+
+const Loop& MacroSource::loop_of_line() {
+  const Loop* loop = places().loop_from(text().number());
+  if (loop == nullptr) refuse(static_cast<int>(line_.begin) + 1, "DO begins no loop here");
+  if (!loop->fault.empty()) refuse(static_cast<int>(line_.begin) + 1, loop->fault);
+  return *loop;
+}
+
+void MacroSource::while_line(std::size_t begin) {
+  Expression expression(line_.body, begin, context());
+  Cursor& cursor = expression.cursor();
+  cursor.accept("WHILE");
+  const bool holds = expression.condition();
+  if (!cursor.accept("DO")) refuse(cursor.column(), "DO and its number expected behind WHILE[...]");
+  std::uint64_t number = 0;
+  cursor.take_digits(number);
+  nothing_behind(cursor);
+  const Loop& loop = loop_of_line();
+  if (!holds) text().go_to(loop.behind);
+}
+
+void MacroSource::end_of_loop() {
+  const Loop* loop = places().loop_to(text().number());
+  if (loop == nullptr) {
+    refuse(static_cast<int>(line_.begin) + 1, "END without the DO of its number before it");
+  }
+  if (!loop->fault.empty()) refuse(static_cast<int>(line_.begin) + 1, loop->fault);
+  count_jump();
+  text().go_to(loop->begin);
+}
+
+void MacroSource::go_to(std::size_t begin) {
+  Expression expression(line_.body, begin, context());
+  Cursor& cursor = expression.cursor();
+  cursor.accept("GOTO");
+  const int column = cursor.column();
+  const MacroValue number = expression.word_value();
+  nothing_behind(cursor);
+  if (!number || *number < 0.0 || *number > 99'999'999.0) {
+    refuse(column, "GOTO needs the number of a block");
+  }
+  jump(std::lround(*number), column);
+}
+
+void MacroSource::jump(long number, int column) {
+  const int from = text().number();
+  const auto mark = places().block(number);
+  if (!mark) refuse(column, fmt::format("there is no block N{} in this program", number));
+  if (const Loop* loop = places().loop_entered(from, mark->line + 1)) {
+    refuse(column, fmt::format("N{} is within the loop DO{} of line {}: no jump leads into a loop",
+                               number, loop->number, loop->begin_line));
+  }
+  count_jump();
+  text().go_to(*mark);
+}
+
+// Called where the program turns back or calls. Long bodies count for more, so that an endless
+// program is stopped in seconds, whatever it does.
+void MacroSource::count_jump() {
+  constexpr long kLinesOfATurn = 10;
+  if (++jumps_ <= most_jumps_ && lines_ <= kLinesOfATurn * most_jumps_) return;
+  has_ended_ = true;
+  refuse(static_cast<int>(line_.begin) + 1,
+         fmt::format("{} jumps, turns of loops and calls, {} lines; the program seems endless",
+                     jumps_, lines_));
+}
+
+}  // namespace servomill::controllers::macro

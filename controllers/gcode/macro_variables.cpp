@@ -1,0 +1,84 @@
+// System variables of Fanuc and Haas that a simulation knows.
+// Source: Fanuc B-63944EN, custom macro, system variables; Haas Mill operator's manual, macro
+// variables; both from memory. Where the two differ each reader has its own.
+#include <array>
+
+#include "controllers/gcode/interpreter_machine.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr long kEnd = 5001, kMachine = 5021, kCurrent = 5041, kExternalOffset = 5201,
+               kLastOffset = 5326;
+
+}  // namespace
+
+// Lengths in the unit in force.
+std::optional<double> Interpreter::Machine::macro_position(long number, std::string& why) const {
+  const long first = number < kMachine ? kEnd : number < kCurrent ? kMachine : kCurrent;
+  const long axis = number - first;
+  if (axis >= kAxisWords) {
+    why = "there is no such axis";
+    return std::nullopt;
+  }
+  const Axis one = axis_at(static_cast<int>(axis));
+  const bool needs_length = one == Axis::Z || first == kMachine;
+  if (needs_length && (state_.is_height_unknown || state_.is_length_unknown)) {
+    why = "it depends on the length of the tool, which is unknown; pass a tool table with --tools";
+    return std::nullopt;
+  }
+  if (first != kEnd && state_.compensation.is_on) {
+    why = "cutter compensation is on: it is not known yet; G40 first";
+    return std::nullopt;
+  }
+  if (first == kCurrent && state_.tool_offset != AxisWords::Zero()) {
+    why = "controls differ in whether the tool length is in it; read #5001 and up";
+    return std::nullopt;
+  }
+  const AxisWords at = first == kMachine ? machine_now(0) : state_.programmed();
+  return at[axis] / unit_of(one);
+}
+
+std::optional<double> Interpreter::Machine::macro_mode(long number, std::string& why) const {
+  const auto code = [](double value) { return std::optional<double>(value); };
+  const bool is_fanuc = setup_.reader == Reader::fanuc, is_haas = setup_.reader == Reader::haas;
+  if (number == 4001 && state_.motion <= 30) return code(state_.motion / 10);
+  if (number == 4002) return code(19 - state_.normal_axis);
+  if (number == 4003) return code(state_.is_incremental ? 91 : 90);
+  if (number == 4005) {
+    constexpr std::array kModes = {93, 94, 95};
+    const int mode = state_.feed_mode == FeedMode::inverse_time       ? 0
+                     : state_.feed_mode == FeedMode::units_per_minute ? 1
+                                                                      : 2;
+    return code(kModes[static_cast<std::size_t>(mode)]);
+  }
+  if (number == 4006) return code(is_inch() ? 20 : 21);
+  if (number == 4007 && !state_.compensation.is_on) return code(40);
+  if (number == 4007) return code(state_.compensation.cutter.is_left ? 41 : 42);
+  if (number == 4109 && state_.feed_linear > 0.0) return code(feed_in_force());
+  if (number == 4119) return code(state_.spindle_speed / rpm);
+  if (number == 4120 && state_.selected_tool >= 0) return code(state_.selected_tool);
+  if (number == 4012 || number == 4014) {
+    if ((number == 4014 && is_fanuc) || (number == 4012 && is_haas)) {
+      if (state_.work_system <= 6) return code(53 + state_.work_system);
+    } else {
+      why = "the work system is #4014 (Fanuc) or #4012 (Haas); choose with --reader";
+    }
+  }
+  if (why.empty()) why = "it is not kept here";
+  return std::nullopt;
+}
+
+std::optional<double> Interpreter::Machine::macro_variable(long number, std::string& why) const {
+  if (number >= kEnd && number < kCurrent + 20) return macro_position(number, why);
+  if (number >= 4001 && number < 4200) return macro_mode(number, why);
+  const long axis = (number - kExternalOffset) % 20;
+  const bool is_offset = number >= kExternalOffset + 20 && number <= kLastOffset;
+  if (is_offset && axis < kAxisWords) {
+    const double value = parameters_.get(static_cast<int>(number));
+    return axis < 3 ? value * mm / state_.unit : value;
+  }
+  return std::nullopt;
+}
+
+}  // namespace servomill::controllers

@@ -1,0 +1,198 @@
+// Custom macro B: what is refused, with its place, and what a simulation knows of the control. The
+// moves of programs are in rule_examples_macros.h.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "controllers/gcode/called_subroutines.h"
+#include "controllers/gcode/interpreter.h"
+#include "rule_examples.h"
+
+namespace servomill::controllers::macro_test {
+
+// moves, or the refusal
+std::string run(const std::string& program, Reader reader = Reader::fanuc,
+                const Given& given = {}) {
+  return read(program, reader, given).moves;
+}
+
+std::string refusal(const std::string& program, Reader reader = Reader::fanuc) {
+  const std::string out = run(program, reader);
+  const std::string begin = "p.nc:";
+  return out.starts_with(begin) ? out.substr(begin.size()) : "no refusal: " + out;
+}
+
+TEST(Macro, NothingIsReadInSilenceThatIsNoMacroB) {
+  EXPECT_EQ(refusal("#1=2**3\nM2\n"), "1:6: error: a value is expected here");
+  EXPECT_EQ(refusal("#1=5. X1.\nM2\n"),
+            "1:7: error: unexpected 'X' behind a macro statement, which stands in a block of its "
+            "own");
+  EXPECT_EQ(refusal("G0 X#1+5.\nM2\n"),
+            "1:7: error: unexpected '+': an expression of several terms stands in brackets, like "
+            "X[#1+5]");
+  EXPECT_EQ(refusal("##1=5.\nM2\n"), "1:2: error: ## is not read: write #[#1]");
+  EXPECT_EQ(refusal("#1=SINE[5.]\nM2\n"),
+            "1:4: error: unknown function 'SINE'; did you mean 'SIN'?");
+  EXPECT_EQ(refusal("#1=[5.\nM2\n"), "1:4: error: '[' is not closed; ']' is missing");
+  EXPECT_EQ(refusal("#0=1\nM2\n"), "1:1: error: #0 is always vacant and cannot be set");
+  EXPECT_EQ(refusal("#50=1\nM2\n"), "1:1: error: there is no variable #50");
+  EXPECT_EQ(refusal("#1=1/#0\nM2\n"), "1:5: error: division by zero");
+  EXPECT_EQ(refusal("N10 IF[#1GT2]X5.\nM2\n"), "1:14: error: GOTO or THEN expected behind IF[...]");
+  EXPECT_EQ(refusal("IF[#1EQ#0]THEN X5.\nM2\n"),
+            "1:16: error: a macro statement is expected behind THEN");
+  EXPECT_EQ(refusal("#1=ADP[5]\nM2\n"),
+            "1:4: error: ADP adds a decimal point by the increments of the control, which are not "
+            "known; write the value with its point");
+}
+
+TEST(Macro, VacancyIsNotGuessed) {
+  const std::string doubt =
+      "error: a vacant variable behind a sign or alone in brackets: no manual says whether it is 0 "
+      "or stays vacant; write it without them, or set it";
+  EXPECT_EQ(refusal("G0 X[#1]\nM2\n"), "1:5: " + doubt);
+  EXPECT_EQ(refusal("#2=-#1\nM2\n"), "1:5: " + doubt);
+  EXPECT_EQ(run("#2=[#1]*2.\nG0 X#2 Y1.\nM2\n"), "R 0 1 0");
+}
+
+TEST(Macro, TheOrderOfLogicIsWrittenInBrackets) {
+  const std::string order =
+      "error: AND, OR or XOR beside other operators: controls differ in the order; write brackets "
+      "around each part";
+  EXPECT_EQ(refusal("IF[#1AND#2EQ2]GOTO9\nN9 M2\n", Reader::haas), "1:4: " + order);
+  EXPECT_EQ(refusal("IF[#1EQ1AND#2EQ2]GOTO9\nN9 M2\n", Reader::haas),
+            "1:14: error: a second comparison; write brackets around each");
+  EXPECT_EQ(refusal("#1=1+2AND3\nM2\n", Reader::haas), "1:4: " + order);
+  // AND binds as * does: 1 + (2 AND 3); Fanuc B-63944EN, priority of operations, from memory
+  EXPECT_EQ(run("#1=1+2AND3\nG0 X#1\nM2\n"), "R 3 0 0");
+  EXPECT_EQ(run("IF[[1EQ1]AND[2GT1]]GOTO9\nG0 X1.\nN9 G0 Y1.\nM2\n", Reader::any), "R 0 1 0");
+}
+
+TEST(Macro, JumpsAndLoopsHaveTheirRules) {
+  EXPECT_EQ(refusal("GOTO 7\nM2\nO2\nN7 M99\n"),
+            "1:6: error: there is no block N7 in this program");
+  EXPECT_EQ(refusal("GOTO 7\nWHILE[#1LT2]DO1\nN7 G0 X1.\nEND1\nM2\n"),
+            "1:6: error: N7 is within the loop DO1 of line 2: no jump leads into a loop");
+  EXPECT_EQ(refusal("WHILE[#1LT2]DO4\nEND4\nM2\n"),
+            "1:1: error: the number of DO must be 1, 2 or 3");
+  EXPECT_EQ(refusal("WHILE[#1LT2]DO1\nM2\n"), "1:1: error: DO1 has no END1");
+  EXPECT_EQ(refusal("#1=0\nEND1\nM2\n"), "2:1: error: END without the DO of its number before it");
+  EXPECT_EQ(refusal("WHILE[#1LT2]DO1\nWHILE[#1LT2]DO1\nEND1\nEND1\nM2\n"),
+            "2:1: error: DO1 within the loop DO1 of line 1");
+}
+
+TEST(Macro, AnEndlessProgramIsStopped) {
+  ProgramSetup setup = setup_of({}, Reader::fanuc);
+  setup.most_jumps = 20;
+  try {
+    interpret("N1 G0 X1.\nGOTO 1\n", "p.nc", setup);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "p.nc:2:1: error: 21 jumps, turns of loops and calls, 40 lines; the program "
+                 "seems endless");
+  }
+}
+
+TEST(Macro, CallsAreChecked) {
+  EXPECT_EQ(refusal("#1=1.\nG65 A1.\nM2\n"),
+            "2:1: error: G65 needs a P word, the number of a program");
+  EXPECT_EQ(refusal("G65 P77 A1.\nM2\n"),
+            "1:5: error: there is no program O77 in this file, and no file 77.ngc");
+  EXPECT_EQ(refusal("G90 G65 P1 A1.\nM2\nO1\nM99\n"),
+            "1:1: error: G65 stands before its arguments and alone: write G in a block of its own");
+  EXPECT_EQ(refusal("G65 P1\nM2\nO1\nG65 P1\nM99\n"),
+            "4:5: error: more than 4 macros called by each other; in O1, called in p.nc:4, in O1, "
+            "called in p.nc:4, in O1, called in p.nc:4, in O1, called in p.nc:1");
+  EXPECT_EQ(refusal("G65 P1\nM2\nO1\nG0 X1.\n"),
+            "4: error: a program that is called ends with M99; in O1, called in p.nc:1");
+  EXPECT_EQ(refusal("G65 P1 A1. L2\nM2\nO1\n#1=#1+1.\nM99\n"),
+            "5: error: the program changes its local variables, and L calls it again: whether they "
+            "keep their values differs between controls; write a WHILE loop; in O1, called in "
+            "p.nc:1");
+  EXPECT_EQ(refusal("#1=1.\nG0 X1.\nO2\nM30\n"), "no refusal: R 1 0 0");
+}
+
+// A fault of the block names the column in the line as written, and the calls.
+TEST(Macro, FaultsOfBlocksAreAtTheirWords) {
+  EXPECT_EQ(refusal("G65 P1 A12.345\nM2\nO1\nG0 X#1 Y[#1*2.] G777\nM99\n"),
+            "4:17: error: unknown G code G777; in O1, called in p.nc:1");
+}
+
+TEST(Macro, AnAlarmOfTheProgramStopsIt) {
+  EXPECT_EQ(refusal("IF[#1EQ#0]GOTO9\nM2\nN9 #3000=12(NO DEPTH)\n"),
+            "3:4: error: the program stops itself with an alarm (#3000=12): NO DEPTH");
+  EXPECT_EQ(run("G0 X1.\n#3006=1(TURN THE PART)\nX2.\nM2\n"), "R 1 0 0 | P0 | R 2 0 0");
+}
+
+TEST(Macro, ValuesThatASimulationCannotKnowAreRefusedByName) {
+  EXPECT_EQ(refusal("#1=#500\nM2\n"),
+            "1:4: error: #500 keeps its value from earlier programs, and this one has not set it; "
+            "give it with --parameter '#500=...'");
+  EXPECT_EQ(refusal("IF[#1004EQ1]GOTO9\nN9 M2\n"),
+            "1:4: error: #1004 is an input of the machine: a simulation does not know it");
+  EXPECT_EQ(refusal("#1=#3011\nM2\n"),
+            "1:4: error: #3011 is date and time: a simulation does not know it");
+  EXPECT_EQ(refusal("#1=#5063\nM2\n"),
+            "1:4: error: #5063 is the position of the skip signal: a simulation does not know it");
+  EXPECT_EQ(refusal("#2001=5.\nM2\n"),
+            "1:1: error: #2001 is a tool offset and is not set from here: give it in the tool "
+            "table (--tools), and take the line out");
+  ProgramSetup setup = setup_of({}, Reader::fanuc);
+  setup.parameters["#500"] = 12.5;
+  const auto moves = interpret("G0 X#500\nM2\n", "p.nc", setup);
+  EXPECT_EQ(moves[0].end_machine[0], 12.5 * mm);
+}
+
+// work offset X100 Y200 Z300
+TEST(Macro, PositionsModesAndOffsetsAreThoseOfTheBlockBefore) {
+  const Given offsets = {.has_offsets = true};
+  EXPECT_EQ(run("G0 X1. Y2. Z3.\n#1=#5001+#5042\n#2=#5022\n#3=#5223\nX#1 Y#2 Z#3\nM2\n",
+                Reader::fanuc, offsets),
+            "R 101 202 303 | R 103 402 600");
+  EXPECT_EQ(run("G91 G20 G1 X1. F10.\n#1=#4001\n#2=#4003\n#3=#4006\nG21 G0 G90\nG#1 X#2 Y#3 "
+                "F#4109\nM2\n"),
+            "F 25.4 0 0 f254 | F 91 20 0");
+  EXPECT_EQ(refusal("#1=#4014\nM2\n", Reader::haas),
+            "1:4: error: #4014 is a mode in force: the work system is #4014 (Fanuc) or #4012 "
+            "(Haas); choose with --reader");
+  EXPECT_EQ(run("G55\n#1=#4014\nG54\nG0 X#1\nM2\n"), "R 55 0 0");
+}
+
+TEST(Macro, AComparisonNearerThanControlsCalculateIsWarnedOf) {
+  const Reading found = read("#1=.1+.2\nIF[#1EQ.3]GOTO9\nG0 X1.\nN9 M2\n", Reader::fanuc, {});
+  EXPECT_EQ(found.moves, "R 1 0 0");
+  ASSERT_EQ(found.warnings.size(), 2u);
+  EXPECT_EQ(to_string(found.warnings[1]),
+            "p.nc:2:6: error: the values compared, 0.3 and a value 6e-17 beside it, are nearer "
+            "than controls calculate: another control may go the other way; compare with a margin");
+}
+
+// Readings that Fanuc and Haas share count, since no other control reads the program.
+TEST(Macro, WordsAreReadAsTheControlsDoThatHaveMacros) {
+  EXPECT_EQ(run("G4 P1500\nIF[1EQ1]GOTO9\nN9 M2\n", Reader::any), "W 1.5");
+}
+
+TEST(Macro, OtherReadersDoNotHaveIt) {
+  for (const Reader reader : {Reader::linuxcnc, Reader::mach, Reader::grbl}) {
+    EXPECT_EQ(refusal("#1=1\nIF[#1EQ1]GOTO9\nN9 M2\n", reader),
+              "2:2: error: 'IF' is a statement of Fanuc's macro language; LinuxCNC's O-words are "
+              "read here");
+  }
+  // O-words and parameters of LinuxCNC stay what they are
+  EXPECT_EQ(run("#1=2\no1 if [#1 gt 1]\nG0 X#1 Y#2\no1 endif\nM2\n", Reader::any), "R 2 0 0");
+}
+
+TEST(Macro, ProgramsThatItCallsAreFound) {
+  const auto names = called_subroutines(
+      ProgramText::of_text("G65 P9010 A1.\nIF[#1EQ1]GOTO9\nM98 P51002\nN9 G66 P20\nM2\n", "p.nc"));
+  EXPECT_EQ(names, (std::set<std::string>{"1002", "20", "51002", "9010"}));
+}
+
+TEST(Macro, ALineWithASlashIsLeftOutWithItsStatement) {
+  const std::string program = "#1=1.\n/#1=2.\n/2 GOTO 9\nG0 X#1\nN9 M2\n";
+  EXPECT_EQ(run(program, Reader::fanuc, {.skips_blocks = true}), "R 1 0 0");
+  EXPECT_EQ(run(program), "");
+}
+
+}  // namespace servomill::controllers::macro_test
