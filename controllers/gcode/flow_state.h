@@ -39,9 +39,9 @@ struct Call {
   std::array<double, kArguments> saved{};
 };
 
-/// Where a program goes on. The flags are LinuxCNC's, with what they leave standing: a `break` out
-/// of a `while` lets the next `do` run once only, a `continue` in a `do` turns the next `break` out
-/// of a `while` into a `continue`.
+/// The place at which a program goes on. The flags are LinuxCNC's, with what they leave standing: a
+/// `break` out of a `while` lets the next `do` run once only, a `continue` in a `do` turns the next
+/// `break` out of a `while` into a `continue`.
 struct FlowState {
   std::map<std::string, Label> labels;
   std::vector<Call> calls;

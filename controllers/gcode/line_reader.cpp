@@ -17,6 +17,13 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
 
+// A line that asks grbl or TinyG for a report, which moves nothing; $H and settings do.
+bool is_report_request(std::string_view line) {
+  constexpr std::array<std::string_view, 6> kRequests = {"$$", "$G", "$I", "$N", "$#", "?"};
+  const std::string_view request = line.substr(0, line.find_first_of(" \t;\r"));
+  return std::find(kRequests.begin(), kRequests.end(), request) != kRequests.end();
+}
+
 // One pass over a line, from left to right; every rule puts characters of the same number.
 class LexicalRules {
  public:
@@ -69,15 +76,10 @@ class LexicalRules {
     }
   }
 
-  // Requests for a report, which move nothing; $H and settings do.
   bool sender_command() {
-    const std::size_t end = text().find_first_of(" \t;\r", at_);
-    const std::string request = text().substr(at_, end - at_);
-    constexpr std::array kRequests = {"$$", "$G", "$I", "$N", "$#", "?"};
-    const bool is_request = std::any_of(kRequests.begin(), kRequests.end(),
-                                        [&](const char* one) { return request == one; });
+    const bool is_request = is_report_request(std::string_view(text()).substr(at_));
     if (!is_request || !apply(ReaderRule::sender_command, at_)) return false;
-    blank(at_, std::min(end, text().size()));
+    blank(at_, std::min(text().find_first_of(" \t;\r", at_), text().size()));
     return true;
   }
 
@@ -292,10 +294,7 @@ TolerantLine tolerant_line(std::string_view line, Reader reader) {
 }
 
 std::string other_language(std::string_view line, int column) {
-  const bool is_report = line.starts_with("$$") || line.starts_with("$G") ||
-                         line.starts_with("$I") || line.starts_with("$N") ||
-                         line.starts_with("$#") || line.starts_with('?');
-  if (line.starts_with('$') && !is_report) {
+  if (line.starts_with('$') && !is_report_request(line)) {
     return fmt::format(
         "'{}' is a command of a sender to grbl or TinyG, no block; take the line out",
         line.front());

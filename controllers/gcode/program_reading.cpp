@@ -94,7 +94,8 @@ void Interpreter::Machine::read_executed_line() {
   is_strict || !reading_.concerns(block_, state_) ? execute() : read_as_control();
 }
 
-// What a control reads in another way than LinuxCNC runs as the lines that say it to LinuxCNC.
+// A block that a control reads in another way than LinuxCNC runs as the lines that say it to
+// LinuxCNC.
 void Interpreter::Machine::read_as_control() {
   reading_.call_again(flow_.turns_left.back() > 0);
   const bool is_other = reading_.read(line_, file(), block_, state_, [this](const Value& value) {

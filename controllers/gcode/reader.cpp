@@ -20,9 +20,9 @@ using enum ReaderRule;
 constexpr auto kRules = std::to_array<ReaderRuleEntry>({
     {end_of_text, "a text that ends without M2, M30 or a closing '%'", "read as if M2 followed",
      "grbl, Mach", kGrbl | kMach,
-     "grbl 1.1, protocol.c (runs lines as they come); Milltronics, System information, PL-551, p. "
-     "8 "
-     "(the end code is assumed); Mach from memory. Fanuc requires the M code: B-64014EN/03 p. 21"},
+     "grbl 1.1, protocol.c (runs lines as they come); Milltronics, System information, PL-551, "
+     "p. 8 (the end code is assumed); Mach from memory. Fanuc requires the M code: B-64014EN/03 p. "
+     "21"},
     {percent_at_end, "a '%' that no other '%' precedes", "read as the end of the program",
      "Fanuc, Haas", kFanuc | kHaas, "Fanuc B-64014EN/03 p. 21 (end of record)"},
     {percent_title, "text before or behind the first '%'", "read as a title, without effect",
@@ -62,8 +62,7 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "read as a spiral, whose radius changes in proportion to the angle", "Fanuc",
      kFanuc | kHaas | kMach,
      "Fanuc B-63324EN/01, section 4.4 (the radius changes linearly with the angle); 16-T, "
-     "parameter "
-     "3410: a straight line behind the arc; Haas and Mach from memory"},
+     "parameter 3410: a straight line behind the arc; Haas and Mach from memory"},
     {repeated_group, "several G codes of one group in a block", "the last one counts",
      "Fanuc, Haas", kFanuc | kHaas, "Fanuc B-63944EN, preparatory function, note 3 (from memory)"},
     {home_with_motion, "G28, G30 or G92 beside a motion code",
@@ -96,7 +95,7 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "memory); Haas 96-8000, June 1999, p. 188 (Q, I, J of G77; setting 27)"},
     {tapping_spindle, "G74 or G84 while the spindle stands still",
      "read as rigid tapping, which starts the spindle", "Fanuc (M29), Haas", kFanuc | kHaas,
-     "Fanuc B-63944EN, rigid tapping, from memory; haascnc.com, G84 (Group 09): the control starts "
+     "Fanuc B-63944EN, rigid tapping, from memory; Haas online manual, G84 (Group 09): it starts "
      "the spindle"},
     {words_with_g80, "axis words beside G80", "read as a move by the last G0 or G1", "Fanuc, Haas",
      kFanuc | kHaas, "Fanuc B-63944EN, G80; groups 01 and 09 are apart (from memory)"},
@@ -121,8 +120,8 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "Haas 96-8000 p. 217"},
     {smoothing, "G5.1 Q, G5 P, G8 P, G187 and the like",
      "without effect: smoothing is not simulated", "Fanuc, Haas", kFanuc | kHaas,
-     "Fanuc B-63944EN, AI contour control, from memory; helmancnc.com, Haas address codes (E of "
-     "G187)"},
+     "Fanuc B-63944EN, AI contour control, from memory; Helman CNC, Haas address codes "
+     "(E of G187)"},
     {machine_function, "M codes for coolant, clamps, chips, gears and the like",
      "without effect on motion", "Haas, builders of other machines", kHaas | kFanuc,
      "Haas Mill operator's manual, M codes; others from memory"},
@@ -131,9 +130,8 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "Fanuc B-62764EN/01, section 9.2; Mach3 Mill, G0 and G1; Haas from memory"},
     {scaling, "G50 and G51", "read as scaling about a point", "Fanuc, Haas, Mach",
      kFanuc | kHaas | kMach,
-     "Haas 96-8000 p. 161 (last position as the centre); Fanuc B-63682EN/01 p. 117 (factors of "
-     "each "
-     "axis, negative ones mirror); Mach from memory"},
+     "Haas 96-8000 p. 161 (last position as the centre); Fanuc B-63682EN/01 p. 117 (factors "
+     "of each axis, negative ones mirror); Mach from memory"},
     {mirror_image, "G50.1 and G51.1", "read as a mirror image", "Fanuc", kFanuc,
      "Siemens 6FC5397-0BP10-2BA0 p. 3-65 (ISO dialect: arcs and compensation are interchanged); "
      "Fanuc from memory"},
@@ -149,7 +147,7 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "from memory"},
     {rapid_at_start, "axis words before any of G0, G1, G2, G3 and before any F",
      "read as a rapid: a feed without F is an alarm", "Fanuc, Haas, grbl", kFanuc | kHaas | kGrbl,
-     "grbl 1.1, gcode.c (begins with G0); Fanuc B-63944EN, parameter 3402#0 (G01), alarm 011; Haas "
+     "grbl 1.1, gcode.c (begins with G0); Fanuc, parameter 3402#0 (G01) and alarm 011, and Haas "
      "from memory"},
     {centre_off_plane, "a zero I, J or K that is not of the plane of the arc", "without effect",
      "every control but LinuxCNC", kAll, "grbl 1.1, gcode.c; others from memory: a shift by 0"},

@@ -23,7 +23,7 @@ namespace servomill::controllers {
 
 class PossibleReaders;
 
-/// What the user says of the control.
+/// The user's choices about the control.
 struct ReadingOptions {
   Reader reader = Reader::any;
   DecimalPoint decimal_point = DecimalPoint::unset;

@@ -13,7 +13,7 @@ namespace {
 constexpr int kFineBoring = 760, kBoring = 860, kBackBoring = 870;
 
 bool is_cycle_of_controls(int tenths) { return tenths == kFineBoring || is_canned_cycle(tenths); }
-// What LinuxCNC runs in place of it.
+// The cycle that LinuxCNC runs in place of it.
 int strict_code(int tenths) { return tenths == kFineBoring ? kBoring : tenths; }
 bool has_dwell(int tenths) {
   return tenths == 820 || tenths == kBoring || tenths == 880 || tenths == 890;
@@ -177,7 +177,7 @@ void ReadingStep::cycle_repeats(int code) {
   memory.pending_motion = strict_code(code);
 }
 
-// Where no G98 or G99 was read, and the tool is above R.
+// Decides between G98 and G99 if neither was read and the tool is above R.
 void ReadingStep::retract_mode() {
   if (memory.has_retract_mode || !words.has('R')) return;
   const double level = initial_level();

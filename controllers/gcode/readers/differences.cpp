@@ -64,7 +64,7 @@ constexpr auto kDifferences = std::to_array<WordDifferenceEntry>({
     {polar_centre,
      "G16 away from the origin of the work system",
      {{{"polar coordinates about that origin", "Fanuc", kFanuc},
-       {"polar coordinates about where the tool stands", "Mach", kMach}}},
+       {"polar coordinates about the tool position", "Mach", kMach}}},
      "",
      "Fanuc B-62764EN/01, section 9.2; Mach3 Mill, G0 (G16 sets a polar origin), G16 from memory"},
     {feed_beside_unit,
@@ -129,7 +129,7 @@ constexpr auto kDifferences = std::to_array<WordDifferenceEntry>({
      {{{"in millimetres, inches or degrees", "calculator-type decimal points", 0},
        {"in least input increments", "Fanuc and Haas with increments", 0}}},
      "--decimal-point",
-     "haas.co.uk, Help with the Decimal Points (setting 162); Fanuc, parameter 3401#0 (DPI), from "
+     "Haas, Help with the Decimal Points (setting 162); Fanuc, parameter 3401#0 (DPI), from "
      "memory"},
     {scale_factor,
      "P of G51 without a decimal point",
@@ -189,8 +189,8 @@ struct ForeignCodes {
   int from, to;
   std::uint8_t without;
 };
-// LinuxCNC 2.9, G codes and M codes; grbl 1.1, gcode.c (all that it has); Fanuc B-63944EN, list of
-// G codes; Haas Mill operator's manual, lists of G and M codes; "Using Mach3Mill", table of G codes
+// LinuxCNC 2.9, G codes and M codes; grbl 1.1, gcode.c (all that it has); Fanuc, Haas and Mach from
+// memory
 constexpr auto kForeign = std::to_array<ForeignCodes>({
     {'G', 410, 429, kGrbl},
     {'G', 430, 430, kGrbl},

@@ -51,7 +51,7 @@ void ReadingStep::polar_mode() {
   }
 }
 
-// Of Fanuc that of the work system, of Mach where the tool stands.
+// Fanuc takes the origin of the work system, Mach the position of the tool.
 void ReadingStep::polar_origin(int column) {
   const int n = normal_axis();
   const Eigen::Vector3d now = memory.frame.from_work(state.programmed().head<3>());

@@ -110,9 +110,9 @@ class ReadingStep {
   std::optional<int> chosen_reading(WordDifference difference, int column);
   /// P without a decimal point, in seconds; of an unknown unit 0 and noted.
   double dwell_of(WordDifference difference, const BlockWord& P);
-  /// What servomill does not read.
+  /// Ends with what servomill cannot read; a trial is undetermined.
   [[noreturn]] void fail(int column, std::string message) const;
-  /// What the control does not read.
+  /// Ends with what the control does not read.
   [[noreturn]] void refuse(int column, std::string message) const;
 
   /// Ten times the motion code of the block, or -1.

@@ -101,7 +101,7 @@ void ReadingStep::feed_beside_unit() {
   words.erase(*code);
 }
 
-// Of G codes of one group the last one counts.
+// The last of several G codes of one group counts.
 void ReadingStep::repeated_groups() {
   constexpr std::array kGroups = {Group::g_plane,       Group::g_units,   Group::g_feed_mode,
                                   Group::g_distance,    Group::g_retract, Group::g_path_control,
