@@ -12,7 +12,6 @@
 #include "sim/preparation/estimate.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/stability_check.h"
-#include "sim/run/case_notes.h"
 #include "strategies/gcode.h"
 
 namespace servomill::sim {
@@ -31,7 +30,6 @@ struct PreparedCase::Parts {
   double distance_of_plan = 0.0;                // m, of nominal points from the part
 
   const MachineSettings& machine() const { return scenario.machine_of(spec); }
-  NotedCase noted() const { return {scenario, spec, *program, *motion, cutting.get(), strategies}; }
   SharedMoves apply_strategies(const CasePreparation& prepare);
 };
 
@@ -131,45 +129,10 @@ CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const {
   return inputs;
 }
 
-CaseOutput PreparedCase::output(CaseResult result) const {
+PreparedParts PreparedCase::parts() const {
   const Parts& p = *parts_;
-  CaseOutput out;
-  out.name = p.spec.name;
-  out.result = std::move(result);
-  if (p.rewritten) out.program = p.rewritten->text;
-  out.duration = p.motion->trajectory.duration();
-  out.blocks = p.motion->blocks;
-  out.sections = sections();
-  out.chain = p.machine().chain;
-  out.signal_delay = p.scenario.signal_delay_of(p.spec);
-  if (!p.scenario.probes.empty() && out.result.outcome.finished) {
-    ProbedPart part =
-        probe_part({p.spec.name, out.result.servo, p.program->path, p.scenario.program.cutters,
-                    p.program->tips, out.chain, p.scenario.program.work_offset + p.spec.work_offset,
-                    p.imposed.get(), p.scenario.stock.empty() ? nullptr : &p.scenario.stock},
-                   p.scenario.probes, p.scenario.cmm);
-    out.probes = std::move(part.features);
-    out.notes = std::move(part.notes);
-    if (p.scenario.part) {
-      out.part_fit =
-          lay_on_nominal(p.spec.name, *p.scenario.part, p.distance_of_plan, out.probes, out.notes);
-    }
-  }
-  for (std::string& note : notes_of_run(p.noted(), out.result.saturations)) {
-    out.notes.push_back(std::move(note));
-  }
-  return out;
-}
-
-CaseOutput PreparedCase::run(const StopFlag& stop, std::atomic<float>& progress,
-                             const std::string& scratch_folder) const {
-  CaseInputs given = inputs(scratch_folder);
-  CaseOutput out = output(simulate(given, stop, progress));
-  const NotedCase noted = parts_->noted();
-  for (std::string& note : notes_of_uncorrectable(noted)) out.notes.push_back(std::move(note));
-  for (std::string& note : notes_of_left_tables(noted)) out.notes.push_back(std::move(note));
-  progress = 1.0F;
-  return out;
+  return {p.scenario,        p.spec,          *p.program,      *p.motion,         p.strategies,
+          p.rewritten.get(), p.cutting.get(), p.imposed.get(), p.distance_of_plan};
 }
 
 const CaseSpec& PreparedCase::spec() const { return parts_->spec; }
@@ -227,10 +190,6 @@ std::vector<Fault> PreparedCase::circular_faults(PreparationCache* cache) const 
                               (cache != nullptr ? *cache : own).circles.get(key, look)->sections);
 }
 
-CaseData CaseOutput::data() const {
-  return {name,        &result.servo,           sections, duration,
-          blocks,      result.outcome.finished, chain,    probes.empty() ? nullptr : &probes,
-          signal_delay};
 }
 
 std::vector<PreparedCase> prepare_cases(const Scenario& scenario, PreparationCache* cache) {

@@ -2,38 +2,37 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <atomic>
 #include <map>
 #include <memory>
-#include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "sim/engine/simulate.h"
-#include "sim/evaluation/comparison.h"
-#include "sim/evaluation/part_fit.h"
-#include "sim/evaluation/probed_part.h"
 #include "sim/model/scenario.h"
 #include "sim/preparation/case_program.h"
+#include "strategies/strategy.h"
 
 namespace servomill::sim {
 
+struct InterpretedProgram;
+struct PlannedCutting;
+struct PlannedMotion;
 struct PreparationCache;
+struct RewrittenProgram;
 
-struct CaseOutput {
-  std::string name;
-  CaseResult result;
-  std::string program;    // the rewritten program; empty: the original one ran
-  double duration = 0.0;  // s, of the program that the NC ran
-  double blocks = 0.0;
-  std::vector<std::string> notes;  // what the NC put right or could not do as programmed
-  std::vector<std::string> sections;
-  plant::MachineChain chain;           // the ideal machine
-  std::optional<double> signal_delay;  // s, of the feedback hardware; none of an ideal servo
-  std::vector<ProbedFeature> probes;   // empty: nothing is probed, or the case stopped
-  std::optional<PartFit> part_fit;     // of them, where there is a nominal part
-  CaseData data() const;
+/// A case as it was prepared; refers to the PreparedCase and to its scenario.
+struct PreparedParts {
+  const Scenario& scenario;
+  const CaseSpec& spec;
+  const InterpretedProgram& program;
+  const PlannedMotion& motion;
+  std::span<const std::shared_ptr<const strategies::Strategy>> strategies;  // those of spec
+  const RewrittenProgram* rewritten;      // nullptr: the original program runs
+  const PlannedCutting* cutting;          // nullptr: it runs in air
+  const plant::VolumetricModel* imposed;  // nullptr: no errors are imposed
+  double distance_of_plan;                // m, of nominal points from the part
 };
 
 /// A case ready to be simulated. Preparing it finds every fault of the input.
@@ -67,12 +66,7 @@ class PreparedCase {
   /// Inputs of one run; refers to this and to the scenario.
   /// @param scratch_folder  of recordings that are long; empty: that of temporary files
   CaseInputs inputs(const std::string& scratch_folder = {}) const;
-  /// Output of a run of `inputs()`, with its notes.
-  CaseOutput output(CaseResult result) const;
-
-  /// output(simulate(inputs())), and all notes of sim/run/case_notes.h
-  CaseOutput run(const StopFlag& stop, std::atomic<float>& progress,
-                 const std::string& scratch_folder = {}) const;
+  PreparedParts parts() const;
 
  private:
   struct Parts;

@@ -133,7 +133,7 @@ void simulate_group(std::span<const Run> group, const StopFlag& stop, std::atomi
 BatchResult compared(Point& point, Keep keep) {
   std::vector<CaseOutput> outputs;
   for (std::size_t k = 0; k < point.cases.size(); ++k) {
-    outputs.push_back(point.cases[k].output(std::move(point.results[k])));
+    outputs.push_back(output_of(point.cases[k], std::move(point.results[k])));
   }
   std::vector<CaseData> data;
   std::vector<std::string> stopped;

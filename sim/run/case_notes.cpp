@@ -10,6 +10,7 @@
 #include "sim/evaluation/nominal_part.h"
 #include "sim/evaluation/probed_part.h"
 #include "sim/input/implausible.h"
+#include "sim/preparation/preparation_cache.h"
 #include "sim/run/uncorrected.h"
 
 namespace servomill::sim {
@@ -18,7 +19,7 @@ namespace {
 // Nominal points this far from the mesh are told: its facets stand in for curved faces.
 constexpr double kFacets = 1e-6;  // m
 
-const plant::MachineChain& chain_of(const NotedCase& one) {
+const plant::MachineChain& chain_of(const PreparedParts& one) {
   return one.scenario.machine_of(one.spec).chain;
 }
 
@@ -27,7 +28,7 @@ std::string note_of(const Fault& warning) {
 }
 
 // The strategy of a case that displaces its feedback.
-std::string_view displacing_strategy(const NotedCase& one) {
+std::string_view displacing_strategy(const PreparedParts& one) {
   for (std::size_t k = 0; k < one.strategies.size(); ++k) {
     if (one.strategies[k]->displaces_feedback()) return one.spec.strategies[k].entry->name;
   }
@@ -40,7 +41,7 @@ std::string quoted_cases(const std::vector<std::string>& names) {
 }
 
 // The largest feed along the path (m/s) with its override; 0: the program feeds no linear axis.
-double largest_feed(const NotedCase& one) {
+double largest_feed(const PreparedParts& one) {
   double largest = 0.0;
   for (const Move& move : one.program.moves) {
     const bool moves_xyz = move.kind == MoveKind::arc || move.s_end > move.s_begin;
@@ -51,7 +52,7 @@ double largest_feed(const NotedCase& one) {
 }
 
 // Cases that the feedback hardware delays beside others that it does not.
-std::optional<std::string> uneven_hardware(const NotedCase& noted) {
+std::optional<std::string> uneven_hardware(const PreparedParts& noted) {
   std::vector<std::string> with, without;
   double delay = 0.0;
   for (const CaseSpec& one : noted.scenario.cases) {
@@ -73,7 +74,7 @@ std::optional<std::string> uneven_hardware(const NotedCase& noted) {
 }
 
 // "part.ngc:12: warning: case one: strategy feedback: virtual displacement of Y saturated ..."
-std::string note_of(const NotedCase& one, const strategies::Saturation& held) {
+std::string note_of(const PreparedParts& one, const strategies::Saturation& held) {
   controllers::Trajectory::Cursor cursor{};
   const int line = one.motion.trajectory.at(held.first, cursor).line;
   const bool linear = held.joint < kLinearJoints;
@@ -88,7 +89,7 @@ std::string note_of(const NotedCase& one, const strategies::Saturation& held) {
 }
 
 // Probes and stock stay where the work_offset has them, whatever the program does to its zero.
-std::optional<Fault> shifted_program(const NotedCase& one) {
+std::optional<Fault> shifted_program(const PreparedParts& one) {
   const std::optional<Move> move = one.program.first_shifted_feed();
   std::vector<std::string_view> unshifted;
   if (!one.scenario.probes.empty()) unshifted.push_back("[[probe]]");
@@ -102,7 +103,7 @@ std::optional<Fault> shifted_program(const NotedCase& one) {
 
 }  // namespace
 
-std::vector<std::string> notes_of_run(const NotedCase& one,
+std::vector<std::string> notes_of_run(const PreparedParts& one,
                                       std::span<const strategies::Saturation> held) {
   std::vector<std::string> out;
   for (const Fault& warning : one.program.warnings) out.push_back(note_of(warning));
@@ -124,7 +125,7 @@ std::vector<std::string> notes_of_run(const NotedCase& one,
   return out;
 }
 
-std::vector<std::string> notes_of_uncorrectable(const NotedCase& one) {
+std::vector<std::string> notes_of_uncorrectable(const PreparedParts& one) {
   const plant::InverseKinematics inverse(chain_of(one));
   std::vector<std::string> out;
   for (std::size_t k = 0; k < one.strategies.size(); ++k) {
@@ -150,7 +151,7 @@ std::vector<std::string> notes_of_uncorrectable(const NotedCase& one) {
   return out;
 }
 
-std::vector<std::string> notes_of_left_tables(const NotedCase& one) {
+std::vector<std::string> notes_of_left_tables(const PreparedParts& one) {
   const JointLayout& layout = chain_of(one).layout;
   std::vector<std::string> out;
   for (std::size_t k = 0; k < one.strategies.size(); ++k) {

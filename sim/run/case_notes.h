@@ -9,32 +9,22 @@
 
 #include "sim/evaluation/part_fit.h"
 #include "sim/model/scenario.h"
-#include "sim/preparation/preparation_cache.h"
+#include "sim/preparation/prepared_case.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim {
 
-/// A case as it was prepared.
-struct NotedCase {
-  const Scenario& scenario;
-  const CaseSpec& spec;
-  const InterpretedProgram& program;
-  const PlannedMotion& motion;
-  const PlannedCutting* cutting;  // nullptr: it ran in air
-  std::span<const std::shared_ptr<const strategies::Strategy>> strategies;  // those of spec
-};
-
 /// Notes on what the NC corrected or could not do as programmed.
 /// @param held  displacements that strategies could not make in full
-std::vector<std::string> notes_of_run(const NotedCase& one,
+std::vector<std::string> notes_of_run(const PreparedParts& one,
                                       std::span<const strategies::Saturation> held);
 
 /// Errors that the strategies of this case cannot correct, one line for each
 /// (sim/run/uncorrected.h).
-std::vector<std::string> notes_of_uncorrectable(const NotedCase& one);
+std::vector<std::string> notes_of_uncorrectable(const PreparedParts& one);
 
 /// Places at which the program leaves the points of compensation tables, one line for each end.
-std::vector<std::string> notes_of_left_tables(const NotedCase& one);
+std::vector<std::string> notes_of_left_tables(const PreparedParts& one);
 
 /// Lays what was probed on the nominal part.
 /// @param distance  largest_distance of the plan

@@ -39,7 +39,7 @@ RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
   const auto work = [&] {
     for (std::size_t i = next++; i < count; i = next++) {
       try {
-        outputs[i] = prepared[i].run(stop, progress[i], control.scratch_folder);
+        outputs[i] = run_case(prepared[i], stop, progress[i], control.scratch_folder);
       } catch (...) {
         failures[i] = std::current_exception();
       }

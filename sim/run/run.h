@@ -7,6 +7,7 @@
 
 #include "sim/preparation/estimate.h"
 #include "sim/preparation/prepared_case.h"
+#include "sim/run/run_case.h"
 
 namespace servomill::sim {
 

@@ -26,7 +26,7 @@ void BM_Case(benchmark::State& state, const char* name) {
   for (auto _ : state) {
     PreparedCase prepared(experiment1(), spec);
     std::atomic<float> progress = 0.0F;
-    simulated += prepared.run(stop, progress).result.simulated_time;
+    simulated += run_case(prepared, stop, progress).result.simulated_time;
   }
   state.counters["x_real_time"] = benchmark::Counter(simulated, benchmark::Counter::kIsRate);
 }

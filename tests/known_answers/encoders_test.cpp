@@ -168,7 +168,7 @@ std::string stopped(const Scenario& scenario) {
   static const StopFlag kNever = false;
   std::atomic<float> progress = 0.0F;
   const Outcome outcome =
-      PreparedCase(scenario, scenario.cases.front()).run(kNever, progress).result.outcome;
+      run_case(PreparedCase(scenario, scenario.cases.front()), kNever, progress).result.outcome;
   EXPECT_EQ(outcome.finished, outcome.reason.empty());
   return outcome.reason;
 }

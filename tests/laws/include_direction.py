@@ -37,9 +37,7 @@ SIM_ROOMS = {
     "programs": ["config", "evaluation", "input", "model", "preparation", "run", "sweep", "system"],
 }
 # Upward includes that are still to be cut; the list may only shrink.
-KNOWN = {
-    ("sim/preparation/prepared_case.cpp", "sim/run/case_notes.h"),
-}
+KNOWN = set()
 standing = list(SIM_ROOMS)
 faults = [f"{room} may include {lower}, which stands no lower" for room, seen in SIM_ROOMS.items() for lower in seen
           if standing.index(lower) >= standing.index(room)]

@@ -27,7 +27,7 @@ inline CaseOutput run_case(const Scenario& scenario, const std::string& name) {
   std::atomic<float> progress = 0.0F;
   const CaseSpec* spec = scenario.find_case(name);
   if (spec == nullptr) throw std::logic_error("no case " + name);
-  CaseOutput output = PreparedCase(scenario, *spec).run(kNever, progress);
+  CaseOutput output = run_case(PreparedCase(scenario, *spec), kNever, progress);
   EXPECT_TRUE(output.result.outcome.finished) << name << ": " << output.result.outcome.reason;
   return output;
 }

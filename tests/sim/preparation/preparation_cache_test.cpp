@@ -130,7 +130,7 @@ std::string prepared(const Scenario& scenario, PreparationCache* cache) {
       }
       all.add(in.path.length());
       all.add(in.path.piece(0).end);
-      const CaseOutput out = one.output({});
+      const CaseOutput out = output_of(one, {});
       all.add(std::string_view(out.program));
       all.add(out.blocks);
     }

@@ -1,0 +1,61 @@
+#include "sim/run/run_case.h"
+
+#include <utility>
+
+#include "sim/preparation/preparation_cache.h"
+#include "sim/run/case_notes.h"
+
+namespace servomill::sim {
+namespace {
+
+void probe(const PreparedParts& p, CaseOutput& out) {
+  ProbedPart part =
+      probe_part({p.spec.name, out.result.servo, p.program.path, p.scenario.program.cutters,
+                  p.program.tips, out.chain, p.scenario.program.work_offset + p.spec.work_offset,
+                  p.imposed, p.scenario.stock.empty() ? nullptr : &p.scenario.stock},
+                 p.scenario.probes, p.scenario.cmm);
+  out.probes = std::move(part.features);
+  out.notes = std::move(part.notes);
+  if (!p.scenario.part) return;
+  out.part_fit =
+      lay_on_nominal(p.spec.name, *p.scenario.part, p.distance_of_plan, out.probes, out.notes);
+}
+
+}  // namespace
+
+CaseData CaseOutput::data() const {
+  return {name,        &result.servo,           sections, duration,
+          blocks,      result.outcome.finished, chain,    probes.empty() ? nullptr : &probes,
+          signal_delay};
+}
+
+CaseOutput output_of(const PreparedCase& prepared, CaseResult result) {
+  const PreparedParts p = prepared.parts();
+  CaseOutput out;
+  out.name = p.spec.name;
+  out.result = std::move(result);
+  if (p.rewritten != nullptr) out.program = p.rewritten->text;
+  out.duration = p.motion.trajectory.duration();
+  out.blocks = p.motion.blocks;
+  out.sections = prepared.sections();
+  out.chain = p.scenario.machine_of(p.spec).chain;
+  out.signal_delay = p.scenario.signal_delay_of(p.spec);
+  if (!p.scenario.probes.empty() && out.result.outcome.finished) probe(p, out);
+  for (std::string& note : notes_of_run(p, out.result.saturations)) {
+    out.notes.push_back(std::move(note));
+  }
+  return out;
+}
+
+CaseOutput run_case(const PreparedCase& prepared, const StopFlag& stop,
+                    std::atomic<float>& progress, const std::string& scratch_folder) {
+  CaseInputs given = prepared.inputs(scratch_folder);
+  CaseOutput out = output_of(prepared, simulate(given, stop, progress));
+  const PreparedParts parts = prepared.parts();
+  for (std::string& note : notes_of_uncorrectable(parts)) out.notes.push_back(std::move(note));
+  for (std::string& note : notes_of_left_tables(parts)) out.notes.push_back(std::move(note));
+  progress = 1.0F;
+  return out;
+}
+
+}  // namespace servomill::sim

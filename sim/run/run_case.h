@@ -1,0 +1,40 @@
+/// A prepared case, run: its recording, and what follows from it.
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/engine/simulate.h"
+#include "sim/evaluation/comparison.h"
+#include "sim/evaluation/part_fit.h"
+#include "sim/evaluation/probed_part.h"
+#include "sim/preparation/prepared_case.h"
+
+namespace servomill::sim {
+
+struct CaseOutput {
+  std::string name;
+  CaseResult result;
+  std::string program;    // the rewritten program; empty: the original one ran
+  double duration = 0.0;  // s, of the program that the NC ran
+  double blocks = 0.0;
+  std::vector<std::string> notes;  // what the NC put right or could not do as programmed
+  std::vector<std::string> sections;
+  plant::MachineChain chain;           // the ideal machine
+  std::optional<double> signal_delay;  // s, of the feedback hardware; none of an ideal servo
+  std::vector<ProbedFeature> probes;   // empty: nothing is probed, or the case stopped
+  std::optional<PartFit> part_fit;     // of them, where there is a nominal part
+  CaseData data() const;
+};
+
+/// Probes the part that a run of `prepared.inputs()` has cut, and notes what the NC put right.
+CaseOutput output_of(const PreparedCase& prepared, CaseResult result);
+
+/// Runs a case on this thread: output_of() with all notes of sim/run/case_notes.h.
+/// @param scratch_folder  of recordings that are long; empty: that of temporary files
+CaseOutput run_case(const PreparedCase& prepared, const StopFlag& stop,
+                    std::atomic<float>& progress, const std::string& scratch_folder = {});
+
+}  // namespace servomill::sim
