@@ -190,8 +190,6 @@ std::vector<Fault> PreparedCase::circular_faults(PreparationCache* cache) const 
                               (cache != nullptr ? *cache : own).circles.get(key, look)->sections);
 }
 
-}
-
 std::vector<PreparedCase> prepare_cases(const Scenario& scenario, PreparationCache* cache) {
   PreparationCache own;  // the cases of one scenario share much, too
   if (cache == nullptr) cache = &own;
