@@ -1,12 +1,11 @@
 #include "sim/frequency/frequency_response.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "sim/frequency/linear_algebra.h"
 #include "sim/frequency/stability.h"
 
 namespace servomill::sim {
@@ -84,7 +83,7 @@ Response FrequencyResponse::at(Entry entry, double f) {
 
   Eigen::MatrixXcd A = -monodromy_.cast<Complex>();
   A.diagonal().array() += turn(stand_.hyperperiod());
-  const Eigen::VectorXcd x0 = A.partialPivLu().solve(x_re.cast<Complex>() + kJ * x_im);
+  const Eigen::VectorXcd x0 = solve(A, x_re.cast<Complex>() + kJ * x_im);
 
   Fundamental sum;
   const auto add = [&](Complex part) {
@@ -124,7 +123,7 @@ std::vector<double> ringing_frequencies(const MachineSettings& machine, int join
   for (const PositionLoop one : loops) {
     const FrequencyResponse response(machine, joint, reading_delay, one);
     const double rate = 1.0 / response.stand().period();
-    for (const Complex z : response.monodromy().eigenvalues()) {
+    for (const Complex z : eigenvalues(response.monodromy())) {
       if (z.imag() <= 0.0) continue;  // one of each pair
       const double f = std::arg(z) / (2.0 * std::numbers::pi) * rate;
       const double a = -std::log(std::abs(z)) / (2.0 * std::numbers::pi) * rate;
@@ -154,7 +153,7 @@ double velocity_spectral_radius(const MachineSettings& machine, int joint) {
   AxisStand stand(alone, joint, 0, PositionLoop::closed);
   const Eigen::MatrixXd monodromy = monodromy_of(stand);
   if (!monodromy.allFinite()) return std::numeric_limits<double>::infinity();
-  const Eigen::VectorXcd all = monodromy.eigenvalues();
+  const Eigen::VectorXcd all = eigenvalues(monodromy);
   // the position is carried along: one eigenvalue of 1, as near as the others let it be computed
   Eigen::Index carried = 0;
   (all.array() - 1.0).abs().minCoeff(&carried);

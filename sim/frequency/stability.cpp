@@ -1,9 +1,9 @@
 #include "sim/frequency/stability.h"
 
-#include <Eigen/Eigenvalues>
 #include <vector>
 
 #include "sim/engine/servo_axes.h"
+#include "sim/frequency/linear_algebra.h"
 
 namespace servomill::sim {
 
@@ -54,7 +54,7 @@ double spectral_radius(const MachineSettings& machine, int joint, Tick reading_d
     int row = 0;
     axes.each_state(joint, [&](double& x) { monodromy(row++, column) = x; });
   }
-  return monodromy.eigenvalues().cwiseAbs().maxCoeff();
+  return eigenvalues(monodromy).cwiseAbs().maxCoeff();
 }
 
 }  // namespace servomill::sim
