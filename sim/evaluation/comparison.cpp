@@ -19,6 +19,7 @@
 #include "sim/evaluation/probe_quantities.h"
 #include "sim/evaluation/statistic.h"
 #include "sim/model/scenario.h"
+#include "sim/system/json.h"
 #include "sim/system/text_table.h"
 
 namespace servomill::sim {
@@ -216,10 +217,6 @@ std::string number(double value) {
   return fmt::format("{:.{}f}", value, decimals);
 }
 
-std::string json_text(const std::string& text) {
-  return text.empty() ? "null" : fmt::format("\"{}\"", json_escaped(text));
-}
-
 }  // namespace
 
 std::span<const QuantityInfo> quantities() { return kQuantities; }
@@ -285,29 +282,19 @@ std::string format_table(std::span<const ComparisonRow> rows) {
   return text_table(std::move(lines), 4, {5});
 }
 
-std::string json_escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (static_cast<unsigned char>(c) < 0x20) {
-      out += fmt::format("\\u{:04x}", static_cast<int>(c));
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
 std::string to_json(const ComparisonRow& row) {
-  const std::string note =
-      row.note.empty() ? "" : fmt::format(R"(, "note": "{}")", json_escaped(row.note));
-  return fmt::format(
-      R"({{"case": {}, "quantity": {}, "axis": {}, "statistic": {}, "sections": {}, "value": {}, )"
-      R"("unit": {}, "reference": {}, "kind": {}{}}})",
-      json_text(row.case_name), json_text(row.quantity), json_text(row.axis),
-      json_text(row.statistic), json_text(row.sections),
-      std::isfinite(row.value) ? fmt::format("{:.9g}", row.value) : "null", json_text(row.unit),
-      json_text(row.reference), json_text(row.kind), note);
+  JsonObject out;
+  out.text_or_null("case", row.case_name)
+      .text_or_null("quantity", row.quantity)
+      .text_or_null("axis", row.axis)
+      .text_or_null("statistic", row.statistic)
+      .text_or_null("sections", row.sections)
+      .number("value", row.value)
+      .text_or_null("unit", row.unit)
+      .text_or_null("reference", row.reference)
+      .text_or_null("kind", row.kind);
+  if (!row.note.empty()) out.text("note", row.note);
+  return out.line();
 }
 
 }  // namespace servomill::sim

@@ -66,9 +66,6 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
 /// The table as text, aligned.
 std::string format_table(std::span<const ComparisonRow> rows);
 
-/// Text as it may stand between the quotes of a JSON string.
-std::string json_escaped(std::string_view text);
-
 /// One JSON object with the keys case, quantity, axis, statistic, sections, value, unit, reference,
 /// kind, null where there is none; and note where there is one.
 std::string to_json(const ComparisonRow& row);

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
-#include "sim/evaluation/comparison.h"
 #include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/program_survey.h"
 #include "sim/system/counted.h"
+#include "sim/system/json.h"
 
 namespace servomill::sim {
 namespace {
@@ -228,8 +228,6 @@ std::string to_text(const ProgramSurvey& survey) {
 
 namespace {
 
-std::string quoted(std::string_view text) { return fmt::format("\"{}\"", json_escaped(text)); }
-
 std::string number_or_null(const std::optional<double>& value, double unit) {
   return value ? fmt::format("{:.9g}", *value / unit) : "null";
 }
@@ -238,7 +236,7 @@ std::string number_or_null(const std::optional<double>& value, double unit) {
 std::string uses_json(const std::vector<FirstUse>& uses) {
   std::vector<std::string> out;
   for (const FirstUse& use : uses) {
-    out.push_back(fmt::format(R"({{"word": {}, "line": {}}})", quoted(use.word),
+    out.push_back(fmt::format(R"({{"word": {}, "line": {}}})", json_text(use.word),
                               use.line > 0 ? std::to_string(use.line) : "null"));
   }
   return fmt::format("[{}]", fmt::join(out, ", "));
@@ -275,7 +273,7 @@ std::string extent_json(const ProgramSurvey& survey) {
   std::vector<std::string> work, unknown;
   for (const auto& [system, ranges] : survey.extent.work()) {
     work.push_back(fmt::format(R"({}: {{"motion": {}, "feed": {}}})",
-                               quoted(kWorkSystems[static_cast<std::size_t>(system - 1)]),
+                               json_text(kWorkSystems[static_cast<std::size_t>(system - 1)]),
                                ranges_json(ranges.motion), ranges_json(ranges.feed)));
   }
   for (const Axis axis : kAllAxes) {
@@ -297,8 +295,8 @@ std::string cycle_time_json(const ProgramSurvey& survey) {
   const bool is_known = time.why_unknown.empty();
   return fmt::format(
       R"({{"machine": {}, "s": {}, "why_unknown": {}, "left_out_lines": [{}], "unknown_dwells": {}}})",
-      quoted(time.machine), is_known ? fmt::format("{:.9g}", time.duration) : "null",
-      is_known ? "null" : quoted(time.why_unknown), fmt::join(time.left_out, ", "),
+      json_text(time.machine), is_known ? fmt::format("{:.9g}", time.duration) : "null",
+      is_known ? "null" : json_text(time.why_unknown), fmt::join(time.left_out, ", "),
       time.unknown_dwells);
 }
 
@@ -306,14 +304,14 @@ std::string readers_json(const ProgramSurvey& survey) {
   std::vector<std::string> out;
   for (const ReaderVerdict& one : survey.readers) {
     if (!one.stop) {
-      out.push_back(fmt::format(R"({}: {{"reads": true}})", quoted(one.reader)));
+      out.push_back(fmt::format(R"({}: {{"reads": true}})", json_text(one.reader)));
       continue;
     }
     const Place& place = one.stop->place;
     out.push_back(
         fmt::format(R"({}: {{"reads": false, "file": {}, "line": {}, "column": {}, "why": {}}})",
-                    quoted(one.reader), quoted(place.file), place.line, place.column,
-                    quoted(one.stop->message)));
+                    json_text(one.reader), json_text(place.file), place.line, place.column,
+                    json_text(one.stop->message)));
   }
   return fmt::format("{{{}}}", fmt::join(out, ", "));
 }
@@ -325,7 +323,7 @@ std::string to_json(const ProgramSurvey& survey) {
       R"({{"file": {}, "units": {}, "work_offsets": {}, "offsets_changed_by": {}, "tools": {}, )"
       R"("extent": {}, "cycle_time": {}, "tool_changes": {}, "stops": {}, "readers": {}, )"
       R"("first_fault_line": {}}})",
-      quoted(survey.file), uses_json(survey.units), uses_json(survey.work_systems),
+      json_text(survey.file), uses_json(survey.units), uses_json(survey.work_systems),
       uses_json(survey.shifts), tools_json(survey), extent_json(survey), cycle_time_json(survey),
       survey.tool_changes, survey.stops, readers_json(survey),
       survey.read_to > 0 ? std::to_string(survey.read_to) : "null");

@@ -9,6 +9,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/config/quantity.h"
 #include "sim/preparation/preparation_cache.h"
+#include "sim/system/json.h"
 #include "sim/system/text_table.h"
 
 namespace servomill::sim {
@@ -309,17 +310,18 @@ std::string format_table(const Convergence& found) {
 }
 
 std::string to_json(const ConvergedRow& one) {
-  std::string changes;
-  for (std::size_t n = 0; n < kRefinements; ++n) {
-    const double change = one.change[n];
-    changes += fmt::format("{}\"{}\": {}", n == 0 ? "" : ", ", kInfos[n].name,
-                           std::isfinite(change) ? fmt::format("{:.9g}", change) : "null");
-  }
+  JsonObject changes;
+  for (std::size_t n = 0; n < kRefinements; ++n) changes.number(kInfos[n].name, one.change[n]);
   const std::string row = to_json(one.row);
   const int digits = one.digits();
-  return fmt::format(R"({}, "changes": {{{}}}, "resolution": {:.9g}, "digits": {}, "stable": {}}})",
-                     row.substr(0, row.size() - 1), changes, one.resolution, digits,
-                     digits == 0 ? "null" : fmt::format("\"{}\"", one.stable()));
+  const std::string more = JsonObject()
+                               .raw("changes", changes.line())
+                               .number("resolution", one.resolution)
+                               .integer("digits", digits)
+                               .text_or_null("stable", digits == 0 ? "" : one.stable())
+                               .line();
+  return fmt::format("{}, {}", std::string_view(row).substr(0, row.size() - 1),
+                     std::string_view(more).substr(1));
 }
 
 }  // namespace servomill::sim

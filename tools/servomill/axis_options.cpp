@@ -152,8 +152,4 @@ std::string axis_headline(const sim::MachineSettings& machine, int joint, Tick r
 
 double decibel(double ratio) { return 20.0 * std::log10(ratio); }
 
-std::string json_number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null";
-}
-
 }  // namespace servomill::tools

@@ -59,7 +59,4 @@ inline const char* small_unit(int joint) { return joint < kLinearJoints ? "um" :
 
 double decibel(double ratio);
 
-/// A number of JSON, null where there is none.
-std::string json_number(double value);
-
 }  // namespace servomill::tools

@@ -9,6 +9,7 @@
 #include "sim/preparation/estimate.h"
 #include "sim/run/budget.h"
 #include "sim/run/budget_store.h"
+#include "sim/system/json.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
 
@@ -143,32 +144,27 @@ void print_budget(const sim::Budget& budget) {
   if (!absent.empty()) fmt::print("  not in this case: {}\n", absent);
 }
 
-std::string number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null";
-}
-
 void print_json(const sim::Budget& budget) {
   const sim::QuantitySpec& q = budget.quantity;
-  fmt::print(R"({{"case": "{}", "quantity": "{}", "axis": "{}", "sections": "{}", "base": "{}", )",
-             sim::json_escaped(q.cases.front()), q.name, q.axis,
-             sim::json_escaped(fmt::format("{}", fmt::join(q.sections, ", "))),
-             sim::json_escaped(q.base));
+  sim::JsonObject out;
+  out.text("case", q.cases.front()).text("quantity", q.name);
+  out.text_or_null("axis", q.axis == '\0' ? "" : std::string(1, q.axis));
+  out.text("sections", fmt::format("{}", fmt::join(q.sections, ", "))).text("base", q.base);
   if (!budget.note.empty()) {
-    fmt::print("\"note\": \"{}\"}}\n", sim::json_escaped(budget.note));
+    fmt::print("{}\n", out.text("note", budget.note).line());
     return;
   }
-  fmt::print(R"("unit": "um", "s_mm": {}, "residual": {}, "residual_rms": {}, "parts": {{)",
-             number(budget.place_s), number(budget.residual.at_place), number(budget.residual.rms));
-  const char* separator = "";
+  out.text("unit", "um").number("s_mm", budget.place_s);
+  out.number("residual", budget.residual.at_place).number("residual_rms", budget.residual.rms);
+  sim::JsonObject parts;
   for (const sim::BudgetPart& part : budget.parts) {
     if (!part.present) continue;
-    fmt::print(R"({}"{}": {{"at_place": {}, "rms": {}}})", separator, sim::info_of(part.cause).name,
-               number(part.at_place), number(part.rms));
-    separator = ", ";
+    parts.raw(sim::info_of(part.cause).name,
+              sim::JsonObject().number("at_place", part.at_place).number("rms", part.rms).line());
   }
-  fmt::print("}}, \"sum\": {}, \"remainder\": {}, \"remainder_rms\": {}}}\n",
-             number(budget.sum_at_place()), number(budget.remainder.at_place),
-             number(budget.remainder.rms));
+  out.raw("parts", parts.line()).number("sum", budget.sum_at_place());
+  out.number("remainder", budget.remainder.at_place);
+  fmt::print("{}\n", out.number("remainder_rms", budget.remainder.rms).line());
 }
 
 }  // namespace

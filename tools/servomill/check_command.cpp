@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/evaluation/comparison.h"
 #include "sim/programs/canon.h"
 #include "sim/programs/program_survey.h"
+#include "sim/system/json.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/program_options.h"
 
@@ -30,16 +30,17 @@ void declare(Options& options) {
   options.add()("quiet,q", "prints nothing but faults");
 }
 
-std::string fault_json(const Fault& fault) {
-  return fmt::format(R"({{"file": "{}", "line": {}, "column": {}, "message": "{}"}})",
-                     sim::json_escaped(fault.place.file), fault.place.line, fault.place.column,
-                     sim::json_escaped(fault.message));
-}
-
-std::string faults_json(const std::vector<Fault>& faults) {
-  std::string out;
-  for (const Fault& fault : faults) out += (out.empty() ? "" : ", ") + fault_json(fault);
-  return "[" + out + "]";
+std::string to_json(const std::vector<Fault>& faults) {
+  std::vector<std::string> out;
+  for (const Fault& fault : faults) {
+    out.push_back(sim::JsonObject()
+                      .text("file", fault.place.file)
+                      .integer("line", fault.place.line)
+                      .integer("column", fault.place.column)
+                      .text("message", fault.message)
+                      .line());
+  }
+  return sim::json_list(out);
 }
 
 // @return number of faults
@@ -54,10 +55,12 @@ std::size_t check(const std::string& path, const Options& options,
         {path, inputs, options.list("work-offset"), options.list("tool-length")});
   }
   if (json) {
-    fmt::print(R"({{"file": "{}", "faults": {}, "warnings": {}, "program": {}}})"
-               "\n",
-               sim::json_escaped(path), faults_json(faults), faults_json(warnings),
-               survey ? sim::to_json(*survey) : "null");
+    fmt::print("{}\n", sim::JsonObject()
+                           .text("file", path)
+                           .raw("faults", to_json(faults))
+                           .raw("warnings", to_json(warnings))
+                           .raw("program", survey ? sim::to_json(*survey) : "null")
+                           .line());
     return faults.size();
   }
   for (const Fault& warning : warnings) {

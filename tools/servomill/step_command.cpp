@@ -9,6 +9,7 @@
 #include "sim/frequency/frequency_response.h"
 #include "sim/frequency/stability.h"
 #include "sim/run/servo_store.h"
+#include "sim/system/json.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {
@@ -110,14 +111,13 @@ void print_figures(const sim::StepSettings& settings, const sim::StepResponse& r
 
 void print_json(const sim::StepSettings& settings, const sim::StepResponse& response, char axis) {
   const sim::StepFigures& f = response.figures;
-  fmt::print(
-      "{{\"axis\": \"{}\", \"step\": \"{}\", \"height_SI\": {}, \"overshoot\": {}, "
-      "\"rise_time_s\": {}, \"settling_time_s\": {}, \"band\": {}, \"steady_error_SI\": {}, "
-      "\"peak_SI\": {}, \"peak_time_s\": {}, \"peak_current_A\": {}}}\n",
-      axis, name_of(settings.kind), json_number(settings.height), json_number(f.overshoot),
-      json_number(f.rise_time), json_number(f.settling_time), json_number(settings.band),
-      json_number(f.steady_error), json_number(f.peak), json_number(f.peak_time),
-      json_number(response.peak_current));
+  sim::JsonObject out;
+  out.text("axis", std::string(1, axis)).text("step", name_of(settings.kind));
+  out.number("height_SI", settings.height).number("overshoot", f.overshoot);
+  out.number("rise_time_s", f.rise_time).number("settling_time_s", f.settling_time);
+  out.number("band", settings.band).number("steady_error_SI", f.steady_error);
+  out.number("peak_SI", f.peak).number("peak_time_s", f.peak_time);
+  fmt::print("{}\n", out.number("peak_current_A", response.peak_current).line());
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/system/json.h"
+
 namespace servomill::tools {
 namespace {
 
@@ -77,8 +79,8 @@ SweepLines::Said SweepLines::said_of(const sim::SweepPoint& point) const {
   }
   if (form_ == Form::json) {
     for (const auto& row : result.rows) {
-      said.out += fmt::format("{{\"point\": \"{}\", \"row\": {}}}\n", sim::json_escaped(where),
-                              sim::to_json(row));
+      said.out +=
+          sim::JsonObject().text("point", where).raw("row", sim::to_json(row)).line() + '\n';
     }
   } else if (form_ == Form::table && !result.rows.empty()) {
     said.out = line_of(point);

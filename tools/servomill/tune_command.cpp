@@ -8,6 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/bode.h"
 #include "sim/frequency/tuning.h"
+#include "sim/system/json.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {
@@ -159,22 +160,24 @@ void print_toml(char axis, const sim::Gains& gains) {
   fmt::print("velocity_reset_time_ms = {:.4g}\n", gains.Tn / ms);
 }
 
+std::string to_json(const sim::Assessment& a) {
+  sim::JsonObject out;
+  out.number("velocity_bandwidth_rad_per_s", a.gains.wv).number("reset_time_s", a.gains.Tn);
+  out.number("Kv_per_s", a.gains.Kv).boolean("stable", a.stable);
+  out.number("velocity_gain_margin", a.velocity.gain);
+  out.number("velocity_phase_margin_deg", a.velocity.phase / deg);
+  out.number("position_gain_margin", a.position.gain);
+  out.number("position_phase_margin_deg", a.position.phase / deg);
+  out.number("bandwidth_Hz", a.closed.bandwidth).number("overshoot", a.overshoot);
+  return out.number("load_peak_SI", a.load_peak).line();
+}
+
 void print_json(char axis, const sim::Tuning& t, double common_Kv) {
-  const auto gains = [](const sim::Assessment& a) {
-    return fmt::format(
-        "{{\"velocity_bandwidth_rad_per_s\": {}, \"reset_time_s\": {}, \"Kv_per_s\": {}, "
-        "\"stable\": {}, \"velocity_gain_margin\": {}, \"velocity_phase_margin_deg\": {}, "
-        "\"position_gain_margin\": {}, \"position_phase_margin_deg\": {}, \"bandwidth_Hz\": {}, "
-        "\"overshoot\": {}, \"load_peak_SI\": {}}}",
-        json_number(a.gains.wv), json_number(a.gains.Tn), json_number(a.gains.Kv), a.stable,
-        json_number(a.velocity.gain), json_number(a.velocity.phase / deg),
-        json_number(a.position.gain), json_number(a.position.phase / deg),
-        json_number(a.closed.bandwidth), json_number(a.overshoot), json_number(a.load_peak));
-  };
-  fmt::print(
-      "{{\"axis\": \"{}\", \"before\": {}, \"after\": {}, \"Kv_limit_per_s\": {}, "
-      "\"common_Kv_per_s\": {}}}\n",
-      axis, gains(t.before), gains(t.after), json_number(t.Kv_limit), json_number(common_Kv));
+  sim::JsonObject out;
+  out.text("axis", std::string(1, axis));
+  out.raw("before", to_json(t.before)).raw("after", to_json(t.after));
+  out.number("Kv_limit_per_s", t.Kv_limit).number("common_Kv_per_s", common_Kv);
+  fmt::print("{}\n", out.line());
 }
 
 }  // namespace

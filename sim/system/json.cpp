@@ -1,0 +1,54 @@
+#include "sim/system/json.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace servomill::sim {
+
+std::string json_text(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < 0x20) {
+      out += fmt::format("\\u{:04x}", static_cast<int>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+std::string json_number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null";
+}
+
+std::string json_list(std::span<const std::string> items) {
+  return fmt::format("[{}]", fmt::join(items, ", "));
+}
+
+JsonObject& JsonObject::raw(std::string_view key, std::string_view json) {
+  if (!members_.empty()) members_ += ", ";
+  members_ += json_text(key);
+  members_ += ": ";
+  members_ += json;
+  return *this;
+}
+
+JsonObject& JsonObject::text(std::string_view key, std::string_view value) {
+  return raw(key, json_text(value));
+}
+
+JsonObject& JsonObject::text_or_null(std::string_view key, std::string_view value) {
+  return raw(key, value.empty() ? "null" : json_text(value));
+}
+
+JsonObject& JsonObject::number(std::string_view key, double value) {
+  return raw(key, json_number(value));
+}
+
+JsonObject& JsonObject::boolean(std::string_view key, bool value) {
+  return raw(key, value ? "true" : "false");
+}
+
+}  // namespace servomill::sim
