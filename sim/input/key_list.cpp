@@ -24,8 +24,7 @@ struct Requests {
 
 // A component error over mm: listed with those.
 constexpr std::string_view kLeadError = "machine.axis.X.screw.lead_error";
-constexpr std::string_view kTop = "top";  // the section of keys without one
-constexpr std::size_t kMostWords = 8;     // of a choice that are printed
+constexpr std::size_t kMostWords = 8;  // of a choice that are printed
 
 struct Renaming {
   std::regex pattern;
@@ -146,14 +145,14 @@ void append_new(std::string& list, const std::string& item, std::string_view sep
 std::string presence_of(const std::vector<KeyUse>& uses) {
   bool asked = false, required = false, optional = false;
   std::vector<std::string> defaults;
-  const bool is_choice = uses.back().type == KeyType::choice;
+  const bool is_text = uses.back().type == KeyType::choice || uses.back().type == KeyType::text;
   for (const KeyUse& use : uses) {
     if (use.type == KeyType::asked) asked = asked || !required;
     if (use.type == KeyType::asked) continue;
     required = required || (use.required && !asked);
     optional = optional || !use.required;
     if (!use.fallback || use.fallback->empty()) continue;
-    const std::string text = is_choice ? '"' + *use.fallback + '"' : *use.fallback;
+    const std::string text = is_text ? '"' + *use.fallback + '"' : *use.fallback;
     if (std::find(defaults.begin(), defaults.end(), text) == defaults.end())
       defaults.push_back(text);
   }
@@ -172,6 +171,7 @@ KeyEntry entry_of(const Requests& requests) {
                help_of_key(requests.section, requests.key)};
   for (const KeyUse& use : requests.uses) {
     append_new(out.type, type_of(use), " | ");
+    append_new(out.unit, use.unit, " | ");
     if (!use.range.empty() && !out.range.empty() && use.range != out.range) {
       out.range = "bounds follow from other keys";
     } else if (!use.range.empty()) {
@@ -187,19 +187,19 @@ void append_strategies(std::vector<KeyEntry>& out) {
   constexpr double kNoBound = 1e300;  // of a parameter's specification
   for (const strategies::Entry& entry : strategies::entries()) {
     for (const ParameterSpec& spec : entry.parameters) {
-      std::string type;
+      std::string type, range;
       if (spec.is_number) {
         type = spec.unit.empty() ? "number" : "number in " + std::string(spec.unit);
-        if (spec.min > -kNoBound) type += fmt::format(", >= {:g}", spec.min);
-        if (spec.max < kNoBound) type += fmt::format(", <= {:g}", spec.max);
+        if (spec.min > -kNoBound) range = fmt::format(">= {:g}", spec.min);
+        if (spec.max < kNoBound) append_new(range, fmt::format("<= {:g}", spec.max), " and ");
       }
       for (const std::string_view word : spec.words) {
-        type += fmt::format("{}\"{}\"", type.empty() ? "" : " | ", word);
+        append_new(type, fmt::format("\"{}\"", word), " | ");
       }
       const std::string presence =
           spec.default_text.empty() ? "required" : "default " + std::string(spec.default_text);
-      out.push_back({fmt::format("case.strategy.{}", entry.name), std::string(spec.name), type, "",
-                     presence, spec.help});
+      out.push_back({fmt::format("case.strategy.{}", entry.name), std::string(spec.name), type,
+                     range, presence, spec.help, std::string(spec.unit)});
     }
   }
 }
@@ -213,19 +213,14 @@ std::vector<KeyEntry> list_keys() {
   return out;
 }
 
-std::string describe_keys(std::string_view section) {
-  std::string out, last;
+std::vector<KeyEntry> keys_of(std::string_view section) {
+  std::vector<KeyEntry> out;
   std::vector<std::string> names;
-  for (const KeyEntry& one : list_keys()) {
-    const std::string name = one.section.empty() ? std::string(kTop) : one.section;
-    const bool begins = name != last;
-    last = name;
-    if (begins) names.push_back(name);
-    if (!section.empty() && name != section && !name.starts_with(fmt::format("{}.", section)))
-      continue;
-    if (begins) out += fmt::format("{}[{}]\n", out.empty() ? "" : "\n", name);
-    out += fmt::format("  {:<24} {} [{}{}{}; {}]\n", one.key, one.help, one.type,
-                       one.range.empty() ? "" : ", ", one.range, one.presence);
+  for (KeyEntry& one : list_keys()) {
+    const std::string name = one.section.empty() ? std::string(kTopSection) : one.section;
+    if (names.empty() || names.back() != name) names.push_back(name);
+    const bool below = name.starts_with(fmt::format("{}.", section));
+    if (section.empty() || name == section || below) out.push_back(std::move(one));
   }
   if (!out.empty()) return out;
   const std::vector<std::string_view> views(names.begin(), names.end());

@@ -9,6 +9,9 @@
 
 namespace servomill::sim {
 
+/// The name by which the keys without a section are asked for.
+inline constexpr std::string_view kTopSection = "top";
+
 /// One key of a section, all requests for it taken together.
 struct KeyEntry {
   std::string section;  // "machine.nc"; empty: the root. NAME, EXX, EC0Y, X stand for any such name
@@ -17,14 +20,16 @@ struct KeyEntry {
   std::string range;      // "> 0"; empty: none
   std::string presence;   // "required", "default 1", "optional", "default follows from other keys"
   std::string_view help;  // empty: missing
+  // unit of a bare number, "kg | kg m^2" of linear and rotary axes; empty: none
+  std::string unit = {};
 };
 
 /// All keys, sections in the order in which they are read.
 std::vector<KeyEntry> list_keys();
 
-/// The list as text, of all sections or of those whose name begins with `section`.
-/// @throws InputError if there is none, with the nearest name
-std::string describe_keys(std::string_view section);
+/// Keys of a section and those below it; empty: of all; "top": of those without a section.
+/// @throws InputError if there are none, with the nearest name
+std::vector<KeyEntry> keys_of(std::string_view section);
 
 /// Sentence about a key; empty if there is none.
 std::string_view help_of_key(std::string_view section, std::string_view key);

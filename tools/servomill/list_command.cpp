@@ -6,7 +6,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/input/catalogue.h"
-#include "sim/input/key_list.h"
+#include "sim/input/key_text.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {
@@ -35,7 +35,13 @@ void list_keys_of(const Options& options) {
     throw InputError({"servomill list keys"},
                      fmt::format("takes one section, got {}; see --help", words.size() - 1));
   }
-  fmt::print("{}", sim::describe_keys(words.size() == 2 ? words[1] : ""));
+  if (options.has("json") && options.has("markdown")) {
+    throw InputError({"--json"}, "does not go with --markdown");
+  }
+  const std::vector<sim::KeyEntry> keys = sim::keys_of(words.size() == 2 ? words[1] : "");
+  fmt::print("{}", options.has("json")       ? sim::as_json(keys)
+                   : options.has("markdown") ? sim::as_markdown(keys)
+                                             : sim::as_text(keys));
 }
 
 }  // namespace
@@ -53,12 +59,17 @@ int list_command(const Arguments& arguments) {
       "strategies|machines|scenarios|quantities|rules|keys");
   options.add()("folder", po::value<std::string>()->default_value("scenarios")->value_name("DIR"),
                 "where machines and scenarios are looked for");
+  options.add()("json", "keys: prints one JSON object a key");
+  options.add()("markdown", "keys: prints a page with one table a section");
   if (!options.parse(arguments)) return kDone;
   if (const auto words = options.words(); !words.empty() && words.front() == "keys") {
     list_keys_of(options);
     return kDone;
   }
   const std::string what = options.word();
+  for (const char* form : {"json", "markdown"}) {
+    if (options.has(form)) throw InputError({std::string("--") + form}, "goes with keys only");
+  }
   if (what == "strategies") {
     fmt::print("{}", sim::describe_strategies());
   } else if (what == "quantities") {

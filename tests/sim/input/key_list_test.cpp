@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "plant/vocabulary/input_error.h"
 
@@ -64,8 +65,9 @@ TEST(KeyList, HasTypeUnitRangeAndDefault) {
   EXPECT_EQ(facts("record", "uncorrectable"), "true | false; ; default false");
   EXPECT_EQ(facts("program", "tool"), "list of tables; ; optional");
   EXPECT_EQ(facts("machine.axis.X", "load"), "number in kg | number in kg m^2; > 0; required");
-  EXPECT_EQ(facts("case.strategy.table", "spacing_mm"),
-            "number in mm, >= 0.0001; ; default 1.6384");
+  EXPECT_EQ(facts("case.strategy.table", "spacing_mm"), "number in mm; >= 0.0001; default 1.6384");
+  EXPECT_EQ(entry("machine.axis.X", "load").unit, "kg | kg m^2");
+  EXPECT_EQ(entry("record", "compression").unit, "");
 }
 
 TEST(KeyList, TellsKeysThatMayBeAbsentFromRequiredOnes) {
@@ -90,23 +92,18 @@ TEST(KeyList, PrintsNoNumberForADefaultThatFollowsFromOtherKeys) {
   EXPECT_EQ(entry("program.tool", "corner_radius_mm").range, "bounds follow from other keys");
 }
 
-TEST(KeyList, IsPrintedBySections) {
-  EXPECT_EQ(describe_keys("feedback_hardware"),
-            "[feedback_hardware]\n"
-            "  connected                hardware in the signal path also of cases that do not use "
-            "it [true | false; default false]\n"
-            "  signal_delay_us          delay from the scale to the reading of the NC "
-            "[number in us, >= 0 and <= 6e+07; default 10]\n"
-            "  model_period_us          period of the error model; its value acts one period later "
-            "[number in us, > 0 and <= 6e+07; default 60]\n");
-  EXPECT_TRUE(describe_keys("top").starts_with("[top]\n  based_on "));
-  EXPECT_NE(describe_keys("machine.axis.X").find("\n[machine.axis.X.friction]\n"),
-            std::string::npos);
+TEST(KeyList, GivesASectionWithThoseBelowIt) {
+  for (const KeyEntry& one : keys_of("top")) EXPECT_EQ(one.section, "") << one.key;
+  std::set<std::string> sections;
+  for (const KeyEntry& one : keys_of("machine.axis.X")) sections.insert(one.section);
+  EXPECT_TRUE(sections.contains("machine.axis.X"));
+  EXPECT_TRUE(sections.contains("machine.axis.X.friction"));
+  EXPECT_FALSE(sections.contains("machine.axis"));
 }
 
 TEST(KeyList, RefusesASectionThatThereIsNot) {
   try {
-    describe_keys("machine.nx");
+    keys_of("machine.nx");
     FAIL() << "must throw";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),

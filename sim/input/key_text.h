@@ -1,0 +1,21 @@
+/// The list of keys, printed.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "sim/input/key_list.h"
+
+namespace servomill::sim {
+
+/// "[record]" and one line a key: name, sentence, and in brackets type, unit, range, presence.
+std::string as_text(std::span<const KeyEntry> keys);
+
+/// A page: a heading and a table a section.
+std::string as_markdown(std::span<const KeyEntry> keys);
+
+/// One JSON object a line with section, key, help, type, unit, range, presence and default; null
+/// where there is none.
+std::string as_json(std::span<const KeyEntry> keys);
+
+}  // namespace servomill::sim

@@ -1,0 +1,62 @@
+#include "sim/input/key_text.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace servomill::sim::key_text_test {
+namespace {
+
+const std::vector<KeyEntry>& hardware() {
+  static const std::vector<KeyEntry> kKeys = keys_of("feedback_hardware");
+  return kKeys;
+}
+
+TEST(KeyText, HasOneLineAKey) {
+  EXPECT_EQ(as_text(hardware()),
+            "[feedback_hardware]\n"
+            "  connected                hardware in the signal path also of cases that do not use "
+            "it [true | false; default false]\n"
+            "  signal_delay_us          delay from the scale to the reading of the NC "
+            "[number in us, >= 0 and <= 6e+07; default 10]\n"
+            "  model_period_us          period of the error model; its value acts one period later "
+            "[number in us, > 0 and <= 6e+07; default 60]\n");
+  EXPECT_TRUE(as_text(keys_of("top")).starts_with("[top]\n  based_on "));
+  EXPECT_NE(as_text(keys_of("machine.axis.X")).find("\n\n[machine.axis.X.friction]\n"),
+            std::string::npos);
+}
+
+// A bar would end the cell of a table, an underscore begin emphasis.
+TEST(KeyText, EscapesWhatMarkdownReads) {
+  const std::vector<KeyEntry> keys = {
+      {"machine.nc", "filter", "\"a\" | \"b_1\"", "", "default \"a\"", "chain [w C' t]"}};
+  const std::string page = as_markdown(keys);
+  EXPECT_TRUE(
+      page.ends_with("\n## machine.nc\n\n"
+                     "| key | meaning | type | range | presence |\n"
+                     "|---|---|---|---|---|\n"
+                     "| `filter` | chain \\[w C' t] | \"a\" \\| \"b\\_1\" |  | default \"a\" |\n"))
+      << page;
+}
+
+TEST(KeyText, HasOneJsonObjectAKey) {
+  const std::string lines = as_json(hardware());
+  EXPECT_TRUE(
+      lines.ends_with(R"({"section": "feedback_hardware", "key": "model_period_us", )"
+                      R"("help": "period of the error model; its value acts one period later", )"
+                      R"("type": "number in us", "unit": "us", "range": "> 0 and <= 6e+07", )"
+                      R"("presence": "default 60", "default": "60"})"
+                      "\n"))
+      << lines;
+  const std::vector<KeyEntry> follows = {
+      {"", "title", "text", "", "default follows from other keys", "title of the experiment"}};
+  EXPECT_EQ(
+      as_json(follows),
+      R"({"section": null, "key": "title", "help": "title of the experiment", "type": "text", )"
+      R"("unit": null, "range": null, "presence": "default follows from other keys", )"
+      R"("default": null})"
+      "\n");
+}
+
+}  // namespace
+}  // namespace servomill::sim::key_text_test
