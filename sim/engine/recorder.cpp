@@ -25,6 +25,17 @@ std::string letters(const MachineSettings& machine, const std::vector<int>& join
   return out;
 }
 
+const Signal kToolSignals[] = {
+    {"tool_position_nominal", "mm",
+     "tool centre point of the ideal machine on the programmed path, in the workpiece", "XYZ",
+     kXyz},
+    {"tool_position_true", "mm", "tool centre point, in the workpiece", "XYZ", kXyz},
+    {"tool_deviation", "um", "true minus nominal tool centre point at equal s", "XYZ", kXyz},
+    {"tool_axis_nominal", "1", "unit tool axis of the ideal machine", "IJK", kIjk},
+    {"tool_axis_true", "1", "unit tool axis, in the workpiece", "IJK", kIjk},
+    {"contour_error", "um", "distance of the true tool centre point to the nominal path", "", ""},
+};
+
 std::vector<Signal> signals(const std::string& linear, const std::string& rotary, bool with_imposed,
                             bool with_uncorrectable, bool with_cut, bool with_programmed) {
   std::vector<Signal> all = {
@@ -36,12 +47,10 @@ std::vector<Signal> signals(const std::string& linear, const std::string& rotary
   };
   const auto per_axis = [&](const std::string& name, const char* unit_linear,
                             const char* unit_rotary, const std::string& what) {
-    if (!linear.empty()) {
+    if (!linear.empty())
       all.push_back({name + "_linear", unit_linear, what + ", linear axes", linear, kLinear});
-    }
-    if (!rotary.empty()) {
+    if (!rotary.empty())
       all.push_back({name + "_rotary", unit_rotary, what + ", rotary axes", rotary, kRotary});
-    }
   };
   per_axis("ref", "mm", "deg", "interpolated position");
   per_axis("cmd", "mm", "deg", "set point after corrections");
@@ -57,16 +66,7 @@ std::vector<Signal> signals(const std::string& linear, const std::string& rotary
                    "displacement that the imposed errors ask for at the programmed position",
                    linear, kLinear});
   }
-  all.push_back({"tool_position_nominal", "mm",
-                 "tool centre point of the ideal machine on the programmed path, in the workpiece",
-                 "XYZ", kXyz});
-  all.push_back({"tool_position_true", "mm", "tool centre point, in the workpiece", "XYZ", kXyz});
-  all.push_back(
-      {"tool_deviation", "um", "true minus nominal tool centre point at equal s", "XYZ", kXyz});
-  all.push_back({"tool_axis_nominal", "1", "unit tool axis of the ideal machine", "IJK", kIjk});
-  all.push_back({"tool_axis_true", "1", "unit tool axis, in the workpiece", "IJK", kIjk});
-  all.push_back({"contour_error", "um",
-                 "distance of the true tool centre point to the nominal path", "", ""});
+  all.insert(all.end(), std::begin(kToolSignals), std::end(kToolSignals));
   if (with_uncorrectable) {
     all.push_back({"uncorrectable_tip", "um",
                    "distance of the tip that the corrected axes cannot take away, believed", "",

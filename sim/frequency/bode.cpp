@@ -67,6 +67,124 @@ double fed_forward_acceleration(const MachineSettings& machine, int joint) {
   return kShare * c.i_max * c.Kt * c.r / (c.kaf * c.J);  // infinite without feed-forward
 }
 
+// The peak of a response over frequency.
+ClosedLoop peak_of(const Curve& curve) {
+  ClosedLoop out;
+  out.peak = 0.0;
+  for (std::size_t i = 0; i < curve.f.size(); ++i) {
+    if (std::abs(curve.y[i]) <= out.peak) continue;
+    out.peak = std::abs(curve.y[i]);
+    out.peak_frequency = curve.f[i];
+  }
+  return out;
+}
+
+// All curves of one loop; those with the same entry share a measurement.
+class LoopCurves {
+ public:
+  LoopCurves(const MachineSettings& machine, int joint, Tick reading_delay,
+             const BodeSettings& settings)
+      : machine_(machine),
+        joint_(joint),
+        reading_delay_(reading_delay),
+        settings_(settings),
+        loop_(settings.loop == BodeLoop::velocity ? PositionLoop::open : PositionLoop::closed),
+        r_(machine.drives[static_cast<std::size_t>(joint)].r),
+        exact_(machine, joint, reading_delay, loop_) {
+    out_.loop = settings.loop;
+    out_.nyquist = nyquist_frequency(machine.nc.periods, settings.loop);
+    out_.time_constant = slowest_time_constant(machine, joint, reading_delay, loop_);
+    out_.stable = std::isfinite(out_.time_constant);
+    out_.has_stable_velocity_loop = out_.stable || velocity_spectral_radius(machine, joint) < 1.0;
+    out_.measured = settings.measure && out_.stable;
+    out_.method = settings.method;
+    how_.method = settings.method;
+    const double reach = kDefaultReach * out_.nyquist;
+    to_ = settings.to.value_or(settings.from < reach ? reach : out_.nyquist);
+    wanted_ = logarithmic(settings.from, to_, settings.points);
+    rings_ = ringing_frequencies(machine, joint, reading_delay, loop_, out_.nyquist);
+  }
+
+  void add(const CurveOf& of) {
+    if (out_.measured && (points_.empty() || of.entry != how_.entry)) measure_from(of.entry);
+    const ResponseAt at = [&](double f) { return taken(of, exact_.at(of.entry, f), r_); };
+    BodeCurve& curve = out_.curves.emplace_back();
+    curve.name = of.name;
+    curve.long_name = of.long_name;
+    curve.exact = curve_of(at, logarithmic(settings_.from, to_, kDrawn, rings_));
+    if (!out_.measured) curve.f = wanted_;
+    for (const MeasuredPoint& point : points_) {
+      curve.f.push_back(point.f);
+      constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+      const bool known = !of.input || resolved(point, of.output, *of.input);
+      curve.measured.push_back(known ? taken(of, point.response, r_) : Complex(kUnknown, kUnknown));
+    }
+    for (const double f : curve.f) curve.exact_at.push_back(at(f));
+    read_off(curve.name, at);
+  }
+
+  BodeResult result() && {
+    if (out_.fault) {
+      for (BodeCurve& curve : out_.curves) curve.measured.clear();
+    }
+    return std::move(out_);
+  }
+
+ private:
+  void measure_from(Entry entry) {
+    how_.entry = entry;
+    how_.amplitude = settings_.amplitude.value_or(default_amplitude(machine_, joint_, entry));
+    how_.velocity =
+        settings_.velocity.value_or(default_velocity(machine_, joint_, entry, how_.amplitude));
+    if (entry == Entry::set_point_fed_forward) {
+      how_.max_acceleration = fed_forward_acceleration(machine_, joint_);
+    }
+    const MeasuredResponse measured =
+        measure(machine_, joint_, reading_delay_, loop_, how_, wanted_);
+    if (measured.fault) {
+      out_.fault = measured.fault;
+      out_.measured = false;
+      points_.clear();
+    } else {
+      points_ = measured.points;
+    }
+    out_.current_limited = out_.current_limited || measured.current_limited;
+    out_.amplitude = how_.amplitude;
+    out_.velocity = how_.velocity;
+    out_.crest_factor = measured.crest_factor;
+    out_.peak_current = std::max(out_.peak_current, measured.peak_current);
+    out_.simulated_time += measured.simulated_time;
+  }
+
+  // Over the whole range, whatever part of it is shown.
+  void read_off(std::string_view name, const ResponseAt& at) {
+    const auto whole = [&] {
+      return curve_of(at, logarithmic(kLowest, out_.nyquist, kDrawn, rings_));
+    };
+    if (name == "position_open" || name == "velocity_open") {
+      out_.margins = margins_of(whole(), at);
+    } else if (name == "position_closed" || name == "velocity_closed") {
+      out_.closed = closed_loop_of(whole(), at);
+    } else if (name == "compliance") {
+      out_.closed = peak_of(whole());
+    }
+  }
+
+  const MachineSettings& machine_;
+  int joint_;
+  Tick reading_delay_;
+  const BodeSettings& settings_;
+  PositionLoop loop_;
+  double r_;  // m or rad of the slide per rad of the motor
+  FrequencyResponse exact_;
+  double to_ = 0.0;             // Hz
+  std::vector<double> wanted_;  // Hz
+  std::vector<double> rings_;   // Hz
+  Measurement how_;
+  std::vector<MeasuredPoint> points_;
+  BodeResult out_;
+};
+
 }  // namespace
 
 double nyquist_frequency(const LoopPeriods& periods, BodeLoop loop) {
@@ -75,87 +193,9 @@ double nyquist_frequency(const LoopPeriods& periods, BodeLoop loop) {
 
 BodeResult bode(const MachineSettings& machine, int joint, Tick reading_delay,
                 const BodeSettings& settings) {
-  const PositionLoop loop =
-      settings.loop == BodeLoop::velocity ? PositionLoop::open : PositionLoop::closed;
-  const double r = machine.drives[static_cast<std::size_t>(joint)].r;
-  BodeResult out;
-  out.loop = settings.loop;
-  out.nyquist = nyquist_frequency(machine.nc.periods, settings.loop);
-  out.time_constant = slowest_time_constant(machine, joint, reading_delay, loop);
-  out.stable = std::isfinite(out.time_constant);
-  out.has_stable_velocity_loop = out.stable || velocity_spectral_radius(machine, joint) < 1.0;
-  out.measured = settings.measure && out.stable;
-  out.method = settings.method;
-
-  FrequencyResponse exact(machine, joint, reading_delay, loop);
-  const double reach = kDefaultReach * out.nyquist;
-  const double to = settings.to.value_or(settings.from < reach ? reach : out.nyquist);
-  const std::vector<double> wanted = logarithmic(settings.from, to, settings.points);
-  const std::vector<double> rings =
-      ringing_frequencies(machine, joint, reading_delay, loop, out.nyquist);
-  Measurement how;
-  how.method = settings.method;
-  std::vector<MeasuredPoint> points;
-  for (const CurveOf& of : curves_of(settings.loop)) {
-    const ResponseAt at = [&](double f) { return taken(of, exact.at(of.entry, f), r); };
-    if (out.measured && (points.empty() || of.entry != how.entry)) {
-      how.entry = of.entry;
-      how.amplitude = settings.amplitude.value_or(default_amplitude(machine, joint, of.entry));
-      how.velocity =
-          settings.velocity.value_or(default_velocity(machine, joint, of.entry, how.amplitude));
-      if (of.entry == Entry::set_point_fed_forward) {
-        how.max_acceleration = fed_forward_acceleration(machine, joint);
-      }
-      const MeasuredResponse measured = measure(machine, joint, reading_delay, loop, how, wanted);
-      if (measured.fault) {
-        out.fault = measured.fault;
-        out.measured = false;
-        points.clear();
-      } else {
-        points = measured.points;
-      }
-      out.current_limited = out.current_limited || measured.current_limited;
-      out.amplitude = how.amplitude;
-      out.velocity = how.velocity;
-      out.crest_factor = measured.crest_factor;
-      out.peak_current = std::max(out.peak_current, measured.peak_current);
-      out.simulated_time += measured.simulated_time;
-    }
-    BodeCurve& curve = out.curves.emplace_back();
-    curve.name = of.name;
-    curve.long_name = of.long_name;
-    curve.exact = curve_of(at, logarithmic(settings.from, to, kDrawn, rings));
-    if (!out.measured) curve.f = wanted;
-    for (const MeasuredPoint& point : points) {
-      curve.f.push_back(point.f);
-      constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-      const bool known = !of.input || resolved(point, of.output, *of.input);
-      curve.measured.push_back(known ? taken(of, point.response, r) : Complex(kUnknown, kUnknown));
-    }
-    for (const double f : curve.f) curve.exact_at.push_back(at(f));
-
-    // what is read off, over the whole range
-    const auto whole = [&] {
-      return curve_of(at, logarithmic(kLowest, out.nyquist, kDrawn, rings));
-    };
-    if (curve.name == "position_open" || curve.name == "velocity_open") {
-      out.margins = margins_of(whole(), at);
-    } else if (curve.name == "position_closed" || curve.name == "velocity_closed") {
-      out.closed = closed_loop_of(whole(), at);
-    } else if (curve.name == "compliance") {
-      out.closed.peak = 0.0;
-      const Curve all = whole();
-      for (std::size_t i = 0; i < all.f.size(); ++i) {
-        if (std::abs(all.y[i]) <= out.closed.peak) continue;
-        out.closed.peak = std::abs(all.y[i]);
-        out.closed.peak_frequency = all.f[i];
-      }
-    }
-  }
-  if (out.fault) {
-    for (BodeCurve& curve : out.curves) curve.measured.clear();
-  }
-  return out;
+  LoopCurves curves(machine, joint, reading_delay, settings);
+  for (const CurveOf& of : curves_of(settings.loop)) curves.add(of);
+  return std::move(curves).result();
 }
 
 Tick reading_delay_of(const Scenario& scenario) {

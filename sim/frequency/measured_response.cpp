@@ -127,49 +127,84 @@ class Excitation {
   double crest_factor_ = 0.0;
 };
 
-void measure_window(AxisStand& stand, PositionLoop loop, const Measurement& how,
-                    const Window& window, double wait, MeasuredResponse& out) {
-  const Excitation excitation(window, stand, how);
-  const double h = stand.base();
-  const auto feed = [&](Tick n) {
-    StandInput in = excitation.at(n);
-    in.q += how.position + how.velocity * h * static_cast<double>(n);
-    in.dq += how.velocity;
-    if (loop == PositionLoop::open) in.added.velocity += how.velocity;
-    return in;
-  };
-  std::vector<Fundamental> sums(excitation.lines()), added(excitation.lines());
-  const double Tv = stand.machine().nc.cascade[static_cast<std::size_t>(stand.joint())].Tv;
-  std::optional<double> last_speed;
-  double turned = 0.0;        // rad, true, since the last instant of the velocity loop
-  bool whole_period = false;  // it has been seen
-  const auto encoder_errors = [&](std::uint8_t due, const AxisSignals& y) {
+// How far the signals are off the true ones, over a window.
+class EncoderErrors {
+ public:
+  explicit EncoderErrors(AxisStand& stand)
+      : stand_(stand),
+        Tv_(stand.machine().nc.cascade[static_cast<std::size_t>(stand.joint())].Tv) {}
+
+  AxisSignals at(std::uint8_t due, const AxisSignals& y) {
     AxisSignals errors{};
     const double speed = y[index_of(AxisSignal::motor_speed)];
-    if (last_speed) turned += 0.5 * h * (*last_speed + speed);
-    last_speed = speed;
+    if (last_speed_) turned_ += 0.5 * stand_.base() * (*last_speed_ + speed);
+    last_speed_ = speed;
     errors[index_of(AxisSignal::reading)] = errors[index_of(AxisSignal::position_error)] =
-        stand.scale_error();
+        stand_.scale_error();
     if (!(due & kVelocityLoop)) return errors;
-    if (whole_period) {
+    if (whole_period_) {
       errors[index_of(AxisSignal::measured_speed)] = errors[index_of(AxisSignal::speed_error)] =
-          y[index_of(AxisSignal::measured_speed)] - turned / Tv;
+          y[index_of(AxisSignal::measured_speed)] - turned_ / Tv_;
     }
-    turned = 0.0;
-    whole_period = true;
+    turned_ = 0.0;
+    whole_period_ = true;
     return errors;
-  };
-  const auto add = [&](Tick n, std::uint8_t due, AxisSignals y) {
-    const double moved = how.position + how.velocity * h * static_cast<double>(n);
-    y[index_of(AxisSignal::position)] -= moved;
-    y[index_of(AxisSignal::reading)] -= moved;
-    if (due & kVelocityLoop) out.current_limited = out.current_limited || stand.at_current_limit();
-    out.peak_current = std::max(out.peak_current, std::abs(y[index_of(AxisSignal::current)]));
-    const AxisSignals errors = encoder_errors(due, y);
+  }
+
+ private:
+  AxisStand& stand_;
+  double Tv_;
+  std::optional<double> last_speed_;
+  double turned_ = 0.0;        // rad, true, since the last instant of the velocity loop
+  bool whole_period_ = false;  // it has been seen
+};
+
+// Fundamentals of all lines of an excitation.
+struct Lines {
+  explicit Lines(std::size_t count) : sums(count), added(count) {}
+
+  void add(const Excitation& excitation, Tick n, std::uint8_t due, const AxisSignals& y,
+           const AxisSignals& errors) {
     for (std::size_t k = 0; k < sums.size(); ++k) {
       sums[k].add(due, y, std::conj(excitation.turn(k, n)));
       added[k].add(due, errors, std::conj(excitation.turn(k, n)));
     }
+  }
+
+  // Half the amplitude of a real sinusoid turns forward.
+  MeasuredPoint point(std::size_t k, Complex amplitude) const {
+    MeasuredPoint out;
+    for (std::size_t s = 0; s < kAxisSignals; ++s) {
+      out.response[s] = 2.0 * sums[k].mean()[s] / amplitude;
+      out.added[s] = 2.0 * added[k].mean()[s] / amplitude;
+    }
+    return out;
+  }
+
+  std::vector<Fundamental> sums, added;
+};
+
+void measure_window(AxisStand& stand, PositionLoop loop, const Measurement& how,
+                    const Window& window, double wait, MeasuredResponse& out) {
+  const Excitation excitation(window, stand, how);
+  const auto moved = [&, h = stand.base()](Tick n) {
+    return how.position + how.velocity * h * static_cast<double>(n);
+  };
+  const auto feed = [&](Tick n) {
+    StandInput in = excitation.at(n);
+    in.q += moved(n);
+    in.dq += how.velocity;
+    if (loop == PositionLoop::open) in.added.velocity += how.velocity;
+    return in;
+  };
+  Lines lines(excitation.lines());
+  EncoderErrors encoders(stand);
+  const auto add = [&](Tick n, std::uint8_t due, AxisSignals y) {
+    y[index_of(AxisSignal::position)] -= moved(n);
+    y[index_of(AxisSignal::reading)] -= moved(n);
+    if (due & kVelocityLoop) out.current_limited = out.current_limited || stand.at_current_limit();
+    out.peak_current = std::max(out.peak_current, std::abs(y[index_of(AxisSignal::current)]));
+    lines.add(excitation, n, due, y, encoders.at(due, y));
   };
 
   stand.settle(how.position);
@@ -184,14 +219,9 @@ void measure_window(AxisStand& stand, PositionLoop loop, const Measurement& how,
   if (!out.fault) out.fault = stand.fault();
   out.crest_factor = excitation.crest_factor();
   out.simulated_time += static_cast<double>(first + window.hyperperiods) * stand.period();
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    MeasuredPoint& point = out.points.emplace_back();
-    point.f = frequency(window, k, stand.period());
-    // of a real sinusoid half the amplitude turns forward
-    for (std::size_t s = 0; s < kAxisSignals; ++s) {
-      point.response[s] = 2.0 * sums[k].mean()[s] / excitation.amplitude(k);
-      point.added[s] = 2.0 * added[k].mean()[s] / excitation.amplitude(k);
-    }
+  for (std::size_t k = 0; k < excitation.lines(); ++k) {
+    out.points.push_back(lines.point(k, excitation.amplitude(k)));
+    out.points.back().f = frequency(window, k, stand.period());
   }
 }
 

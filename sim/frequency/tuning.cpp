@@ -170,6 +170,124 @@ double lowered(double most, double bound, const Of& quantity) {
   return good;
 }
 
+double position_bandwidth(const MachineSettings& machine, int joint, Tick reading_delay) {
+  FrequencyResponse response(machine, joint, reading_delay, PositionLoop::closed);
+  const ResponseAt T = [&](double f) {
+    return response.at(Entry::set_point, f)[index_of(AxisSignal::position)];
+  };
+  return closed_loop_of(curve_of(T, position_grid(machine, joint, reading_delay)), T).bandwidth;
+}
+
+// Gains of one axis, from the inner loop to the outer.
+class Tuner {
+ public:
+  Tuner(const MachineSettings& machine, int joint, Tick reading_delay, const TuneSettings& wanted)
+      : machine_(machine),
+        linear_(linearised(machine)),
+        joint_(joint),
+        reading_delay_(reading_delay),
+        wanted_(wanted) {}
+
+  Tuning tune() {
+    out_.before = assess(machine_, joint_, reading_delay_);
+    const double wv = velocity_bandwidth();
+    Gains gains = velocity_gains(wv);
+    const Largest Kv = largest_Kv(linear_, joint_, reading_delay_, gains, wanted_);
+    if (Kv.gain == 0.0) no_gain(machine_, joint_, "Kv above 1 1/s", wanted_);
+    out_.position = Kv.limit;
+    try_calmer(wv, Kv.gain);
+    gains.Kv = Kv.gain;
+    lower_Kv(gains);
+    keep_Kv(gains);
+    return out_;
+  }
+
+ private:
+  Gains gains_for(double wv) const { return {wv, wanted_.reset_ratio / wv, 1.0}; }
+
+  // With the reset time as it is written.
+  Gains rounded(double wv) const {
+    Gains gains = gains_for(wv);
+    gains.Tn = rounded_up(gains.Tn);
+    return gains;
+  }
+
+  MachineSettings at_Kv(const Gains& gains, double Kv) const {
+    Gains tried = gains;
+    tried.Kv = Kv;
+    return with_gains(linear_, joint_, tried);
+  }
+
+  std::optional<Limit> missed_with(const Gains& gains) const {
+    return missed(velocity_margins(with_gains(linear_, joint_, gains), joint_), wanted_);
+  }
+
+  // The largest that keeps the margins of the velocity loop, up to --velocity-bandwidth.
+  double velocity_bandwidth() {
+    const double Tv = linear_.nc.periods.seconds(linear_.nc.periods.velocity);
+    Largest wv = largest_gain(kLeastBandwidth, std::numbers::pi / Tv,
+                              [&](double one) { return missed_with(gains_for(one)); });
+    if (wv.gain == 0.0) no_gain(machine_, joint_, "velocity_bandwidth above 20 rad/s", wanted_);
+    if (wanted_.wv_most && *wanted_.wv_most < wv.gain) {
+      wv = {*wanted_.wv_most, {Limit::Kind::most, 0.0}};
+      if (missed_with(gains_for(wv.gain))) {
+        no_gain(machine_, joint_, "velocity_bandwidth up to --velocity-bandwidth", wanted_);
+      }
+    }
+    out_.velocity = wv.limit;
+    return wv.gain;
+  }
+
+  Gains velocity_gains(double wv) {
+    const double kept = kept_at(wv, [&](double one) { return !missed_with(rounded(one)); });
+    if (kept == 0.0) no_gain(machine_, joint_, "velocity_bandwidth above 20 rad/s", wanted_);
+    out_.wv_lowered = 1.0 - kept / rounded_down(wv);
+    return rounded(kept);
+  }
+
+  // A slower velocity loop that lets Kv be larger.
+  void try_calmer(double wv, double Kv) {
+    for (const double share : kCalmer) {
+      const double Kv_there =
+          largest_Kv(linear_, joint_, reading_delay_, gains_for(share * wv), wanted_).gain;
+      if (Kv_there < kWorthIt * std::max(Kv, out_.calmer_Kv)) continue;
+      out_.calmer_wv = share * wv;
+      out_.calmer_Kv = Kv_there;
+    }
+  }
+
+  // Down to the overshoot and the bandwidth that are wanted.
+  void lower_Kv(Gains& gains) {
+    const double calm = lowered(gains.Kv, wanted_.overshoot, [&](double one) {
+      return step_overshoot(at_Kv(gains, one), joint_, reading_delay_);
+    });
+    if (calm < gains.Kv) out_.position = {Limit::Kind::overshoot, 0.0};
+    gains.Kv = out_.Kv_limit = calm;
+    if (!wanted_.bandwidth) return;
+    const double enough = lowered(gains.Kv, *wanted_.bandwidth, [&](double one) {
+      return position_bandwidth(at_Kv(gains, one), joint_, reading_delay_);
+    });
+    if (enough < gains.Kv) out_.position = {Limit::Kind::bandwidth, *wanted_.bandwidth};
+    gains.Kv = enough;
+  }
+
+  void keep_Kv(const Gains& gains) {
+    const double kept = kept_at(gains.Kv, [&](double one) {
+      out_.after = assess(at_Kv(gains, one), joint_, reading_delay_);
+      return keeps(out_.after, wanted_);
+    });
+    if (kept == 0.0) no_gain(machine_, joint_, "Kv above 1 1/s", wanted_);
+    out_.Kv_lowered = 1.0 - kept / rounded_down(gains.Kv);
+  }
+
+  const MachineSettings& machine_;
+  const MachineSettings linear_;
+  int joint_;
+  Tick reading_delay_;
+  const TuneSettings& wanted_;
+  Tuning out_;
+};
+
 }  // namespace
 
 Gains gains_of(const MachineSettings& machine, int joint) {
@@ -220,76 +338,7 @@ Assessment assess(const MachineSettings& machine, int joint, Tick reading_delay)
 
 Tuning tune(const MachineSettings& machine, int joint, Tick reading_delay,
             const TuneSettings& wanted) {
-  const MachineSettings linear = linearised(machine);
-  Tuning out;
-  out.before = assess(machine, joint, reading_delay);
-  const auto gains_for = [&](double wv) { return Gains{wv, wanted.reset_ratio / wv, 1.0}; };
-
-  const double Tv = linear.nc.periods.seconds(linear.nc.periods.velocity);
-  Largest wv = largest_gain(kLeastBandwidth, std::numbers::pi / Tv, [&](double one) {
-    return missed(velocity_margins(with_gains(linear, joint, gains_for(one)), joint), wanted);
-  });
-  if (wv.gain == 0.0) no_gain(machine, joint, "velocity_bandwidth above 20 rad/s", wanted);
-  if (wanted.wv_most && *wanted.wv_most < wv.gain) {
-    wv = {*wanted.wv_most, {Limit::Kind::most, 0.0}};
-    const MachineSettings capped = with_gains(linear, joint, gains_for(wv.gain));
-    if (missed(velocity_margins(capped, joint), wanted)) {
-      no_gain(machine, joint, "velocity_bandwidth up to --velocity-bandwidth", wanted);
-    }
-  }
-  out.velocity = wv.limit;
-  const auto rounded = [&](double one) {
-    Gains gains = gains_for(one);
-    gains.Tn = rounded_up(gains.Tn);
-    return gains;
-  };
-  const double wv_kept = kept_at(wv.gain, [&](double one) {
-    return !missed(velocity_margins(with_gains(linear, joint, rounded(one)), joint), wanted);
-  });
-  if (wv_kept == 0.0) no_gain(machine, joint, "velocity_bandwidth above 20 rad/s", wanted);
-  out.wv_lowered = 1.0 - wv_kept / rounded_down(wv.gain);
-  Gains gains = rounded(wv_kept);
-
-  const Largest Kv = largest_Kv(linear, joint, reading_delay, gains, wanted);
-  if (Kv.gain == 0.0) no_gain(machine, joint, "Kv above 1 1/s", wanted);
-  out.position = Kv.limit;
-  for (const double share : kCalmer) {
-    const double Kv_there =
-        largest_Kv(linear, joint, reading_delay, gains_for(share * wv.gain), wanted).gain;
-    if (Kv_there < kWorthIt * std::max(Kv.gain, out.calmer_Kv)) continue;
-    out.calmer_wv = share * wv.gain;
-    out.calmer_Kv = Kv_there;
-  }
-  gains.Kv = Kv.gain;
-  const auto at = [&](double one) {
-    Gains tried = gains;
-    tried.Kv = one;
-    return with_gains(linear, joint, tried);
-  };
-  const double calm = lowered(gains.Kv, wanted.overshoot, [&](double one) {
-    return step_overshoot(at(one), joint, reading_delay);
-  });
-  if (calm < gains.Kv) out.position = {Limit::Kind::overshoot, 0.0};
-  gains.Kv = out.Kv_limit = calm;
-  if (wanted.bandwidth) {
-    const double enough = lowered(gains.Kv, *wanted.bandwidth, [&](double one) {
-      const MachineSettings tried = at(one);
-      FrequencyResponse response(tried, joint, reading_delay, PositionLoop::closed);
-      const ResponseAt T = [&](double f) {
-        return response.at(Entry::set_point, f)[index_of(AxisSignal::position)];
-      };
-      return closed_loop_of(curve_of(T, position_grid(tried, joint, reading_delay)), T).bandwidth;
-    });
-    if (enough < gains.Kv) out.position = {Limit::Kind::bandwidth, *wanted.bandwidth};
-    gains.Kv = enough;
-  }
-  const double Kv_kept = kept_at(gains.Kv, [&](double one) {
-    out.after = assess(at(one), joint, reading_delay);
-    return keeps(out.after, wanted);
-  });
-  if (Kv_kept == 0.0) no_gain(machine, joint, "Kv above 1 1/s", wanted);
-  out.Kv_lowered = 1.0 - Kv_kept / rounded_down(gains.Kv);
-  return out;
+  return Tuner(machine, joint, reading_delay, wanted).tune();
 }
 
 Tuning with_common_Kv(const MachineSettings& machine, int joint, Tick reading_delay, Tuning tuning,

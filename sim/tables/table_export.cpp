@@ -172,41 +172,34 @@ bool does_harm(const TableExport& e) {
   return e.volume.after > e.volume.before + e.rules().length_step;
 }
 
-void add_notes(const TableExport& e, std::vector<std::string>& out) {
+void note_ends_of_turns(const TableExport& e, std::vector<std::string>& out) {
   for (const CompensationTable& table : e.tables) {
     if (!table.line.one_turn || table.line.wraps || table.component) continue;
     out.push_back(fmt::format(
         "note: {}: the control does not repeat the table: beyond 0 and 360 deg the end values hold",
         title_of(e, table)));
   }
-  for (const TableLine& line : e.lines) {
-    const Axis axis = *e.source.chain.layout.axis[static_cast<std::size_t>(line.joint)];
-    for (const Axis direction : kAllAxes) {
-      const plant::ErrorName name{direction, axis, false};
-      const plant::ErrorFunction& error = e.source.errors.component(name);
-      if (error.reversals.empty()) continue;
-      const double most =
-          std::max(std::abs(error.width(line.from)), std::abs(error.width(line.to)));
-      out.push_back(fmt::format(
-          "note: {} depends on the direction of travel, by {} at the ends of the travel; {}",
-          to_string(name), size_of(!is_linear(direction), most),
-          has_table(e, line, name)
-              ? directions_in(e, line)
-              : fmt::format("there is no table {} over {}: half of it, {}, stays in each direction",
-                            letter(direction), e.letter(line.joint),
-                            size_of(!is_linear(direction), 0.5 * most))));
-    }
+}
+
+void note_reversals(const TableExport& e, const TableLine& line, std::vector<std::string>& out) {
+  const Axis axis = *e.source.chain.layout.axis[static_cast<std::size_t>(line.joint)];
+  for (const Axis direction : kAllAxes) {
+    const plant::ErrorName name{direction, axis, false};
+    const plant::ErrorFunction& error = e.source.errors.component(name);
+    if (error.reversals.empty()) continue;
+    const double most = std::max(std::abs(error.width(line.from)), std::abs(error.width(line.to)));
+    out.push_back(fmt::format(
+        "note: {} depends on the direction of travel, by {} at the ends of the travel; {}",
+        to_string(name), size_of(!is_linear(direction), most),
+        has_table(e, line, name)
+            ? directions_in(e, line)
+            : fmt::format("there is no table {} over {}: half of it, {}, stays in each direction",
+                          letter(direction), e.letter(line.joint),
+                          size_of(!is_linear(direction), 0.5 * most))));
   }
-  for (const std::string& one : e.coarse) out.push_back("note: " + one);
-  if (does_harm(e)) {
-    out.push_back(
-        fmt::format("note: worse at some poses off the lines that the tables hold: tip off by up "
-                    "to {} without them, {} with",
-                    size_of(false, e.volume.before), size_of(false, e.volume.after)));
-  }
-  add_omitted(e, out);
-  add_table_count(e, out);
-  if (!e.rules().power_of_two) return;
+}
+
+void note_powers_of_two(const TableExport& e, std::vector<std::string>& out) {
   for (const TableLine& line : e.lines) {
     const double exponent = std::log2(line.spacing / kGridStep);
     if (line.joint >= kLinearJoints || !line.wanted) continue;
@@ -221,6 +214,21 @@ void add_notes(const TableExport& e, std::vector<std::string>& out) {
         "note: {}: {:.3f} um/mm; tables of 64 points (code number 105 296) take at most {:g} um/mm",
         title_of(e, table), table.steepest() / (um / mm), 1.0 / kGridSteps / (um / mm)));
   }
+}
+
+void add_notes(const TableExport& e, std::vector<std::string>& out) {
+  note_ends_of_turns(e, out);
+  for (const TableLine& line : e.lines) note_reversals(e, line, out);
+  for (const std::string& one : e.coarse) out.push_back("note: " + one);
+  if (does_harm(e)) {
+    out.push_back(
+        fmt::format("note: worse at some poses off the lines that the tables hold: tip off by up "
+                    "to {} without them, {} with",
+                    size_of(false, e.volume.before), size_of(false, e.volume.after)));
+  }
+  add_omitted(e, out);
+  add_table_count(e, out);
+  if (e.rules().power_of_two) note_powers_of_two(e, out);
 }
 
 // The displacements of every axis over one axis, on a grid that is finer than tables are.
@@ -261,53 +269,62 @@ struct FineLine {
   }
 };
 
-// Errors that go elsewhere between the points of a table, or are the same at all of them.
-std::vector<std::string> too_coarse(const TableExport& e) {
+bool is_omitted(const TableExport& e, int base, int output) {
+  return std::any_of(e.omitted.begin(), e.omitted.end(),
+                     [&](const auto& one) { return one.base == base && one.output == output; });
+}
+
+// Largest distance of the error from what the table holds; without a table, from 0.
+double largest_miss(const TableExport& e, const TableLine& line, const FineLine& fine, int output) {
+  const auto table = std::find_if(e.tables.begin(), e.tables.end(), [&](const auto& one) {
+    return one.line.joint == line.joint && one.output == output;
+  });
+  double missed = 0.0;
+  for (int i = 0; i <= FineLine::kIntervals; ++i) {
+    const double entry = line.entry_of(FineLine::position(line, i));
+    const double held =
+        table == e.tables.end() ? 0.0 : -0.5 * (table->at(entry, 1) + table->at(entry, -1));
+    missed = std::max(missed, std::abs(fine.d[static_cast<std::size_t>(i)][output] - held));
+  }
+  return missed;
+}
+
+// An error that goes elsewhere between the points of a table, or is the same at all of them.
+std::optional<std::string> too_coarse(const TableExport& e, const TableLine& line,
+                                      const FineLine& fine, int output) {
   constexpr double kMissed = 0.5, kWanted = 0.1;  // of half the span of the error
+  if (is_omitted(e, line.joint, output) || (!e.rules().cross && output != line.joint)) return {};
+  const bool is_angle = output >= kLinearJoints;
+  const double span = fine.half_span(output);
+  if (span <= (is_angle ? e.rules().angle_step : e.rules().length_step)) return {};
+  const double missed = largest_miss(e, line, fine, output);
+  if (missed <= kMissed * span) return {};
+  int stride = FineLine::kIntervals;
+  while (stride > 1 && fine.off_chords(output, stride) > kWanted * span) stride /= 2;
+  const double needed = (line.to - line.from) * stride / FineLine::kIntervals;
+  if (needed >= line.spacing) return {};
+  return fmt::format(
+      "{} over {}: points {:g} {} apart leave {} of an error of +-{}; it needs {:.3g} {}",
+      e.letter(output), e.letter(line.joint), line.spacing / unit_of(line.joint),
+      unit_name_of(line.joint), size_of(is_angle, missed), size_of(is_angle, span),
+      needed / unit_of(line.joint), unit_name_of(line.joint));
+}
+
+std::vector<std::string> too_coarse(const TableExport& e) {
   const LineCorrection correction(e.source);
   std::vector<std::string> out;
   for (const TableLine& line : e.lines) {
     if (!line.wanted) continue;
     const FineLine fine(correction, line);
     for (int output = 0; output < kJoints; ++output) {
-      const bool is_omitted =
-          std::any_of(e.omitted.begin(), e.omitted.end(), [&](const OmittedTable& table) {
-            return table.base == line.joint && table.output == output;
-          });
-      if (is_omitted || (!e.rules().cross && output != line.joint)) continue;
-      const bool is_angle = output >= kLinearJoints;
-      const double span = fine.half_span(output);
-      if (span <= (is_angle ? e.rules().angle_step : e.rules().length_step)) continue;
-      const auto table =
-          std::find_if(e.tables.begin(), e.tables.end(), [&](const CompensationTable& t) {
-            return t.line.joint == line.joint && t.output == output;
-          });
-      double missed = 0.0;
-      for (int i = 0; i <= FineLine::kIntervals; ++i) {
-        const double entry = line.entry_of(FineLine::position(line, i));
-        const double held =
-            table == e.tables.end() ? 0.0 : -0.5 * (table->at(entry, 1) + table->at(entry, -1));
-        missed = std::max(missed, std::abs(fine.d[static_cast<std::size_t>(i)][output] - held));
-      }
-      if (missed <= kMissed * span) continue;
-      int stride = FineLine::kIntervals;
-      while (stride > 1 && fine.off_chords(output, stride) > kWanted * span) stride /= 2;
-      const double needed = (line.to - line.from) * stride / FineLine::kIntervals;
-      if (needed >= line.spacing) continue;
-      out.push_back(fmt::format(
-          "{} over {}: points {:g} {} apart leave {} of an error of +-{}; it needs {:.3g} {}",
-          e.letter(output), e.letter(line.joint), line.spacing / unit_of(line.joint),
-          unit_name_of(line.joint), size_of(is_angle, missed), size_of(is_angle, span),
-          needed / unit_of(line.joint), unit_name_of(line.joint)));
+      if (auto one = too_coarse(e, line, fine, output)) out.push_back(std::move(*one));
     }
   }
   return out;
 }
 
 std::string joined(const std::vector<std::string>& reasons) {
-  std::string out;
-  for (const std::string& reason : reasons) out += "; " + reason;
-  return out;
+  return reasons.empty() ? "" : fmt::format("; {}", fmt::join(reasons, "; "));
 }
 
 // Points that miss an error do harm everywhere; without them the harm is at poses off the lines

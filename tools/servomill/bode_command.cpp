@@ -9,6 +9,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/bode.h"
 #include "sim/run/servo_store.h"
+#include "sim/system/json.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {
@@ -204,48 +205,37 @@ void print_summary(const sim::BodeResult& result, int joint, double i_max) {
 }
 
 void print_json(const sim::BodeResult& result, char axis) {
+  const std::string letter(1, axis);
+  const auto number = [](sim::Complex y) {
+    return sim::JsonObject()
+        .number("magnitude", std::abs(y))
+        .number("phase_deg", std::arg(y) / deg)
+        .line();
+  };
   for (const sim::BodeCurve& curve : result.curves) {
     for (std::size_t i = 0; i < curve.f.size(); ++i) {
-      const auto number = [](sim::Complex y) {
-        return fmt::format("{{\"magnitude\": {}, \"phase_deg\": {}}}", json_number(std::abs(y)),
-                           json_number(std::arg(y) / deg));
-      };
-      fmt::print(
-          "{{\"axis\": \"{}\", \"curve\": \"{}\", \"frequency_Hz\": {}, \"exact\": {}, "
-          "\"measured\": {}}}\n",
-          axis, curve.name, json_number(curve.f[i]), number(curve.exact_at[i]),
-          curve.measured.empty() || !is_known(curve.measured[i]) ? "null"
-                                                                 : number(curve.measured[i]));
+      const bool known = !curve.measured.empty() && is_known(curve.measured[i]);
+      sim::JsonObject point;
+      point.text("axis", letter).text("curve", curve.name).number("frequency_Hz", curve.f[i]);
+      point.raw("exact", number(curve.exact_at[i]));
+      point.raw("measured", known ? number(curve.measured[i]) : "null");
+      fmt::print("{}\n", point.line());
     }
   }
   const sim::Margins& m = result.margins;
   const sim::ClosedLoop& c = result.closed;
-  fmt::print(
-      "{{\"axis\": \"{}\", \"loop\": \"{}\", \"stable\": {}, \"slowest_time_constant_s\": {}", axis,
-      name_of(result.loop), result.stable, json_number(result.time_constant));
+  sim::JsonObject loop;
+  loop.text("axis", letter).text("loop", name_of(result.loop)).boolean("stable", result.stable);
+  loop.number("slowest_time_constant_s", result.time_constant);
   if (result.loop != sim::BodeLoop::compliance) {
-    fmt::print(
-        ", \"gain_margin\": {}, \"gain_margin_Hz\": {}, \"phase_margin_deg\": {}, "
-        "\"crossover_Hz\": {}, \"sensitivity_peak\": {}, \"bandwidth_Hz\": {}",
-        json_number(m.gain), json_number(m.gain_frequency), json_number(m.phase / deg),
-        json_number(m.crossover), json_number(m.sensitivity), json_number(c.bandwidth));
+    loop.number("gain_margin", m.gain).number("gain_margin_Hz", m.gain_frequency);
+    loop.number("phase_margin_deg", m.phase / deg).number("crossover_Hz", m.crossover);
+    loop.number("sensitivity_peak", m.sensitivity).number("bandwidth_Hz", c.bandwidth);
   }
-  fmt::print(", \"peak\": {}, \"peak_Hz\": {}}}\n", json_number(c.peak),
-             json_number(c.peak_frequency));
+  fmt::print("{}\n", loop.number("peak", c.peak).number("peak_Hz", c.peak_frequency).line());
 }
 
-}  // namespace
-
-int bode_command(const Arguments& arguments) {
-  Options options(
-      "bode", "SCENARIO.toml --axis Y [--loop position|velocity|compliance|all] [-o OUT.h5]",
-      "Prints frequency responses of an axis with its sampled loops: open and closed position\n"
-      "loop, open and closed velocity loop, compliance (slide per force). 'Exact' is the\n"
-      "fundamental of the linear multirate model; 'measured' is what a simulation of the whole\n"
-      "axis with friction, backlash, quantisation and limits shows when it is fed with sinusoids.\n"
-      "The open position loop is reading over position error, the open velocity loop measured\n"
-      "speed over speed error. Margins are those of the exact model.",
-      "SCENARIO.toml");
+void add_options(Options& options) {
   add_axis_options(options);
   options.add()("loop,l", po::value<std::string>()->default_value("position")->value_name("LOOP"),
                 "position, velocity, compliance or all");
@@ -273,12 +263,13 @@ int bode_command(const Arguments& arguments) {
   options.add()("force,f", "replaces the result file if it exists");
   options.add()("json", "prints one JSON object a frequency and curve, and one a loop");
   options.add()("quiet,q", "prints nothing but faults");
-  if (!options.parse(arguments)) return kDone;
+}
 
-  const sim::Scenario scenario = scenario_for_axes(options);
-  const sim::MachineSettings& machine = scenario.machine;
-  const auto joints = chosen_joints(options, machine);
-  const auto loops = loops_of(options);
+// All loops are checked before the first is measured.
+std::vector<sim::BodeLoop> checked_loops(const Options& options,
+                                         const sim::MachineSettings& machine,
+                                         const std::vector<int>& joints) {
+  std::vector<sim::BodeLoop> loops = loops_of(options);
   if (loops.size() > 1 && options.has("amplitude")) {
     throw InputError({"--amplitude"}, "needs one --loop: its unit is that of what is fed in");
   }
@@ -287,34 +278,64 @@ int bode_command(const Arguments& arguments) {
       check_range(settings_of(options, machine, loop, joint), machine.nc.periods);
     }
   }
+  return loops;
+}
+
+void print_result(const sim::BodeResult& result, const sim::MachineSettings& machine, int joint,
+                  const Options& options) {
+  const char axis = machine.chain.layout.letter_of(joint);
+  if (result.fault) {
+    fmt::print(stderr, "axis {}, {} loop: {}; nothing is measured\n", axis, name_of(result.loop),
+               *result.fault);
+  }
+  if (options.has("quiet")) return;
+  if (options.has("json")) {
+    print_json(result, axis);
+    return;
+  }
+  for (const sim::BodeCurve& curve : result.curves) print_curve(result, curve, joint);
+  print_summary(result, joint, machine.nc.cascade[static_cast<std::size_t>(joint)].i_max);
+}
+
+}  // namespace
+
+int bode_command(const Arguments& arguments) {
+  Options options(
+      "bode", "SCENARIO.toml --axis Y [--loop position|velocity|compliance|all] [-o OUT.h5]",
+      "Prints frequency responses of an axis with its sampled loops: open and closed position\n"
+      "loop, open and closed velocity loop, compliance (slide per force). 'Exact' is the\n"
+      "fundamental of the linear multirate model; 'measured' is what a simulation of the whole\n"
+      "axis with friction, backlash, quantisation and limits shows when it is fed with sinusoids.\n"
+      "The open position loop is reading over position error, the open velocity loop measured\n"
+      "speed over speed error. Margins are those of the exact model.",
+      "SCENARIO.toml");
+  add_options(options);
+  if (!options.parse(arguments)) return kDone;
+
+  const sim::Scenario scenario = scenario_for_axes(options);
+  const sim::MachineSettings& machine = scenario.machine;
+  const auto joints = chosen_joints(options, machine);
+  const auto loops = checked_loops(options, machine, joints);
   std::optional<sim::BodeStore> store;
   if (options.has("output")) {
     store.emplace(options.get<std::string>("output"), options.has("force"), scenario);
   }
-  const bool silent = options.has("quiet"), json = options.has("json");
+  const bool is_table = !options.has("quiet") && !options.has("json");
   const Tick delay = sim::reading_delay_of(scenario);
   bool stable = true;
   for (const int joint : joints) {
-    const char axis = machine.chain.layout.letter_of(joint);
-    if (!silent && !json) fmt::print("{}\n", axis_headline(machine, joint, delay));
+    if (is_table) fmt::print("{}\n", axis_headline(machine, joint, delay));
     for (const sim::BodeLoop loop : loops) {
       const sim::BodeResult result =
           sim::bode(machine, joint, delay, settings_of(options, machine, loop, joint));
       stable &= result.stable && !result.fault;
-      if (result.fault) {
-        fmt::print(stderr, "axis {}, {} loop: {}; nothing is measured\n", axis, name_of(loop),
-                   *result.fault);
-      }
-      if (store) store->add(axis, result);
-      if (json && !silent) print_json(result, axis);
-      if (json || silent) continue;
-      for (const sim::BodeCurve& curve : result.curves) print_curve(result, curve, joint);
-      print_summary(result, joint, machine.nc.cascade[static_cast<std::size_t>(joint)].i_max);
+      if (store) store->add(machine.chain.layout.letter_of(joint), result);
+      print_result(result, machine, joint, options);
     }
   }
   if (store) {
     store->commit();
-    if (!silent && !json) fmt::print("\nwritten to {}\n", options.get<std::string>("output"));
+    if (is_table) fmt::print("\nwritten to {}\n", options.get<std::string>("output"));
   }
   return stable ? kDone : kMachineStopped;
 }
