@@ -210,11 +210,7 @@ Step Walk::next(const Move& move, const ExecutedBlock& block, bool is_place) {
   step.is_corrected = !is_place && knows_all();
   if (!step.is_corrected) {
     turn_directions(move.end_machine - programmed_, step.was_known);
-    AxisWords end = out_;
-    for (int i = 0; i < kAxisWords; ++i) {
-      if (step.is_commanded[static_cast<std::size_t>(i)]) end[i] = move.end_machine[i];
-    }
-    step.blocks = {{0.0, 1.0, frame.work(end), {}}};
+    step.blocks = {{0.0, 1.0, frame.work(uncorrected_end(step)), {}}};
     return step;
   }
   choose_tool(*block.state);
@@ -320,6 +316,20 @@ Step Walk::without_arcs(Step step) {
   options.allow_arcs = false;
   fit_feed(step, options);
   return step;
+}
+
+// A place of the machine is exact; where errors are not known yet, axes that the original leaves
+// where they are stay.
+AxisWords Walk::uncorrected_end(const Step& step) const {
+  AxisWords end = out_;
+  for (int i = 0; i < kAxisWords; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double target = step.move->end_machine[i];
+    const bool stays =
+        !step.is_place && step.was_known[k] && std::abs(target - programmed_[i]) <= kStill;
+    if (step.is_commanded[k] && !stays) end[i] = target;
+  }
+  return end;
 }
 
 // Axes that the original leaves where they are stay.

@@ -92,6 +92,7 @@ class Walk {
   void turn_directions(const AxisWords& way, const AxisFlags& was_known);
   void note_reversals(const Step& step, const Directions& before);
   void hold_axes(Step& step) const;
+  AxisWords uncorrected_end(const Step& step) const;
   void choose_tool(const controllers::ModalState& state);
   bool knows_all() const;
   void know_missing_axes();

@@ -191,11 +191,25 @@ void ReplayComparison::match_rapid(const OriginalAction& action) {
   if (moves) compare_auxiliary(action, false);
 }
 
+// LinuxCNC goes through the intermediate place of G28 as programmed, from the corrected one.
+void ReplayComparison::skip_via(const OriginalAction& action) {
+  const Action* one = limits_.is_linuxcnc ? peek() : nullptr;
+  if (one == nullptr || one->kind != ActionKind::rapid) return;
+  for (std::size_t i = 0; i < at_.size(); ++i) {
+    if (!one->is_commanded[i]) continue;
+    const double via = action.move.end_machine[static_cast<int>(i)];
+    if (!action.is_named[i] || !one->end[i] || std::abs(*one->end[i] - via) > kSame) return;
+  }
+  arrive(*one);
+}
+
 // G53: machine positions, to the digit.
 void ReplayComparison::match_place(const OriginalAction& action) {
   const AxisFlags6 changed = action.changed();
   const bool is_via = !action.is_to_reference && action.is_reference_return;
-  if (is_via && std::none_of(changed.begin(), changed.end(), [](bool one) { return one; })) return;
+  if (is_via && std::none_of(changed.begin(), changed.end(), [](bool one) { return one; })) {
+    return skip_via(action);
+  }
   if (is_via && !limits_.is_linuxcnc) {
     OriginalAction through = action;
     through.is_machine_position = false;

@@ -80,6 +80,7 @@ class ReplayComparison {
   void match_other(const OriginalAction& action);
 
   void match_place(const OriginalAction& action);
+  void skip_via(const OriginalAction& action);
   void match_reference(const OriginalAction& action);
   void match_rapid(const OriginalAction& action);
   void check_rapid_block(const OriginalAction& action, const Targets& targets, const Action& one);

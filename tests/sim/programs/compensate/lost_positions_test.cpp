@@ -82,5 +82,18 @@ TEST(LostPositions, ZBehindAToolChangeNeedsAxesThatAreNamed) {
   EXPECT_TRUE(body(trial).ends_with("X1.\nG53 G0 Y7.\nG43 H1 Z5.\n")) << body(trial);
 }
 
+// Z is nowhere known behind G28, and with it the errors: X and Y stay at their corrected place. Nor
+// is the way through Z20 another one because Z stands at its corrected place.
+TEST(LostPositions, LeaveTheOtherAxesWhereTheyAreBehindG28) {
+  for (const Dialect dialect :
+       {Dialect::linuxcnc, Dialect::fanuc, Dialect::siemens, Dialect::heidenhain}) {
+    Trial trial = dialect_trial(dialect,
+                                "G21 G90 G17 G54\nT1 M6\nS1000 M3\nG0 X40 Y20\nG43 H1 Z20\n"
+                                "G28 Z20\nG0 X40 Y20\nG0 Z20\nM2\n");
+    trial.request.error_file.clear();  // those of the machine file
+    EXPECT_EQ(refusal(trial), "taken");
+  }
+}
+
 }  // namespace
 }  // namespace servomill::sim::lost_positions_test
