@@ -17,10 +17,10 @@ void add_program_options(Options& options) {
                 "conversational program");
   options.add()("parameter-file", text("FILE"),
                 "LinuxCNC's file of numbered parameters (\"var\" file), mm; it is never written");
-  options.add()(
-      "subs", texts("FOLDER"),
-      "where files of subroutines are, NAME.ngc for O<NAME> CALL, NAME.H for CALL PGM; the "
-      "folder of the program comes first");
+  options.add()("subs", texts("FOLDER"),
+                "where files of subroutines are, NAME.ngc for O<NAME> CALL, M98 and G65, NAME.H "
+                "for CALL PGM; the "
+                "folder of the program comes first");
   options.add()("reader", text("NAME"),
                 "whose rules the program follows: any (default: beyond LinuxCNC's what other "
                 "controls accept, with a warning), linuxcnc (strict), fanuc, haas, mach, grbl, "

@@ -72,6 +72,23 @@ void take_block_number(Line& line) {
   skip_blanks(line.body, line.begin);
 }
 
+// Letters that a statement of macros begins with: most lines have none of these pairs.
+bool may_be_macro(std::string_view text) {
+  constexpr auto kFirst = [] {
+    std::array<bool, 256> table{};
+    for (const char c : std::string_view("IWGPDiwgpd")) table[static_cast<unsigned char>(c)] = true;
+    return table;
+  }();
+  constexpr std::array<std::string_view, 7> kPairs = {"IF", "WH", "GO", "G6", "DP", "PO", "PC"};
+  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+    if (!kFirst[static_cast<unsigned char>(text[i])]) continue;
+    const std::array pair = {upper(text[i]), upper(text[i + 1])};
+    const std::string_view both(pair.data(), pair.size());
+    if (std::find(kPairs.begin(), kPairs.end(), both) != kPairs.end()) return true;
+  }
+  return false;
+}
+
 Cursor cursor_at(std::string_view body, std::size_t at) {
   Cursor cursor(body);
   cursor.go_to(at);
@@ -105,6 +122,8 @@ Statement statement_at(std::string_view body, std::size_t at) {
       return Statement::assignment;
     case '%':
       return Statement::percent;
+    case '[':
+      return Statement::conditional_return;
     case ':':
       return begins(":", "0123456789") ? Statement::program_number : Statement::words;
     case 'O':
@@ -143,15 +162,7 @@ void read_line(std::string_view text, Line& line) {
 }
 
 bool is_macro_only(std::string_view text, Line& line) {
-  // what most lines have nothing of
-  const bool may_be = std::any_of(text.begin(), text.end(), [&, i = std::size_t{0}](char) mutable {
-    const char c = upper(text[i]), next = i + 1 < text.size() ? upper(text[i + 1]) : '\0';
-    ++i;
-    return (c == 'I' && next == 'F') || (c == 'W' && next == 'H') ||
-           (c == 'G' && (next == 'O' || next == '6')) ||
-           (c == 'P' && (next == 'O' || next == 'C')) || (c == 'D' && next == 'P');
-  });
-  if (!may_be) return false;
+  if (!may_be_macro(text)) return false;
   read_line(text, line);
   switch (line.statement) {
     case Statement::if_:

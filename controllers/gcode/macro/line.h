@@ -8,17 +8,18 @@
 namespace servomill::controllers::macro {
 
 enum class Statement : std::uint8_t {
-  blank,           // nothing, or comments only
-  percent,         // %
-  program_number,  // O1000, :1000
-  assignment,      // #1=...
-  if_,             // IF[...]GOTO10, IF[...]THEN #1=...
-  while_,          // WHILE[...]DO1
-  do_,             // DO1
-  end,             // END1
-  go_to,           // GOTO10
-  output,          // POPEN, PCLOS, DPRNT[...], BPRNT[...]
-  words            // G, M, X, ... : all others, calls among them
+  blank,               // nothing, or comments only
+  percent,             // %
+  program_number,      // O1000, :1000
+  assignment,          // #1=...
+  if_,                 // IF[...]GOTO10, IF[...]THEN #1=...
+  while_,              // WHILE[...]DO1
+  do_,                 // DO1
+  end,                 // END1
+  go_to,               // GOTO10
+  conditional_return,  // [...] M99 of Haas
+  output,              // POPEN, PCLOS, DPRNT[...], BPRNT[...]
+  words                // G, M, X, ... : all others, calls among them
 };
 
 struct Line {

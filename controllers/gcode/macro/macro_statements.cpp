@@ -1,6 +1,7 @@
 // Statements of custom macro B: assignments, branches and loops.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -42,6 +43,8 @@ void MacroSource::run_statement(Statement statement, std::size_t begin) {
       return;
     case Statement::end:
       return end_of_loop();
+    case Statement::conditional_return:
+      return conditional_return(begin);
     default:
       return go_to(begin);
   }
@@ -109,6 +112,28 @@ void MacroSource::condition(std::size_t begin) {
                         statement == Statement::output || statement == Statement::if_;
   if (!is_macro) refuse(cursor.column(), "a macro statement is expected behind THEN");
   if (holds) run_statement(statement, cursor.at());
+}
+
+// [#1 LT 10] M99 P10. Source: Haas 96-8000, June 1999, p. 376.
+void MacroSource::conditional_return(std::size_t begin) {
+  Expression expression(line_.body, begin, context());
+  Cursor& cursor = expression.cursor();
+  const int column = cursor.column();
+  if (reading_.reader() == Reader::fanuc) {
+    refuse(column, "a condition before M99 is one of Haas; write IF[...]GOTO");
+  }
+  const bool holds = expression.condition();
+  const auto words = read_words(line_.body, cursor.at(), context(), {});
+  const bool is_return = !words.empty() && words[0].letter == 'M' && words[0].tenths() == 990;
+  const bool has_block = words.size() == 2 && words[1].letter == 'P' && words[1].value;
+  if (!is_return || (words.size() > 1 && !has_block)) {
+    refuse(column, "M99, or M99 P and the number of a block, is expected behind a condition");
+  }
+  if (!holds) return;
+  std::optional<long> block;
+  if (has_block) block = std::lround(std::clamp(*words[1].value, -1.0, 1e8));
+  if (calls_.empty() && !block) return emit("M99");
+  end_call(block, words[0].column());
 }
 
 const Loop& MacroSource::loop_of_line() {

@@ -2,6 +2,8 @@
 // moves of programs are in rule_examples_macros.h.
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -111,6 +113,41 @@ TEST(Macro, CallsAreChecked) {
             "keep their values differs between controls; write a WHILE loop; in O1, called in "
             "p.nc:1");
   EXPECT_EQ(refusal("#1=1.\nG0 X1.\nO2\nM30\n"), "no refusal: R 1 0 0");
+}
+
+// N50 [#100 LT 10] M99 P10: Haas 96-8000, June 1999, p. 376.
+TEST(Macro, HaasReturnsAndJumpsOnACondition) {
+  const std::string program =
+      "G65 P1 A3.\nG0 Y1.\nM2\nO1\nN10 #1=#1-1\nG0 X#1\nN50 [#1 GT 1] M99 P10\n[#1 EQ 1] M99\n"
+      "X9.\nM99\n";
+  EXPECT_EQ(run(program, Reader::haas), "R 2 0 0 | R 1 0 0 | R 1 1 0");
+  EXPECT_EQ(refusal(program),
+            "7:5: error: a condition before M99 is one of Haas; write IF[...]GOTO; in O1, called "
+            "in p.nc:1");
+  EXPECT_EQ(refusal("[1 EQ 1] X5.\nM2\n", Reader::haas),
+            "1:1: error: M99, or M99 P and the number of a block, is expected behind a condition");
+}
+
+TEST(Macro, AProgramInAFileOfItsOwnIsCalled) {
+  ProgramSetup setup = setup_of({}, Reader::any);
+  setup.subroutine_file = [](const std::string& name) -> std::optional<ProgramText> {
+    if (name != "9010") return std::nullopt;
+    return ProgramText::of_text("%\nO9010\nG0 X#1\nIF[#1GT2]GOTO 1\nM99\nN1 Y[#2/0]\nM99\n%\n",
+                                "9010.ngc");
+  };
+  EXPECT_EQ(interpret("G65 P9010 A2.\nM2\n", "p.nc", setup).front().end_machine[0], 2.0 * mm);
+  try {
+    interpret("G65 P9010 A3.\nM2\n", "p.nc", setup);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "9010.ngc:6:8: error: division by zero; in O9010, called in p.nc:1");
+  }
+}
+
+TEST(Macro, BracketsAreOnlySoDeep) {
+  const std::string open(50, '['), close(50, ']');
+  EXPECT_EQ(refusal("#1=" + open + "1" + close + "\nM2\n"),
+            "1:44: error: brackets and signs are nested too deep");
 }
 
 // A fault of the block names the column in the line as written, and the calls.

@@ -46,6 +46,17 @@ TEST(Compensate, WithoutErrorsNothingChanges) {
   EXPECT_EQ(done.report[2], "nothing to correct");
 }
 
+TEST(Compensate, WritesAMacroAsTheBlocksThatRan) {
+  const std::string start = "G21 G90 G54\nT1 M6 G43 H1\nG0 X10. Y20. Z5.\n";
+  const Trial macro(start +
+                    "#1=0\nWHILE[#1GT-2.]DO1\n#1=#1-1.\nG1 Z#1 F200.\nX[40.+#1]\n"
+                    "G65 P10 Y30. K#1\nEND1\nM2\nO10\nY#25\nY20. X-#6\nM99\n");
+  const Trial plain(start +
+                    "G1 Z-1. F200.\nX39.\nY30.\nY20. X1.\nG1 Z-2. F200.\nX38.\nY30.\nY20. X2.\n"
+                    "M2\n");
+  EXPECT_EQ(without_header(macro.run().program), without_header(plain.run().program));
+}
+
 TEST(Compensate, KeepsEverythingThatIsNotMotion) {
   Trial trial(
       "G21 G90 G54\n"
