@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -32,7 +33,24 @@ ProgramFile::ProgramFile(std::string text, std::string file)
     : text_(std::move(text)), file_(std::move(file)) {
   // characters that file transfers append after the last line
   while (!text_.empty() && (text_.back() == '\0' || text_.back() == '\x1a')) text_.pop_back();
+  blank_title();
   index();
+}
+
+// Lines in brackets before BEGIN PGM: titles and set-up sheets that programming systems write.
+void ProgramFile::blank_title() {
+  std::size_t begin = 0;
+  while (begin < text_.size()) {
+    const std::size_t end = std::min(text_.find('\n', begin), text_.size());
+    const std::size_t first = text_.find_first_not_of(" \t\r", begin);
+    if (first < end && text_[first] != '(') return;
+    if (first < end) {
+      std::fill(text_.begin() + static_cast<std::ptrdiff_t>(begin),
+                text_.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+      ++lines_before_begin_;
+    }
+    begin = end + 1;
+  }
 }
 
 std::optional<HeidenhainBlock> ProgramFile::next() {

@@ -38,15 +38,19 @@ class ProgramFile {
   const std::vector<Fault>& faults() const { return faults_; }
   /// Blocks TOOL DEF with numbers only, which define a tool in the program.
   const std::vector<HeidenhainBlock>& tool_definitions() const { return tool_definitions_; }
+  /// Lines in brackets before BEGIN PGM, which are not read.
+  int lines_before_begin() const { return lines_before_begin_; }
   /// Programs that it calls, by the names written in the blocks.
   const std::vector<std::string>& called_programs() const { return called_; }
 
  private:
+  void blank_title();
   void index();
   void index(const HeidenhainBlock& block);
 
   std::string text_, file_;
   BlockMark at_;
+  int lines_before_begin_ = 0;
   std::map<std::string, BlockMark> labels_;
   std::vector<Fault> faults_;
   std::vector<HeidenhainBlock> tool_definitions_;

@@ -107,6 +107,10 @@ void Translator::begin_program() {
   const std::vector<Fault>& faults = program().faults();
   if (!faults.empty()) throw InputError(faults);
   const auto block = program().begin();
+  if (program().lines_before_begin() > 0) {
+    warn_once("title",
+              fmt::format("{} lines before BEGIN PGM: left out", program().lines_before_begin()));
+  }
   if (!block || !is_program_word(*block, "BEGIN")) {
     fail({program().file(), block ? block->place.line : 1, 1},
          "a conversational program begins with BEGIN PGM");

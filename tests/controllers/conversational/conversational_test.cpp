@@ -41,6 +41,18 @@ TEST(Conversational, InchesAndTheirFeeds) {
       "2 tool 1\n2 spindle 0 S100\n3 feed 25.4 0 -100 F254\n4 end\n");
 }
 
+// Programming systems write set-up sheets before the program.
+TEST(Conversational, LinesInBracketsBeforeTheProgramAreLeftOut) {
+  ProgramSetup setup = example_setup();
+  Interpreter interpreter(
+      "( Set-up sheet\n(   X0 \"vice\"\n\nBEGIN PGM T MM\n1 TOOL CALL 1 Z "
+      "S100\n2 L X+1 Y+2 Z+3 R0 FMAX\n3 END PGM T MM\n",
+      "t.h", setup);
+  EXPECT_EQ(interpreter.rest().size(), 4u);
+  ASSERT_EQ(interpreter.warnings().size(), 1u);
+  EXPECT_EQ(interpreter.warnings()[0].message, "2 lines before BEGIN PGM: left out");
+}
+
 // The tip counts: machine Z is 100 mm above it
 TEST(Conversational, ToolLengthAndPreset) {
   ProgramSetup setup = example_setup();
