@@ -166,6 +166,7 @@ void Interpreter::Machine::compensate(MoveKind kind, const PlaneMove& path, cons
   state_.position = state_.with_plane(end, made.move.end);
   compensation.programmed = path.end;
   compensation.is_entered = true;
+  compensation.is_first_corner = enters || (stays && compensation.is_first_corner);
   Compensation::Waiting& waiting = compensation.queue.emplace_back();
   waiting.path = made.move;
   describe(waiting.move, kind);
@@ -184,6 +185,7 @@ void Interpreter::Machine::turn_corner(MoveKind kind, const PlaneMove& path, con
   const Eigen::Vector2d tool = state_.in_plane(state_.position);
   const Corner found = corner(compensation.cutter, tool, compensation.front(), path);
   if (!found.fault.empty()) fail(request().motion.column, found.fault);
+  if (std::exchange(compensation.is_first_corner, false)) tell_of_entry(path, found);
   switch (found.kind) {
     case CornerKind::straight:
       release_queue();
@@ -199,6 +201,27 @@ void Interpreter::Machine::turn_corner(MoveKind kind, const PlaneMove& path, con
       compensation.begin = found.point;
       return;
   }
+}
+
+// Fanuc's offset vector stands on the path (B-63782EN/01 p. 175): at its first point the tool is
+// beside the first move of the contour, here beside the entry, unless both go the same way.
+void Interpreter::Machine::tell_of_entry(const PlaneMove& path, const Corner& found) {
+  const Compensation& compensation = state_.compensation;
+  const bool is_silent = setup_.reader == Reader::linuxcnc || text().is_generated() ||
+                         compensation.queue.empty() || !compensation.acts();
+  if (is_silent || found.kind == CornerKind::straight) return;
+  const Eigen::Vector2d here =
+      found.kind == CornerKind::concave ? found.point : state_.in_plane(state_.position);
+  const double distance = (point_beside_begin(compensation.cutter, path) - here).norm();
+  constexpr double kSame = 1e-6;  // m
+  constexpr std::string_view kText =
+      "the entry of cutter compensation is read as LinuxCNC makes it";
+  if (distance < kSame || !noted_.insert(std::string(kText)).second) return;
+  warn(request().motion.column,
+       fmt::format("{}: the tool ends line {} {:.4f} mm from where Fanuc and Haas end it, beside "
+                   "the start of the next move (or by two moves: parameter 5003, setting 43); an "
+                   "entry that goes on in a straight line is the same for all",
+                   kText, compensation.queue.front().move.line, distance / mm));
 }
 
 // Around a convex corner, which is of no length in the program. Rotary axes turn here, the axis

@@ -212,8 +212,11 @@ Corner corner(const Cutter& cutter, const Vector2d& tool, const HeldMove& before
                          : line_to_line(cutter, tool, direction, away);
   }
   if (away <= kStraightTol) return {CornerKind::straight, tool, {}};
-  return {
-      CornerKind::convex, next.begin + cutter.radius * towards_tool(cutter, next_direction), {}};
+  return {CornerKind::convex, point_beside_begin(cutter, next), {}};
+}
+
+Vector2d point_beside_begin(const Cutter& cutter, const PlaneMove& move) {
+  return move.begin + cutter.radius * towards_tool(cutter, direction_at_begin(move));
 }
 
 std::string move_end(HeldMove& move, const std::optional<Vector2d>& begin, const Vector2d& end,

@@ -83,6 +83,9 @@ struct Corner {
 Corner corner(const Cutter& cutter, const Eigen::Vector2d& tool, const HeldMove& before,
               const PlaneMove& next);
 
+/// The point beside the begin of a programmed move, `radius` away from it.
+Eigen::Vector2d point_beside_begin(const Cutter& cutter, const PlaneMove& move);
+
 /// What `move_end` may find.
 struct EndTolerance {
   double radius;  // m, how much the radius of an arc may change

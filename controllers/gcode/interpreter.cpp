@@ -87,6 +87,7 @@ void Interpreter::Machine::set_initial(const std::string& name, double value) {
 ReadingOptions Interpreter::Machine::reading_options() {
   ReadingOptions out{setup_.reader, setup_.decimal_point, setup_.feed};
   out.accepts_unknown_dwells = setup_.accepts_unknown_dwells;
+  out.ignored_codes = setup_.ignored_codes;
   out.is_trial = setup_.is_trial;
   if (setup_.reader != Reader::any) return out;
   setup_at_start_ = setup_;
@@ -95,16 +96,18 @@ ReadingOptions Interpreter::Machine::reading_options() {
 }
 
 const PossibleReaders* Interpreter::Machine::possible_readers() {
-  if (possible_readers_) return &*possible_readers_;
+  if (setup_.trials && setup_.trials->found) possible_readers_ = setup_.trials->found;
+  if (possible_readers_) return possible_readers_.get();
   const ProgramText& lines = texts_.front().lines;
+  std::optional<ProgramText> written;  // a text that macros generate is judged by what was written
   if (lines.is_generated()) {
-    const std::optional<ProgramText> written = lines.source()->written();
+    written = lines.source()->written();
     if (!written) return nullptr;
-    possible_readers_.emplace(*written, *setup_at_start_);
-  } else {
-    possible_readers_.emplace(lines, *setup_at_start_);
   }
-  return &*possible_readers_;
+  possible_readers_ =
+      std::make_shared<const PossibleReaders>(written ? *written : lines, *setup_at_start_);
+  if (setup_.trials) setup_.trials->found = possible_readers_;
+  return possible_readers_.get();
 }
 
 void Interpreter::Machine::store_setup_offset(int system) {

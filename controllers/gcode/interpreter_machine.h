@@ -295,6 +295,7 @@ class Interpreter::Machine {
   void warn(int column, std::string message);
   void compensate(MoveKind kind, const PlaneMove& path, const AxisWords& end, double length,
                   double feed);
+  void tell_of_entry(const PlaneMove& path, const Corner& found);
   void turn_corner(MoveKind kind, const PlaneMove& path, const AxisWords& end, double feed);
   void go_around(MoveKind kind, const PlaneMove& path, const Eigen::Vector2d& point,
                  const AxisWords& end, double feed);
@@ -353,7 +354,7 @@ class Interpreter::Machine {
   Parameters parameters_;
   LineReader reader_;
   std::optional<ProgramSetup> setup_at_start_;  // of the reader `any`
-  std::optional<PossibleReaders> possible_readers_;
+  std::shared_ptr<const PossibleReaders> possible_readers_;
   BlockReading reading_;
   std::deque<std::string> pending_lines_;  // of the block read last, as a control reads it
   std::string pending_line_;               // that runs

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "controllers/gcode/other_language.h"
 #include "plant/vocabulary/input_error.h"
 
 namespace servomill::controllers {
@@ -16,13 +17,6 @@ bool is_blank_at(char c) { return c == ' ' || c == '\t'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
-
-// A line that asks grbl or TinyG for a report, which moves nothing; $H and settings do.
-bool is_report_request(std::string_view line) {
-  constexpr std::array<std::string_view, 6> kRequests = {"$$", "$G", "$I", "$N", "$#", "?"};
-  const std::string_view request = line.substr(0, line.find_first_of(" \t;\r"));
-  return std::find(kRequests.begin(), kRequests.end(), request) != kRequests.end();
-}
 
 // One pass over a line, from left to right; every rule puts characters of the same number.
 class LexicalRules {
@@ -37,6 +31,7 @@ class LexicalRules {
     if (at_ < text().size() && text()[at_] == '%') return percent_title(), std::move(line_);
     if (sender_command()) return std::move(line_);
     checksum();
+    skip_behind_number();
     slashes();
     program_number();
     while (at_ < text().size()) item();
@@ -112,6 +107,19 @@ class LexicalRules {
     const std::size_t title = text().find_first_not_of(" \t\r", at_ + 1);
     if (title == std::string::npos) return;
     if (apply(ReaderRule::percent_title, title)) blank(at_ + 1, text().size());
+  }
+
+  // N10 /G0 X1: the slash and the number change places.
+  void skip_behind_number() {
+    if (upper(at(at_)) != 'N' || !is_digit(at(at_ + 1))) return;
+    const std::size_t end = digits_end(at_ + 1);
+    std::size_t slash = end;
+    while (is_blank_at(at(slash))) ++slash;
+    if (at(slash) != '/' || at(slash + 1) == '/') return;
+    if (!apply(ReaderRule::skip_behind_number, slash)) return;
+    for (std::size_t i = end; i > at_; --i) text()[i] = text()[i - 1];
+    text()[at_] = '/';
+    if (slash != end) text()[slash] = ' ';
   }
 
   // '//' before what no control reads as a word, and levels of '/'.
@@ -273,14 +281,6 @@ bool has_fan_code(const Block& block) {
   });
 }
 
-bool contains_word(std::string_view line, std::string_view word) {
-  const std::size_t at = line.find(word);
-  if (at == std::string_view::npos) return false;
-  const bool begins = at == 0 || !is_letter(line[at - 1]);
-  const std::size_t end = at + word.size();
-  return begins && (end == line.size() || !is_letter(line[end]));
-}
-
 // A line that is skipped is looked at for its label only, and no fault shows that it has one.
 bool begins_with_colon(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t");
@@ -291,45 +291,6 @@ bool begins_with_colon(std::string_view line) {
 
 TolerantLine tolerant_line(std::string_view line, Reader reader) {
   return LexicalRules(line, reader).result();
-}
-
-std::string other_language(std::string_view line, int column) {
-  if (line.starts_with('$') && !is_report_request(line)) {
-    return fmt::format(
-        "'{}' is a command of a sender to grbl or TinyG, no block; take the line out",
-        line.front());
-  }
-  for (const std::string_view word : {"BEGIN PGM", "TOOL CALL", "CYCL DEF", "BLK FORM"}) {
-    if (contains_word(line, word)) {
-      return fmt::format("'{}' is Heidenhain conversational; --reader heidenhain reads it", word);
-    }
-  }
-  for (const std::string_view word : {"TRAORI", "TRAFOOF", "SUPA", "MCALL", "CYCLE", "POCKET",
-                                      "SLOT", "HOLES", "MSG", "DEF", "WORKPIECE", "EXTERN"}) {
-    const std::size_t at = line.find(word);
-    const bool is_first =
-        at != std::string_view::npos &&
-        line.substr(0, at).find_first_not_of("N0123456789 \t") == std::string_view::npos;
-    if (!is_first) continue;
-    return fmt::format("'{}' is a word of Siemens' language; programs in G-code are read here",
-                       word);
-  }
-  for (const std::string_view word : {"GOTO", "IF", "WHILE", "END", "THEN"}) {
-    const std::size_t first = line.find_first_not_of("/N0123456789 \t");
-    if (first == std::string_view::npos || line.find(word) != first) continue;
-    if (is_letter(line[std::min(first + word.size(), line.size() - 1)])) continue;
-    return fmt::format(
-        "'{}' is a statement of Fanuc's macro language; LinuxCNC's O-words are read "
-        "here",
-        word);
-  }
-  const auto at = static_cast<std::size_t>(column - 1);
-  const bool is_smoothness = line.find("G187") != line.npos || line.find("g187") != line.npos;
-  if (column > 0 && !is_smoothness && at + 1 < line.size() && upper(line[at]) == 'E' &&
-      (is_digit(line[at + 1]) || line[at + 1] == '-' || line[at + 1] == '.')) {
-    return "an E word feeds the extruder of a printer; programs for milling are read here";
-  }
-  return {};
 }
 
 void LineReader::parse(std::string_view& line, const std::string& file, int number, Block& block,

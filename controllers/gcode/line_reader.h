@@ -21,11 +21,6 @@ struct TolerantLine {
 /// @return the line itself where no rule applies
 TolerantLine tolerant_line(std::string_view line, Reader reader);
 
-/// The sentence that names the language of a line, if it is none of G-code: Heidenhain's
-/// conversational, cycles of Siemens, words of a printer; else empty.
-/// @param column  of the character that is no G-code, from 1; 0: unknown
-std::string other_language(std::string_view line, int column);
-
 /// Parses lines as LinuxCNC does and, where it refuses one, as the rules of the reader say.
 class LineReader {
  public:

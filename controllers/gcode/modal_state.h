@@ -26,7 +26,8 @@ struct Compensation {
     HeldMove path;  // of a motion
   };
   bool is_on = false;
-  bool is_entered = false;  // the first move was made: the tool is beside the programmed path
+  bool is_first_corner = false;  // the next corner is that behind the entry
+  bool is_entered = false;       // the first move was made: the tool is beside the programmed path
   Cutter cutter;
   Eigen::Vector2d programmed = Eigen::Vector2d::Zero();  // where the programmed path is now
   std::vector<Waiting> queue;            // a motion, and what followed without moving in the plane

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "controllers/gcode/decimal_point.h"
@@ -16,6 +17,13 @@
 #include "plant/vocabulary/axes.h"
 
 namespace servomill::controllers {
+
+class PossibleReaders;
+
+/// The controls that would read one program: found once for all runs of it that share this.
+struct SharedTrials {
+  std::shared_ptr<const PossibleReaders> found;
+};
 
 /// What the machine knows before the first block.
 struct ProgramSetup {
@@ -32,6 +40,9 @@ struct ProgramSetup {
   std::optional<double> feed;  // m/s, of moves before any F; not for the reader linuxcnc
   /// Work offsets of G54.1 P1 ... and G154 P1 ..., by P; m, rad.
   std::map<int, AxisWords> additional_offsets;
+  /// Numbers of M codes of the machine's builder that have no effect on motion, as the user says;
+  /// not for the reader linuxcnc.
+  std::set<int> ignored_codes;
   /// Lengths of tools may be unknown: machine coordinates of such moves are not to be used.
   bool accepts_unknown_lengths = false;
   /// Dwells may be unknown (NaN), where controls read P in different units.
@@ -50,6 +61,7 @@ struct ProgramSetup {
   /// The machine, for tool-centre-point control and tilted planes. Without it a program may use
   /// G43.4 and G68.2 as long as its rotary axes are at zero where they are switched on and off.
   std::shared_ptr<const ToolCentrePoint> machine;
+  std::shared_ptr<SharedTrials> trials;  // nullptr: shared with no other run
 
   static std::array<AxisWords, 9> zero_offsets();
 };

@@ -61,6 +61,13 @@ enum class ReaderRule : std::uint8_t {
   local_subprogram,
   smoothing,
   machine_function,
+  ignored_function,
+  cancel_codes,
+  check_codes,
+  coolant_codes,
+  exact_stop,
+  spindle_power,
+  skip_behind_number,
   polar_coordinates,
   scaling,
   mirror_image,
@@ -101,6 +108,9 @@ std::span<const ReaderRuleEntry> reader_rules();
 
 /// Returns true if `reader` has the rule. `linuxcnc` has none.
 bool has_rule(Reader reader, ReaderRule rule);
+
+/// True for an M code that some rule gives a meaning, or a refusal: none of the machine's builder.
+bool is_known_function(int code);
 
 /// "a program that ends without M2 or M30: read as if M2 followed (grbl, Mach)", for warnings.
 std::string sentence(ReaderRule rule);

@@ -156,9 +156,10 @@ void add(MemoKey& key, const plant::ErrorModel& errors) {
 
 void add(MemoKey& key, const controllers::ProgramSetup& setup) {
   const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, reader,
-               decimal_point, feed, additional_offsets, accepts_unknown_lengths,
+               decimal_point, feed, additional_offsets, ignored_codes, accepts_unknown_lengths,
                accepts_unknown_dwells, is_trial, start, block_delete, subroutine_file, most_jumps,
-               machine] = setup;
+               machine, trials] = setup;
+  static_cast<void>(trials);  // what it holds follows from the program and the setup
   key.add(stored.size());
   for (const auto& [number, value] : stored) {
     key.add(number);
@@ -182,6 +183,8 @@ void add(MemoKey& key, const controllers::ProgramSetup& setup) {
     key.add(number);
     key.add(offset);
   }
+  key.add(ignored_codes.size());
+  for (const int code : ignored_codes) key.add(code);
   key.add(accepts_unknown_lengths);
   key.add(accepts_unknown_dwells);
   key.add(is_trial);

@@ -95,6 +95,18 @@ void add_additional_offset(const std::string& text, controllers::ProgramSetup& s
       axis_values(option, std::string_view(text).substr(colon + 1), nullptr, false).words;
 }
 
+// The number of "M82", a code that no rule of a reader gives a meaning.
+int ignored_code(const std::string& text) {
+  const double number = text.starts_with('M') ? number_of(text.substr(1)) : std::nan("");
+  const bool is_code = number >= 0.0 && number <= 9999.0 && number == std::floor(number);
+  if (is_code && !controllers::is_known_function(static_cast<int>(number))) {
+    return static_cast<int>(number);
+  }
+  throw InputError({"--ignore-code " + text},
+                   is_code ? "has a meaning of its own, which cannot be left out"
+                           : "must be an M code of the machine's builder, such as M82");
+}
+
 }  // namespace
 
 void choose_reader(const ProgramInputs& inputs, const NcSettings& nc,
@@ -141,6 +153,10 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
   choose_reader(inputs, nc, setup);
   setup.feed = inputs.feed;
   for (const std::string& text : inputs.additional_offsets) add_additional_offset(text, setup);
+  for (const std::string& code : inputs.ignored_codes) {
+    setup.ignored_codes.insert(ignored_code(code));
+  }
+  setup.trials = inputs.trials;
   setup.block_delete = inputs.block_delete;
   setup.most_jumps = inputs.most_jumps;
   for (const std::string& folder : inputs.subroutine_folders) {

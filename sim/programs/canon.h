@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,8 +27,11 @@ struct ProgramInputs {
   std::optional<std::string> decimal_point = {};
   std::optional<double> feed = {};                   // m/s, of moves before any F
   std::vector<std::string> additional_offsets = {};  // "P3:X=10,Y=5", of G54.1 P3; mm
+  std::vector<std::string> ignored_codes = {};       // "M82", of the machine's builder
   bool block_delete = false;                         // leave out lines that start with '/'
   long most_jumps = 1'000'000;                       // loops turned and subroutines called
+  /// Of all runs of one program; nullptr: each run makes its own.
+  std::shared_ptr<controllers::SharedTrials> trials = {};
 };
 
 /// Takes the reader that the inputs name, else that of the machine file.

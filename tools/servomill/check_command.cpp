@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <memory>
+
 #include "plant/vocabulary/input_error.h"
 #include "sim/programs/canon.h"
 #include "sim/programs/program_survey.h"
@@ -44,8 +46,8 @@ std::string to_json(const std::vector<Fault>& faults) {
 }
 
 // @return number of faults
-std::size_t check(const std::string& path, const Options& options,
-                  const sim::ProgramInputs& inputs) {
+std::size_t check(const std::string& path, const Options& options, sim::ProgramInputs inputs) {
+  inputs.trials = std::make_shared<controllers::SharedTrials>();
   std::vector<Fault> warnings;
   const auto faults = sim::check_file(path, options.list("set"), inputs, &warnings);
   const bool json = options.has("json");

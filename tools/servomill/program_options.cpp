@@ -31,6 +31,9 @@ void add_program_options(Options& options) {
   options.add()("feed", text("\"300 mm/min\""), "feed of G1, G2 and G3 before any F");
   options.add()("additional-offset", texts("P3:X=10,Y=5,Z=0"),
                 "where the work system of G54.1 P3 or G154 P3 lies, mm");
+  options.add()("ignore-code", texts("M82"),
+                "M code of the machine's builder that has no effect on motion; without it the code "
+                "is refused, as some mirror or move axes");
   options.add()("block-delete", "leaves out the lines that start with '/'");
   options.add()("max-jumps", po::value<long>()->value_name("N"),
                 "loops turned and subroutines called before a program counts as endless "
@@ -60,6 +63,7 @@ sim::ProgramInputs program_inputs(const Options& options) {
     if (!(*inputs.feed > 0.0)) throw InputError({"--feed"}, "must be > 0");
   }
   inputs.additional_offsets = options.list("additional-offset");
+  inputs.ignored_codes = options.list("ignore-code");
   inputs.block_delete = options.has("block-delete");
   if (options.has("max-jumps")) inputs.most_jumps = options.get<long>("max-jumps");
   if (inputs.most_jumps < 1) throw InputError({"--max-jumps"}, "must be >= 1");

@@ -33,6 +33,7 @@ bool is_special(char letter, int tenths) {
 // Codes of a block, as far as they tell that no rule concerns it.
 struct PlainCodes {
   bool are_plain = true;
+  bool turns_spindle = false;
   int motion = -1;  // tenths
   std::uint32_t groups = 0;
 
@@ -44,13 +45,15 @@ struct PlainCodes {
       return;
     }
     const std::uint32_t group = 1U << static_cast<unsigned>(code->group);
-    if (word.letter == 'G' && (groups & group) != 0) are_plain = false;
+    const bool can_repeat = word.letter == 'G' || code->group == Group::m_coolant;
+    if (can_repeat && (groups & group) != 0) are_plain = false;
     groups |= group;
     // G92 beside a motion code
     const auto both = 1U << static_cast<unsigned>(Group::g_motion) |
                       1U << static_cast<unsigned>(Group::g_non_modal);
     if ((groups & both) == both) are_plain = false;
     if (code->group == Group::g_motion) motion = tenths;
+    turns_spindle = turns_spindle || (word.letter == 'M' && (tenths == 30 || tenths == 40));
   }
 };
 
@@ -87,6 +90,9 @@ bool BlockReading::concerns(const Block& block, const ModalState& state) const {
   }
   const int motion = codes.motion >= 0 ? codes.motion : state.motion;
   if (!codes.are_plain || (letters & kOffsets) != 0 || is_canned_cycle(motion)) return true;
+  const bool takes_no_P = codes.turns_spindle ||
+                          (codes.groups & 1U << static_cast<unsigned>(Group::g_work_system)) != 0;
+  if (takes_no_P && (letters & word_bit('P')) != 0) return true;
   const bool has_unit = (codes.groups & 1U << static_cast<unsigned>(Group::g_units)) != 0;
   if (has_unit && (letters & word_bit('F')) != 0) return true;
   if ((letters & kPlaces) == 0) return codes.motion == 800;
@@ -137,7 +143,10 @@ void ReadingStep::run() {
   refused_codes();
   circular_pocket();
   machine_functions();
-  smoothing();
+  coolant_codes();
+  exact_stop();
+  spindle_power();
+  idle_codes();
   call_behind_words();
   local_call();
   dwell();
@@ -183,8 +192,8 @@ bool ReadingStep::apply(ReaderRule rule, int column, std::string detail) {
   return true;
 }
 
-void ReadingStep::need(ReaderRule rule, int column) {
-  if (apply(rule, column)) return;
+void ReadingStep::need(ReaderRule rule, int column, std::string detail) {
+  if (apply(rule, column, std::move(detail))) return;
   const ReaderRuleEntry& entry = reader_rules()[static_cast<std::size_t>(rule)];
   refuse(column, fmt::format("{}: the reader {} does not read it ({}: {})", entry.found,
                              kReaders[static_cast<std::size_t>(options.reader)], entry.controls,
@@ -207,9 +216,11 @@ std::optional<int> ReadingStep::chosen_reading(WordDifference difference, int co
   if (!deduced) return std::nullopt;
   const WordDifferenceEntry& entry = word_differences()[static_cast<std::size_t>(difference)];
   const WordReading& reading = entry.readings[static_cast<std::size_t>(*deduced)];
+  const std::string stops = possible->who_stops();
   reading_.notes_.push_back(
-      {column, fmt::format("{}: read as {} ({}), since {}", entry.found, reading.text,
-                           reading.controls, possible->who_stops())});
+      {column, fmt::format("{}: read as {} ({}), {}", entry.found, reading.text, reading.controls,
+                           stops.empty() ? "as all of these controls would read the program"
+                                         : "since " + stops)});
   return deduced;
 }
 

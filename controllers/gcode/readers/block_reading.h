@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,7 +30,8 @@ struct ReadingOptions {
   DecimalPoint decimal_point = DecimalPoint::unset;
   std::optional<double> feed;  // m/s, of moves before any F
   bool accepts_unknown_dwells = false;
-  bool is_trial = false;  // as of ProgramSetup
+  std::set<int> ignored_codes = {};  // as of ProgramSetup
+  bool is_trial = false;             // as of ProgramSetup
   /// The controls that would read the whole program; nullptr if nobody can tell.
   std::function<const PossibleReaders*()> possible_readers = {};
 };
@@ -61,8 +63,11 @@ struct ReadingMemory {
   PolarMode polar;
   std::map<int, AxisWords> additional_offsets;  // of G54.1, by P
   int power_changes = 0;                        // feeds that change S without an M code
+  int lone_G53_line = 0, lone_G53_column = 0;   // without axis words, no work offset since; 0: none
+  int first_left_out = -1;                      // tenths of the first M code that was left out
   bool has_any_mode() const {
-    return pending_motion >= 0 || is_in_cycle || frame.is_active() || polar.is_on;
+    return pending_motion >= 0 || is_in_cycle || frame.is_active() || polar.is_on ||
+           lone_G53_line > 0;
   }
 };
 

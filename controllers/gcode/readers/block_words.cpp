@@ -84,6 +84,11 @@ bool BlockWords::has_axis() const {
 
 void BlockWords::erase(BlockWord& word) { word.is_erased = word.is_changed = true; }
 
+void BlockWords::comment_out(BlockWord& word) {
+  erase(word);
+  word.is_kept_as_comment = true;
+}
+
 void BlockWords::erase(char letter) {
   if (BlockWord* word = find(letter)) erase(*word);
 }
@@ -129,6 +134,10 @@ void BlockWords::write() const {
     if (!word.is_changed || word.begin == word.end) continue;
     copy_until(word.begin);
     at = word.end;
+    if (word.is_kept_as_comment) {
+      put("(" + line_.substr(word.begin, word.end - word.begin) + ")", word.column);
+      continue;
+    }
     if (!word.is_erased) put(word_text(word.letter, word.value), word.column);
     while (word.is_erased && !text_.empty() && is_blank_at(text_.back())) text_.pop_back();
   }

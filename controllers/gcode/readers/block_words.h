@@ -21,6 +21,7 @@ struct BlockWord {
   int digits = 0;                  // of a literal
   std::size_t begin = 0, end = 0;  // in the line; equal: added by a rule
   bool is_erased = false, is_changed = false;
+  bool is_kept_as_comment = false;  // of an erased word
 };
 
 class BlockWords {
@@ -46,6 +47,8 @@ class BlockWords {
 
   void erase(BlockWord& word);
   void erase(char letter);
+  /// Erases the word but for a comment, so that whoever reads the line sees what it had.
+  void comment_out(BlockWord& word);
   void set(char letter, double value, int column = 0);
   void add(char letter, double value, int column);
 

@@ -42,10 +42,11 @@ void ReadingStep::cycles() {
   if (explicit_code >= 0) begin_cycle(code);
   if (code == kFineBoring) fine_boring();
   const int strict = strict_code(code);
+  cycle_count(code);
   cycle_levels(strict);
   cycle_words(strict);
   cycle_dwell(strict);
-  cycle_repeats(code);
+  cycle_without_hole(code);
   if (!words.has_axis()) return;
   retract_mode();
   tapping(strict);
@@ -160,8 +161,8 @@ void ReadingStep::cycle_dwell(int code) {
   words.add('P', 0.0, column);
 }
 
-// K of Fanuc is L of LinuxCNC; with 0 the words are kept only.
-void ReadingStep::cycle_repeats(int code) {
+// K of Fanuc is L of LinuxCNC.
+void ReadingStep::cycle_count(int code) {
   const bool is_back_boring = code == kBackBoring;
   if (const BlockWord* K = is_back_boring ? nullptr : words.find('K')) {
     const int column = K->column;
@@ -170,6 +171,10 @@ void ReadingStep::cycle_repeats(int code) {
     words.add('L', words['K'], column);
     words.erase('K');
   }
+}
+
+// With L0 the words are kept only.
+void ReadingStep::cycle_without_hole(int code) {
   if (!words.has('L') || words['L'] != 0.0) return;
   need(ReaderRule::cycle_without_hole, words.column('L'));
   for (const char letter : {'X', 'Y', 'Z', 'R', 'P', 'Q', 'L'}) words.erase(letter);

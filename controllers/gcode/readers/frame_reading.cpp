@@ -43,6 +43,7 @@ void ReadingStep::polar_mode() {
   for (const int tenths : {150, 160}) {
     BlockWord* code = words.code('G', tenths);
     if (code == nullptr) continue;
+    if (words.has('H')) fail(words.column('H'), "H beside G15 or G16 is a work system of Okuma");
     need(ReaderRule::polar_coordinates, code->column);
     memory.polar = {};
     memory.polar.is_on = tenths == 160;
@@ -210,16 +211,27 @@ void ReadingStep::rotation() {
   words.erase(*words.code('G', 680));
 }
 
+// G54 P3 is G54.1 P3 of Fanuc, where no other word of the block takes P.
+bool ReadingStep::is_additional_G54() const {
+  if (!words.has_code('G', 540) || !words.has('P')) return false;
+  const bool is_taken = words.has_code('G', 40) || words.has_code('G', 100) ||
+                        words.has_code('G', 640) || words.has_code('G', 541) ||
+                        is_canned_cycle(motion_in_block()) || words.has('M') ||
+                        motion_in_block() == 20 || motion_in_block() == 30;
+  return !is_taken;
+}
+
 // The work system in force stays; its distance to that of G54.1 P is added.
 void ReadingStep::additional_offset() {
   PlaneFrame& frame = memory.frame;
   for (int tenths = 540; tenths <= 593; ++tenths) {
-    if (tenths == 541 || !words.has_code('G', tenths)) continue;
+    if (tenths == 541 || !words.has_code('G', tenths) || is_additional_G54()) continue;
     frame.translation.setZero();
     frame.is_translated = false;
   }
   BlockWord* code = words.code('G', 541);
   if (code == nullptr) code = words.code('G', 1540);
+  if (code == nullptr && is_additional_G54()) code = words.code('G', 540);
   if (code == nullptr) return;
   refuse_frame_change(*code);
   need(ReaderRule::additional_work_offset, code->column);

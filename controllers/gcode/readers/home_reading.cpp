@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "controllers/gcode/readers/reading_step.h"
+#include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
@@ -54,11 +55,35 @@ void ReadingStep::homing_cycle() {
   memory.is_pending_known = true;
 }
 
+// G53 alone, and then X1: a place of the machine only where G53 is modal, unless a work offset
+// came between.
 void ReadingStep::machine_coordinates() {
   BlockWord* code = words.code('G', 530);
-  if (code == nullptr || words.has_axis()) return;
-  choose(WordDifference::lone_machine_coordinates, code->column);
+  constexpr auto kDifference = WordDifference::lone_machine_coordinates;
+  if (has_work_offset()) memory.lone_G53_line = 0;
+  if (code == nullptr) {
+    if (memory.lone_G53_line == 0 || !words.has_axis()) return;
+    if (!chosen_reading(kDifference, memory.lone_G53_column)) {
+      throw InputError({file_, memory.lone_G53_line, memory.lone_G53_column},
+                       both_readings(kDifference));
+    }
+    memory.lone_G53_line = 0;
+    return;
+  }
+  if (words.has_axis()) return;
+  if (!has_work_offset()) {
+    memory.lone_G53_line = block_.line;
+    memory.lone_G53_column = code->column;
+  }
   words.erase(*code);
+}
+
+bool ReadingStep::has_work_offset() const {
+  for (const BlockWord& word : words.all()) {
+    const int tenths = word.letter == 'G' ? tenths_of(word.value) : -1;
+    if ((tenths >= 540 && tenths <= 593) || tenths == 1540) return true;
+  }
+  return false;
 }
 
 // G92.1 X0: of Fanuc the shift of the axes named goes, of LinuxCNC all of it.

@@ -112,16 +112,21 @@ void ReadingStep::refuse_arc_behind_cycle(int motion, int column) const {
 void ReadingStep::feed() {
   const int motion = motion_in_block();
   const bool moves = words.has_axis() || words.has('I') || words.has('J') || words.has('K');
-  const bool needs = motion > 0 && motion != 800 && moves && !has_axis_taker();
+  const bool has_own_feed = motion == 330 || motion == 331;  // that of the thread
+  const bool needs = motion > 0 && motion != 800 && moves && !has_own_feed && !has_axis_taker();
   const bool is_other_mode = words.has_code('G', 930) || words.has_code('G', 950) ||
                              state.feed_mode != FeedMode::units_per_minute;
   if (!needs || words.has('F') || is_other_mode || state.feed_linear != 0.0) return;
   const BlockWord* code = words.code('G', motion);
   const int column = code != nullptr ? code->column : words.all().front().column;
   if (!options.feed) {
-    fail(column, fmt::format("{} before any F: Mach goes on with the feed that it had last, other "
-                             "controls refuse it; write F, or give the feed with --feed",
-                             code_name('G', motion)));
+    fail(
+        column,
+        fmt::format(
+            "{} before any F: Mach goes on with the feed that it had last, other "
+            "controls refuse it; write F, or give the feed with --feed or as program.first_feed of "
+            "a scenario",
+            code_name('G', motion)));
   }
   if (!apply(ReaderRule::given_feed, column)) return;
   words.add('F', *options.feed * minute / state.unit, column);

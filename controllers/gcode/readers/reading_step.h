@@ -42,13 +42,22 @@ class ReadingStep {
   void feed_beside_unit();
   void repeated_groups();
   void machine_functions();
-  void smoothing();
+  void leave_out(ReaderRule rule, BlockWord& word);
+  void refuse_function(const BlockWord& word) const;
+  void override_code(BlockWord& word);
+  void coolant_codes();
+  void exact_stop();
+  void spindle_power();
+  bool has_words_of_P() const;
+  void idle_codes();
   void refused_codes();
   void dwell();
+  void dwell_of_other_controls();
   // home_reading.cpp
   void home();
   void homing_cycle();
   void machine_coordinates();
+  bool has_work_offset() const;
   void presets();
   void inputs();
   // tool_reading.cpp
@@ -76,7 +85,8 @@ class ReadingStep {
   void cycle_levels(int code);
   double initial_level() const;
   void cycle_dwell(int code);
-  void cycle_repeats(int code);
+  void cycle_count(int code);
+  void cycle_without_hole(int code);
   void fine_boring();
   void retract_mode();
   void tapping(int code);
@@ -93,6 +103,7 @@ class ReadingStep {
   void rotation();
   void centre_of_mach(const BlockWord& code);
   void additional_offset();
+  bool is_additional_G54() const;
   void refuse_frame_change(const BlockWord& code) const;
   void polar_words();
   void refuse_lone_axis(const Eigen::Vector3d& now);
@@ -102,7 +113,7 @@ class ReadingStep {
   /// Notes a rule that the block needs. False if the reader lacks it.
   bool apply(ReaderRule rule, int column, std::string detail = {});
   /// The same; a reader that lacks the rule refuses the word.
-  void need(ReaderRule rule, int column);
+  void need(ReaderRule rule, int column, std::string detail = {});
   /// Which of two readings counts: that of the reader, or of all controls that would read the
   /// program.
   /// @throws InputError if that is neither

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "controllers/gcode/readers/reading_step.h"
 
@@ -23,12 +24,39 @@ constexpr auto kSmoothing = std::to_array<Switch>({
     {51, "QPR", true},  // G5.1 Q1
     {80, "P", true},    // G8 P1
     {620, "", false},   // automatic override in inner corners
+    {1030, "P", false},
     {1870, "P", false},
+});
+
+// Codes that end what no code read here begins.
+constexpr auto kCancels = std::to_array<Switch>({
+    {131, "", false},   // G13.1 and G113: interpolation in polar coordinates
+    {401, "", false},   // an axis normal to the path
+    {502, "", false},   // turning of polygons
+    {542, "P", false},  // G54.2 P0: offsets of a rotary table
+    {670, "", false},   // modal macros
+    {691, "", false},   // synchronous control of two tables
+    {1130, "", false},
+    {2550, "", false},  // dynamic work offset of Haas
+});
+
+// Codes that switch checks of travel limits and spindle speed.
+constexpr auto kChecks = std::to_array<Switch>({
+    {220, "XYZIJK", false},
+    {230, "", false},
+    {250, "", false},
+    {260, "PQRI", false},
 });
 
 // Without effect on motion: clamps, gears, chips, coolant through the spindle or the tool.
 constexpr std::array kFunctions = {10, 11, 29, 31, 33, 34, 35, 41,  42, 43,
                                    44, 76, 77, 83, 84, 88, 89, 138, 139};
+
+constexpr int kLocalCall = 970;
+
+bool is_idle_function(int code) {
+  return std::find(kFunctions.begin(), kFunctions.end(), code) != kFunctions.end();
+}
 
 // Codes that are known by name, and none can be simulated.
 struct Refused {
@@ -37,19 +65,60 @@ struct Refused {
   std::string_view why;
 };
 constexpr auto kRefused = std::to_array<Refused>({
+    {'G', 62, "a curve as NURBS; post it as lines and arcs"},
+    {'G', 71, "turns an axis into coordinates of a cylinder; post the moves of the rotary axis"},
+    {'G', 121, "couples a linear and a rotary axis in polar coordinates; post the moves of both"},
+    {'G', 270, "checks by a move that the axes stand at the reference point; use G53"},
     {'G', 283, "sets machine coordinates without a move (TinyG); use G92"},
+    {'G', 290, "comes back through the point of the last G28; write the moves"},
     {'G', 310, "a move up to what a probe touches, which is not simulated"},
+    {'G', 360, "measures by a probe, which is not simulated"},
+    {'G', 370, "measures a tool by a probe, which is not simulated"},
+    {'G', 440, "takes the length of the tool off; use G43 and a length of the other sign"},
+    {'G', 450, "lengthens a move by a tool offset; write the move"},
+    {'G', 460, "shortens a move by a tool offset; write the move"},
+    {'G', 470,
+     "engraves a text (Haas), or lengthens a move by twice a tool offset (Fanuc); write "
+     "the moves"},
+    {'G', 480, "shortens a move by twice a tool offset; write the move"},
+    {'G', 600,
+     "comes from one side by a distance that is a parameter of the control; write the "
+     "moves"},
     {'G', 650, "calls a macro of the control, whose text is not in the program"},
     {'G', 660, "calls a macro of the control at each move, whose text is not in the program"},
+    {'G', 770, "back boring by an oriented spindle is not simulated"},
+    {'G', 1000, "ends a mirror image (Haas), or changes a tool (Brother); write G50.1 or M6"},
+    {'G', 1010, "a mirror image (Haas), or a code of the machine's builder; write G51.1"},
+    {'G', 1070, "turns an axis into coordinates of a cylinder; post the moves of the rotary axis"},
+    {'G', 1120, "couples a linear and a rotary axis in polar coordinates; post the moves of both"},
+    {'G', 1410, "compensates the radius in space (Haas); post the path of the tool centre"},
+    {'G', 1430, "compensates the length on tilted axes (Haas); post it with G43.4"},
+    {'G', 1500, "a pocket cycle (Haas); post the moves of the pocket"},
+    {'G', 2340, "tool centre point control (Haas); write G43.4, which is the same"},
+    {'G', 2540,
+     "shifts the work offset with the rotary axes (Haas), by centres of rotation that "
+     "are in the control; post it with G68.2 or G43.4"},
+    {'M', 170, "ends a subprogram of Siemens; write M99"},
+    {'M', 470, "starts the program again and again (Mach); write M30"},
+    {'M', 960, "lets a signal interrupt the program, and none are simulated"},
     {'M', 1040, "heats the extruder of a printer; programs for milling are read here"},
     {'M', 1090, "heats the extruder of a printer; programs for milling are read here"},
     {'M', 1400, "heats the bed of a printer; programs for milling are read here"},
     {'M', 1900, "heats the bed of a printer; programs for milling are read here"},
+    {'M', 1980, "calls a program from another memory of the control; use M98 and --subs"},
 });
 
 std::string name_of(const BlockWord& word) { return code_name(word.letter, tenths_of(word.value)); }
 
 }  // namespace
+
+bool is_known_function(int code) {
+  return find_code('M', 10 * code) != nullptr || is_idle_function(code) ||
+         10 * code == kLocalCall ||
+         std::any_of(kRefused.begin(), kRefused.end(), [&](const Refused& one) {
+           return one.letter == 'M' && one.tenths == 10 * code;
+         });
+}
 
 bool ReadingStep::is_polar_angle(char letter) const {
   const bool is_polar = words.has_code('G', 160) || memory.polar.is_on;
@@ -84,6 +153,10 @@ void ReadingStep::unit_codes() {
   for (const int tenths : {700, 710}) {
     BlockWord* code = words.code('G', tenths);
     if (code == nullptr || words.has('Q') || words.has('P')) continue;
+    if (words.has('L')) {
+      fail(code->column,
+           fmt::format("{} with L: holes along a circle (Haas); write each hole", name_of(*code)));
+    }
     need(ReaderRule::unit_codes, code->column);
     code->value = tenths == 700 ? 20.0 : 21.0;
     code->is_changed = true;
@@ -128,15 +201,27 @@ void ReadingStep::repeated_groups() {
 }
 
 void ReadingStep::refused_codes() {
-  for (const BlockWord& word : words.all()) {
+  for (BlockWord& word : words.all()) {
     const int tenths = tenths_of(word.value);
     for (const Refused& one : kRefused) {
       if (word.letter != one.letter || tenths != one.tenths) continue;
       fail(word.column, fmt::format("{}: {}", name_of(word), one.why));
     }
     const bool is_override = word.letter == 'M' && tenths >= 500 && tenths <= 530;
-    if (is_override) fail(word.column, both_readings(WordDifference::override_codes));
+    if (is_override) override_code(word);
   }
+}
+
+// No reading moves an axis, as far as the program tells.
+void ReadingStep::override_code(BlockWord& word) {
+  const std::optional<int> reading = chosen_reading(WordDifference::override_codes, word.column);
+  if (reading == 1) {
+    if (BlockWord* P = words.find('P')) words.comment_out(*P);
+    return leave_out(ReaderRule::machine_function, word);
+  }
+  if (reading == 0) return;
+  reading_.notes_.push_back({word.column, both_readings(WordDifference::override_codes) +
+                                              "; neither moves an axis while the program runs"});
 }
 
 void ReadingStep::machine_functions() {
@@ -150,22 +235,106 @@ void ReadingStep::machine_functions() {
       word.is_changed = true;
       continue;
     }
-    const bool is_known = tenths % 10 == 0 && std::find(kFunctions.begin(), kFunctions.end(),
-                                                        tenths / 10) != kFunctions.end();
-    if (!is_known) continue;
-    need(ReaderRule::machine_function, word.column);
-    words.erase(word);
+    const bool is_ignored = tenths % 10 == 0 && options.ignored_codes.contains(tenths / 10);
+    if (tenths % 10 == 0 && (is_ignored || is_idle_function(tenths / 10))) {
+      leave_out(is_ignored ? ReaderRule::ignored_function : ReaderRule::machine_function, word);
+    } else if (find_code('M', tenths) == nullptr && tenths != kLocalCall) {
+      refuse_function(word);
+    }
   }
 }
 
-void ReadingStep::smoothing() {
-  for (const Switch& one : kSmoothing) {
-    BlockWord* code = words.code('G', one.tenths);
-    if (code == nullptr || (one.needs_no_axis && words.has_axis())) continue;
-    need(ReaderRule::smoothing, code->column);
-    words.erase(*code);
-    for (const char letter : one.words) words.erase(letter);
+// A function of the machine, which programs that are written must not lose in silence.
+void ReadingStep::leave_out(ReaderRule rule, BlockWord& word) {
+  const int tenths = tenths_of(word.value);
+  const std::string name = name_of(word);
+  need(rule, word.column,
+       fmt::format("; {} becomes a comment, also where the program is written again", name));
+  if (memory.first_left_out < 0) memory.first_left_out = tenths;
+  if (memory.first_left_out != tenths) {
+    reading_.notes_.push_back({word.column, fmt::format("{} becomes a comment, too", name)});
   }
+  words.comment_out(word);
+}
+
+// LinuxCNC has M100 to M199 as programs of the user, Mach has macros, and controls of machine tools
+// what their builders made.
+void ReadingStep::refuse_function(const BlockWord& word) const {
+  const std::string name = name_of(word);
+  const bool has_none = options.reader == Reader::grbl;
+  if (has_none) refuse(word.column, fmt::format("{}: grbl does not have it", name));
+  fail(
+      word.column,
+      fmt::format("unknown M code {0}: a function of the machine's builder; some of them mirror or "
+                  "move an axis. If {0} does not, name it with --ignore-code {0}, or take it out",
+                  name));
+}
+
+// M7 M8: both are on.
+void ReadingStep::coolant_codes() {
+  BlockWord* flood = words.code('M', 80);
+  const bool has_both = flood != nullptr && words.has_code('M', 70) && !words.has_code('M', 90);
+  if (!has_both) return;
+  need(ReaderRule::coolant_codes, flood->column);
+  before.emplace_back("M8");
+  words.erase(*flood);
+}
+
+// G9: an exact stop at the end of this block.
+void ReadingStep::exact_stop() {
+  BlockWord* code = words.code('G', 90);
+  if (code == nullptr) return;
+  need(ReaderRule::exact_stop, code->column);
+  words.erase(*code);
+  if (state.path_mode != PathMode::continuous) return;
+  before.emplace_back("G61.1");
+  behind.push_back(state.path_tolerance > 0.0
+                       ? "G64 " + word_text('P', state.path_tolerance / state.unit)
+                       : "G64");
+}
+
+// M3 P100: a power in percent.
+void ReadingStep::spindle_power() {
+  const bool is_on = words.has_code('M', 30) || words.has_code('M', 40);
+  if (!is_on || !words.has('P') || has_words_of_P()) return;
+  need(ReaderRule::spindle_power, words.column('P'));
+  words.erase('P');
+}
+
+// Another code of the block that takes P.
+bool ReadingStep::has_words_of_P() const {
+  return std::any_of(words.all().begin(), words.all().end(), [](const BlockWord& word) {
+    const int tenths = word.letter == 'G' || word.letter == 'M' ? tenths_of(word.value) : -1;
+    const bool is_spindle = word.letter == 'M' && (tenths == 30 || tenths == 40);
+    const bool is_modal = word.letter == 'G' && (tenths == 0 || tenths == 10 || tenths == 900 ||
+                                                 tenths == 910 || tenths == 940);
+    return tenths >= 0 && !is_spindle && !is_modal;
+  });
+}
+
+// Codes without effect here, with the words that they take.
+void ReadingStep::idle_codes() {
+  const auto leave_out_all = [&](ReaderRule rule, std::span<const Switch> codes) {
+    for (BlockWord& word : words.all()) {
+      if (word.letter != 'G' || word.is_erased) continue;
+      const auto found = std::find_if(codes.begin(), codes.end(), [&](const Switch& one) {
+        return one.tenths == tenths_of(word.value) && !(one.needs_no_axis && words.has_axis());
+      });
+      if (found == codes.end()) continue;
+      need(rule, word.column);
+      words.erase(word);
+      for (const char letter : found->words) words.erase(letter);
+    }
+  };
+  if (const BlockWord* table = words.code('G', 542);
+      table != nullptr && !(words.has('P') && words['P'] == 0.0)) {
+    fail(table->column,
+         "G54.2: the offset turns with the rotary axes by what is in the control; post it with "
+         "G68.2 or G43.4");
+  }
+  leave_out_all(ReaderRule::smoothing, kSmoothing);
+  leave_out_all(ReaderRule::cancel_codes, kCancels);
+  leave_out_all(ReaderRule::check_codes, kChecks);
 }
 
 double ReadingStep::dwell_of(WordDifference difference, const BlockWord& P) {
@@ -187,6 +356,7 @@ void ReadingStep::dwell() {
     return words.set('P', dwell_of(WordDifference::dwell_unit, *P));
   }
   const BlockWord* X = words.find('X');
+  if (X == nullptr && options.reader == Reader::any) return dwell_of_other_controls();
   if (X == nullptr || !apply(ReaderRule::dwell_word, X->column)) return;
   double seconds = X->value;
   if (!X->has_point && seconds != 0.0) {
@@ -198,6 +368,22 @@ void ReadingStep::dwell() {
   const int column = X->column;
   words.erase('X');
   words.add('P', seconds, column);
+}
+
+// G4 S4: 4 s, or 4 turns.
+void ReadingStep::dwell_of_other_controls() {
+  const bool has_S = words.has('S');
+  const BlockWord* word = has_S ? words.find('S') : words.find('F');
+  if (word == nullptr) return;
+  const int column = word->column;
+  const std::string readings =
+      has_S ? "G4 S: seconds (Marlin), or turns of the spindle (Siemens); write G4 P"
+            : "G4 F: seconds (Siemens), and other controls do not have it; write G4 P";
+  if (!options.accepts_unknown_dwells) fail(column, readings);
+  reading_.notes_.push_back({column, readings + "; how long it dwells is left unknown"});
+  reading_.has_unknown_dwell_ = true;
+  words.erase(has_S ? 'S' : 'F');
+  words.add('P', 0.0, column);
 }
 
 }  // namespace servomill::controllers

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,15 @@ ProgramSetup setup_for(Reader reader, DecimalPoint decimal_point = DecimalPoint:
   if (depends) setup.decimal_point = decimal_point;
   setup.tools = ToolTable::parse("T1 P1 Z10 D2\nT2 P2 Z20 D4\n", "tools.tbl");
   return setup;
+}
+
+std::vector<std::string> warnings_of(const std::string& text, ProgramSetup setup = {}) {
+  setup.reader = Reader::any;
+  Interpreter interpreter(text, "p.nc", std::move(setup));
+  interpreter.rest();
+  std::vector<std::string> out;
+  for (const Fault& one : interpreter.warnings()) out.push_back(to_string(one));
+  return out;
 }
 
 struct Example {
@@ -136,6 +146,11 @@ TEST(WordDifferences, HaveAProgramEach) {
 
 TEST(WordDifferences, AreRefusedWithBothReadings) {
   for (const Example& one : examples()) {
+    // neither is refused, as AreWarnedOf... show
+    if (one.difference == WordDifference::override_codes ||
+        one.difference == WordDifference::lone_machine_coordinates) {
+      continue;
+    }
     SCOPED_TRACE(one.program);
     // lengths are in millimetres unless a control that counts increments is chosen
     const bool is_of_fanuc = one.difference == WordDifference::decimal_point;
@@ -169,11 +184,108 @@ TEST(WordDifferences, AReaderHasOneOfThem) {
   }
 }
 
-TEST(WordDifferences, OverridesAreNoFunctionsOfOtherControls) {
-  for (const Reader reader : {Reader::fanuc, Reader::haas, Reader::mach, Reader::grbl}) {
-    EXPECT_NE(moves_of("M50 P0\nG0 X1.\nM2\n", setup_for(reader)).find(": error: "),
-              std::string::npos);
+// Without a move in either reading, so that the program runs.
+TEST(WordDifferences, AreWarnedOfInOverridesWhichMoveNothing) {
+  const std::string program = "M50 P0\nG0 X1.\nM2\n";
+  for (const Reader reader : {Reader::any, Reader::fanuc, Reader::haas, Reader::mach}) {
+    EXPECT_EQ(moves_of(program, setup_for(reader)),
+              moves_of("G0 X1\nM2\n", setup_for(Reader::linuxcnc)));
   }
+  EXPECT_EQ(moves_of(program, setup_for(Reader::grbl)),
+            "p.nc:1:1: error: M50: grbl does not have it");
+  EXPECT_EQ(warnings_of(program),
+            std::vector<std::string>(
+                {"p.nc:1:1: error: " + both_readings(WordDifference::override_codes) +
+                 "; neither moves an axis while the program runs"}));
+}
+
+TEST(WordDifferences, AreWarnedOfInALoneG53BeforeAMoveWithoutAWorkOffset) {
+  EXPECT_EQ(moves_of("G53\nG0 X1.\nM2\n", setup_for(Reader::any)),
+            moves_of("G0 X1\nM2\n", setup_for(Reader::linuxcnc)));
+  EXPECT_EQ(
+      warnings_of("G53 G0\nX1.\nM2\n"),
+      std::vector<std::string>(
+          {"p.nc:2:1: error: G53 without axis words: read as no effect (LinuxCNC, grbl, Fanuc, "
+           "Haas, Mach), as all of these controls would read the program"}));
+  EXPECT_TRUE(warnings_of("G53 G0\nG55\nX1.\nG0 G53 G54 G90\nX1.\nM2\n").empty());
+}
+
+// A function of the builder must not be lost where the program is written again.
+TEST(MachineFunctions, BecomeCommentsWithAWarning) {
+  ProgramSetup setup = setup_for(Reader::any);
+  Interpreter interpreter("G0 X1. M10\nM88\nG1 X2. F100. (M10) M11\nM2\n", "p.nc", setup);
+  std::vector<std::string> lines;
+  while (const auto block = interpreter.next_block()) lines.emplace_back(block->text);
+  EXPECT_EQ(lines,
+            std::vector<std::string>({"G0 X1. (M10)", "(M88)", "G1 X2. F100. (M10) (M11)", "M2"}));
+  ASSERT_EQ(interpreter.warnings().size(), 3u);
+  EXPECT_EQ(interpreter.warnings()[0].message,
+            sentence(ReaderRule::machine_function) +
+                "; M10 becomes a comment, also where the program is written again");
+  EXPECT_EQ(to_string(interpreter.warnings()[1]), "p.nc:2:1: error: M88 becomes a comment, too");
+  EXPECT_EQ(to_string(interpreter.warnings()[2]), "p.nc:3:20: error: M11 becomes a comment, too");
+}
+
+TEST(MachineFunctions, OfTheBuilderAreRefusedUnlessTheUserNamesThem) {
+  EXPECT_EQ(
+      moves_of("M82\nG0 X1.\nM2\n", setup_for(Reader::any)),
+      "p.nc:1:1: error: unknown M code M82: a function of the machine's builder; some of them "
+      "mirror or move an axis. If M82 does not, name it with --ignore-code M82, or take it "
+      "out");
+  EXPECT_EQ(moves_of("M82\nG0 X1.\nM2\n", setup_for(Reader::grbl)),
+            "p.nc:1:1: error: M82: grbl does not have it");
+  ProgramSetup setup = setup_for(Reader::any);
+  setup.ignored_codes = {82};
+  EXPECT_EQ(moves_of("M82\nG0 X1.\nM2\n", setup),
+            moves_of("G0 X1\nM2\n", setup_for(Reader::linuxcnc)));
+  setup.reader = Reader::linuxcnc;
+  EXPECT_NE(moves_of("M82\nG0 X1.\nM2\n", setup).find("unknown M code M82"), std::string::npos);
+}
+
+TEST(Dwells, InWordsOfOtherControlsAreUnknown) {
+  constexpr std::string_view kBoth =
+      "G4 S: seconds (Marlin), or turns of the spindle (Siemens); write G4 P";
+  EXPECT_EQ(moves_of("G4 S4\nM2\n", setup_for(Reader::any)),
+            "p.nc:1:4: error: " + std::string(kBoth));
+  ProgramSetup setup = setup_for(Reader::any);
+  setup.accepts_unknown_dwells = true;
+  Interpreter interpreter("S100\nG4 S4\nG0 X1.\nM2\n", "p.nc", setup);
+  const auto moves = interpreter.rest();
+  const auto dwell = std::find_if(moves.begin(), moves.end(),
+                                  [](const Move& move) { return move.kind == MoveKind::dwell; });
+  ASSERT_NE(dwell, moves.end());
+  EXPECT_TRUE(std::isnan(dwell->value));
+  ASSERT_EQ(interpreter.warnings().size(), 1u);
+  EXPECT_EQ(interpreter.warnings()[0].message,
+            std::string(kBoth) + "; how long it dwells is left unknown");
+}
+
+// G9 stops at the end of its block only.
+TEST(ExactStop, OfOneBlockGivesThePathModeBack) {
+  const ProgramSetup strict = setup_for(Reader::linuxcnc);
+  EXPECT_EQ(moves_of("G64 P0.5\nG9 G1 X1. F100.\nX2.\nM2\n", setup_for(Reader::any)),
+            moves_of("G64 P0.5\nG61.1\nG1 X1 F100\nG64 P0.5\nX2\nM2\n", strict));
+  EXPECT_EQ(moves_of("G61\nG9 G1 X1. F100.\nX2.\nM2\n", setup_for(Reader::fanuc)),
+            moves_of("G61\nG1 X1 F100\nX2\nM2\n", strict));
+}
+
+// From (0, -10) up to (0, 0), then along X with the tool of radius 1 on the left: LinuxCNC ends
+// the entry at (-1, 0), Fanuc at (0, 1), which is sqrt(2) mm away.
+TEST(CutterCompensation, TellsOfAnEntryThatOtherControlsMakeInAnotherWay) {
+  const std::string head = "T1 M6\nG0 X0. Y-10.\nG41 D1 G1 X0. Y0. F100.\n";
+  std::vector<std::string> found =
+      warnings_of(head + "X10.\nG40 Y-10.\nM2\n", setup_for(Reader::any));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0],
+            "p.nc:4:1: error: the entry of cutter compensation is read as LinuxCNC makes it: the "
+            "tool ends line 3 1.4142 mm from where Fanuc and Haas end it, beside the start of the "
+            "next move (or by two moves: parameter 5003, setting 43); an entry that goes on in a "
+            "straight line is the same for all");
+  EXPECT_TRUE(warnings_of(head + "Y10.\nG40 X-10.\nM2\n", setup_for(Reader::any)).empty());
+  ProgramSetup strict = setup_for(Reader::linuxcnc);
+  Interpreter interpreter(head + "X10.\nG40 Y-10.\nM2\n", "p.nc", strict);
+  interpreter.rest();
+  EXPECT_TRUE(interpreter.warnings().empty());
 }
 
 TEST(DecimalPoint, IncrementsAreThousandths) {
@@ -186,15 +298,6 @@ TEST(DecimalPoint, IncrementsAreThousandths) {
   const ProgramSetup calculator = setup_for(Reader::fanuc);
   EXPECT_EQ(moves_of("G0 X1000\nG4 X2\nM2\n", calculator),
             moves_of("G0 X1000\nG4 P2\nM2\n", strict));
-}
-
-std::vector<std::string> warnings_of(const std::string& text, ProgramSetup setup = {}) {
-  setup.reader = Reader::any;
-  Interpreter interpreter(text, "p.nc", std::move(setup));
-  interpreter.rest();
-  std::vector<std::string> out;
-  for (const Fault& one : interpreter.warnings()) out.push_back(to_string(one));
-  return out;
 }
 
 TEST(DecimalPoint, TheFirstLengthWithoutOneIsReported) {
@@ -220,6 +323,17 @@ TEST(WordDifferences, AreReadAsAllControlsDoThatWouldReadTheProgram) {
   EXPECT_EQ(found[1],
             "p.nc:2:5: error: G43 H0: read as no length (Fanuc, Haas, Mach), since LinuxCNC would "
             "stop at line 1, grbl at line 1");
+}
+
+TEST(WordDifferences, AreTriedOnceForRunsThatShareTheTrials) {
+  const std::string program = "G0 G28 Z0.\nG43 H0 Z1.\nM2\n";
+  ProgramSetup setup = setup_for(Reader::any);
+  setup.trials = std::make_shared<SharedTrials>();
+  const std::string first = moves_of(program, setup);
+  const auto found = setup.trials->found;
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(moves_of(program, setup), first);
+  EXPECT_EQ(setup.trials->found, found);
 }
 
 // Behind the word, too: what stops LinuxCNC stands in line 3.

@@ -56,6 +56,12 @@ ProgramSetup with_tools() {
   return setup;
 }
 
+ProgramSetup with_ignored_code() {
+  ProgramSetup setup;
+  setup.ignored_codes = {82};
+  return setup;
+}
+
 ProgramSetup with_feed() {
   ProgramSetup setup;
   setup.feed = 100.0 * mm_per_min;
@@ -149,8 +155,16 @@ const std::vector<Example>& examples() {
        "G91 G0\nX1\nX1\nX1\nM2\n", "p.nc:2:1"},
       {ReaderRule::smoothing, "G5.1 Q1\nG05 P10000\nG187 P1 E0.01\nG0 X1.\nM2\n", "G0 X1\nM2\n",
        "p.nc:1:1"},
-      {ReaderRule::machine_function, "M88\nM29 S100\nM19 P90\nG0 X1.\nM2\n",
-       "S100\nM5\nG0 X1\nM2\n", "p.nc:1:1"},
+      {ReaderRule::machine_function, "M29 S100\nM19 P90\nG0 X1.\nM2\n", "S100\nM5\nG0 X1\nM2\n",
+       "p.nc:1:1"},
+      {ReaderRule::ignored_function, "M82\nG0 X1.\nM2\n", "G0 X1\nM2\n", "p.nc:1:1",
+       with_ignored_code()},
+      {ReaderRule::cancel_codes, "G67 G50.2\nG54.2 P0\nG0 X1.\nM2\n", "G0 X1\nM2\n", "p.nc:1:1"},
+      {ReaderRule::check_codes, "G0 X1.\nG22 X9. Y9. Z9.\nM2\n", "G0 X1\nM2\n", "p.nc:2:1"},
+      {ReaderRule::coolant_codes, "M7 M8\nG0 X1.\nM2\n", "M8\nM7\nG0 X1\nM2\n", "p.nc:1:4"},
+      {ReaderRule::exact_stop, "G9 G1 X1. F9.\nM2\n", "G61.1\nG1 X1 F9\nG64\nM2\n", "p.nc:1:1"},
+      {ReaderRule::spindle_power, "G0 X1.\nM3 P100\nM2\n", "G0 X1\nM3\nM2\n", "p.nc:2:4"},
+      {ReaderRule::skip_behind_number, "N1 / G0 X1.\nM2\n", "/N1 G0 X1\nM2\n", "p.nc:1:4"},
       {ReaderRule::polar_coordinates, "G16\nG0 X10. Y90.\nG91 Y90.\nG90 G15\nM2\n",
        "G0 X0 Y10\nX-10 Y0\nM2\n", "p.nc:1:1"},
       {ReaderRule::scaling, "G51 X0. Y0. Z0. P2.\nG0 X1. Y2.\nG50\nX1.\nM2\n", "G0 X2 Y4\nX1\nM2\n",

@@ -34,6 +34,7 @@ struct Given {
   bool skips_blocks = false;
   bool lacks_lengths = false;
   double feed = 0.0;                                      // mm/min
+  int ignored_code = -1;                                  // M code of the builder
   DecimalPoint decimal_point = DecimalPoint::calculator;  // of Fanuc and Haas
 };
 
@@ -71,6 +72,7 @@ inline ProgramSetup setup_of(const Given& given, Reader reader) {
   }
   setup.block_delete = given.skips_blocks;
   setup.accepts_unknown_lengths = given.lacks_lengths;
+  if (given.ignored_code >= 0) setup.ignored_codes.insert(given.ignored_code);
   if (given.feed > 0.0) setup.feed = given.feed * mm_per_min;
   return setup;
 }

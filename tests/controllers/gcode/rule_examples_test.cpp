@@ -105,7 +105,9 @@ TEST(RuleExamples, ALoneAxisBehindARotationIsRefusedWhereItMatters) {
             "R 0 10 0 | R -5 10 0");
 }
 
-TEST(RuleExamples, WordsOfG51AndG68ThatTwoControlsHaveAreRefused) {
+TEST(RuleExamples, WordsOfG15G51AndG68ThatTwoControlsHaveAreRefused) {
+  EXPECT_EQ(read("G15 H1\nG0 X1.\nM2\n", Reader::any, {}).moves,
+            "p.nc:1:5: error: H beside G15 or G16 is a work system of Okuma");
   EXPECT_EQ(read("G51 X2. Y2. P3.\nM2\n", Reader::mach, {}).moves,
             "p.nc:1:13: error: P beside G51: the factors of Mach are X, Y and Z");
   EXPECT_EQ(read("G68 X1. Y2. R90.\nM2\n", Reader::mach, {}).moves,
@@ -113,6 +115,20 @@ TEST(RuleExamples, WordsOfG51AndG68ThatTwoControlsHaveAreRefused) {
   EXPECT_EQ(read("G68 A1. B2. R90.\nM2\n", Reader::haas, {}).moves,
             "p.nc:1:5: error: A beside G68: the X of the centre for Mach, in G17 and G90, a rotary "
             "axis for others");
+}
+
+TEST(RuleExamples, WordsOfOtherLanguagesAreRefusedByName) {
+  const std::string siemens = "is a word of Siemens' language; programs in G-code are read here";
+  EXPECT_EQ(read("N10 T=\"MILL\"\nM2\n", Reader::any, {}).moves,
+            "p.nc:1:6: error: 'T=' " + siemens);
+  EXPECT_EQ(read("G3 X1. Y2. CR=4. F100.\nM2\n", Reader::fanuc, {}).moves,
+            "p.nc:1:13: error: 'CR=' " + siemens);
+  EXPECT_EQ(read("GROUP_BEGIN(0,\"TOP\")\nM2\n", Reader::any, {}).moves,
+            "p.nc:1:2: error: 'GROUP_BEGIN(...)' is a word of Siemens' language or of a machine's "
+            "builder; programs in G-code are read here");
+  EXPECT_EQ(read("G1 X10. ,R1. F100.\nM2\n", Reader::haas, {}).moves,
+            "p.nc:1:9: error: ',R' rounds the corner to the next move (Fanuc, Haas), which is not "
+            "read; write the arc");
 }
 
 // The radius changes in proportion to the angle: 5.04, 5.00, 4.96 mm (Fanuc B-63324EN/01, section

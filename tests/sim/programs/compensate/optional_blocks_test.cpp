@@ -156,8 +156,8 @@ TEST(OptionalBlocks, AreRefusedWhereTheProgramCannotRunWithoutThem) {
   EXPECT_EQ(
       why(Dialect::linuxcnc, "/F100\nG1 X20\nM2\n"),
       "plate.ngc:7:1: error: G1 before any F: Mach goes on with the feed that it had last, other "
-      "controls refuse it; write F, or give the feed with --feed; that is with the blocks with '/' "
-      "left out: " +
+      "controls refuse it; write F, or give the feed with --feed or as program.first_feed of a "
+      "scenario; that is with the blocks with '/' left out: " +
           kRemedy);
 }
 

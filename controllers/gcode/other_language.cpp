@@ -1,0 +1,130 @@
+#include "controllers/gcode/other_language.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace servomill::controllers {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
+bool is_name(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
+
+// The name before the first '=', as in T="MILL", CR=4 and F=AC(100), or an empty text. Parameters
+// of LinuxCNC begin with '#'.
+std::string_view assigned_name(std::string_view line) {
+  line = line.substr(0, line.find_first_of(";("));
+  const std::size_t equals = line.find('=');
+  if (equals == std::string_view::npos) return {};
+  const std::size_t last = line.find_last_not_of(" \t", equals - 1);
+  if (equals == 0 || last == std::string_view::npos) return {};
+  std::size_t first = last + 1;
+  while (first > 0 && is_name(line[first - 1])) --first;
+  const bool is_parameter = first > 0 && (line[first - 1] == '#' || line[first - 1] == '<');
+  const std::string_view name = line.substr(first, last + 1 - first);
+  const bool is_generator = !name.empty() && name.front() == 'E';  // of wire EDM: E001=...
+  const bool is_other = name.empty() || !is_letter(name.front()) || is_parameter || is_generator;
+  return is_other ? std::string_view() : name;
+}
+
+// The name at the begin of GROUP_BEGIN(0, ...), or an empty text.
+std::string_view called_name(std::string_view line) {
+  const std::size_t first = line.find_first_not_of("N0123456789 \t");
+  if (first == std::string_view::npos || !is_letter(line[first])) return {};
+  std::size_t end = first;
+  while (end < line.size() && is_name(line[end])) ++end;
+  constexpr std::size_t kShortest = 3;
+  const bool is_call = end < line.size() && line[end] == '(' && end - first >= kShortest;
+  return is_call && !is_digit(line[first + 1]) ? line.substr(first, end - first)
+                                               : std::string_view();
+}
+
+// ",R5." or ",C2." outside of comments: its column, from 0, or npos.
+std::size_t corner_word(std::string_view line) {
+  line = line.substr(0, line.find_first_of(";("));
+  const std::size_t comma = line.find(',');
+  const bool is_corner = comma != std::string_view::npos && comma + 1 < line.size() &&
+                         (upper(line[comma + 1]) == 'R' || upper(line[comma + 1]) == 'C');
+  return is_corner ? comma : std::string_view::npos;
+}
+
+std::string siemens_word(std::string_view line) {
+  for (const std::string_view word : {"TRAORI", "TRAFOOF", "SUPA", "MCALL", "CYCLE", "POCKET",
+                                      "SLOT", "HOLES", "MSG", "DEF", "WORKPIECE", "EXTERN"}) {
+    const std::size_t at = line.find(word);
+    const bool is_first =
+        at != std::string_view::npos &&
+        line.substr(0, at).find_first_not_of("N0123456789 \t") == std::string_view::npos;
+    if (is_first) return std::string(word);
+  }
+  const std::string_view name = assigned_name(line);
+  return name.empty() ? "" : std::string(name) + "=";
+}
+
+bool contains_word(std::string_view line, std::string_view word) {
+  const std::size_t at = line.find(word);
+  if (at == std::string_view::npos) return false;
+  const bool begins = at == 0 || !is_letter(line[at - 1]);
+  const std::size_t end = at + word.size();
+  return begins && (end == line.size() || !is_letter(line[end]));
+}
+
+}  // namespace
+
+bool is_report_request(std::string_view line) {
+  constexpr std::array<std::string_view, 6> kRequests = {"$$", "$G", "$I", "$N", "$#", "?"};
+  const std::string_view request = line.substr(0, line.find_first_of(" \t;\r"));
+  return std::find(kRequests.begin(), kRequests.end(), request) != kRequests.end();
+}
+
+std::string other_language(std::string_view line, int column) {
+  if (line.starts_with('$') && !is_report_request(line)) {
+    return fmt::format(
+        "'{}' is a command of a sender to grbl or TinyG, no block; take the line out",
+        line.front());
+  }
+  for (const std::string_view word : {"BEGIN PGM", "TOOL CALL", "CYCL DEF", "BLK FORM"}) {
+    if (contains_word(line, word)) {
+      return fmt::format("'{}' is Heidenhain conversational; --reader heidenhain reads it", word);
+    }
+  }
+  if (const std::string word = siemens_word(line); !word.empty()) {
+    return fmt::format("'{}' is a word of Siemens' language; programs in G-code are read here",
+                       word);
+  }
+  for (const std::string_view word : {"GOTO", "IF", "WHILE", "END", "THEN"}) {
+    const std::size_t first = line.find_first_not_of("/N0123456789 \t");
+    if (first == std::string_view::npos || line.find(word) != first) continue;
+    if (is_letter(line[std::min(first + word.size(), line.size() - 1)])) continue;
+    return fmt::format(
+        "'{}' is a statement of Fanuc's macro language; LinuxCNC's O-words are read "
+        "here",
+        word);
+  }
+  if (const std::string_view name = called_name(line); !name.empty()) {
+    return fmt::format(
+        "'{}(...)' is a word of Siemens' language or of a machine's builder; programs in G-code "
+        "are read here",
+        name);
+  }
+  if (const std::size_t comma = corner_word(line); comma != std::string_view::npos) {
+    const bool is_round = upper(line[comma + 1]) == 'R';
+    return fmt::format(
+        "',{}' {} the corner to the next move (Fanuc, Haas), which is not read; "
+        "write the {}",
+        is_round ? 'R' : 'C', is_round ? "rounds" : "chamfers", is_round ? "arc" : "line");
+  }
+  const auto at = static_cast<std::size_t>(column - 1);
+  const bool is_smoothness = line.find("G187") != line.npos || line.find("g187") != line.npos;
+  if (column > 0 && !is_smoothness && at + 1 < line.size() && upper(line[at]) == 'E' &&
+      (is_digit(line[at + 1]) || line[at + 1] == '-' || line[at + 1] == '.')) {
+    return "an E word feeds the extruder of a printer; programs for milling are read here";
+  }
+  return {};
+}
+
+}  // namespace servomill::controllers

@@ -1,0 +1,18 @@
+/// Lines that are no G-code, by the words that give them away.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace servomill::controllers {
+
+/// The sentence that names the language of a line, if it is none of G-code: Heidenhain's
+/// conversational, words of Siemens, macros of Fanuc, words of a printer; else empty.
+/// @param column  of the character that is no G-code, from 1; 0: unknown
+std::string other_language(std::string_view line, int column);
+
+/// Returns true for a line that asks grbl or TinyG for a report, which moves nothing; $H and
+/// settings do.
+bool is_report_request(std::string_view line);
+
+}  // namespace servomill::controllers
