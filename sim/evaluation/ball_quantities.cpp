@@ -3,26 +3,72 @@
 #include <fmt/format.h>
 
 #include <cassert>
-#include <limits>
 
 #include "plant/vocabulary/units.h"
+#include "sim/evaluation/case_evaluation.h"
+#include "sim/evaluation/statistic.h"
 #include "sim/model/scenario.h"
 
 namespace servomill::sim {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-BallDeviation deviation_of(const std::string& quantity, const plant::MachineChain& chain,
-                           const TipPath& path, const BallSpec& ball) {
-  if (quantity == "ball_bar_deviation") return bar_deviation(path, ball.bar_centres[0]);
-  if (quantity == "radial_ball_deviation") {
-    return nest_deviation(chain, path, NestDirection::radial);
-  }
-  if (quantity == "axial_ball_deviation") return nest_deviation(chain, path, NestDirection::axial);
-  assert(quantity == "tangential_ball_deviation");
-  return nest_deviation(chain, path, NestDirection::tangential);
+QuantityValue statistic_of(const QuantitySpec& spec, const BallDeviation& found) {
+  Statistic statistic(spec.statistic);
+  for (const double d : found.d) statistic.add(d / um);
+  return {statistic.value(), found.why_not};
 }
+
+template <NestDirection kDirection>
+QuantityValue of_nest(const QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
+  return statistic_of(spec,
+                      nest_deviation(one.data.chain, one.ball.path_of(spec.sections), kDirection));
+}
+
+QuantityValue of_bar(const QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
+  return statistic_of(spec,
+                      bar_deviation(one.ball.path_of(spec.sections), spec.ball->bar_centres[0]));
+}
+
+QuantityValue location_error(const QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
+  return one.ball.location(spec);
+}
+
+constexpr QuantityEntry kQuantities[] = {
+    {.name = "radial_ball_deviation",
+     .unit = "um",
+     .help = "R-test: a ball in the spindle relative to the table, away from the rotary axis that "
+             "turns",
+     .has_statistic = true,
+     .is_of_ball = true,
+     .evaluate = of_nest<NestDirection::radial>},
+    {.name = "axial_ball_deviation",
+     .unit = "um",
+     .help = "R-test: the same along that axis",
+     .has_statistic = true,
+     .is_of_ball = true,
+     .evaluate = of_nest<NestDirection::axial>},
+    {.name = "tangential_ball_deviation",
+     .unit = "um",
+     .help = "R-test: the same in the sense in which the axis counts",
+     .has_statistic = true,
+     .is_of_ball = true,
+     .evaluate = of_nest<NestDirection::tangential>},
+    {.name = "ball_bar_deviation",
+     .unit = "um",
+     .help = "ISO 10791-6 BK4: length of a ball bar between centre_mm of [[quantity.bar]] and the "
+             "tip, minus its nominal",
+     .has_statistic = true,
+     .is_of_ball = true,
+     .bars = BallBars::required,
+     .evaluate = of_bar},
+    {.name = "location_error",
+     .unit = "um",
+     .help = "identified by a nest of sensors, or by each [[quantity.bar]]; angles in urad",
+     .is_of_ball = true,
+     .bars = BallBars::optional,
+     .identifies = true,
+     .evaluate = location_error},
+};
 
 }  // namespace
 
@@ -46,13 +92,6 @@ TipPath BallQuantities::path_of(const std::vector<std::string>& sections) {
   return out;
 }
 
-BallDeviation BallQuantities::deviation(const QuantitySpec& spec) {
-  BallDeviation found =
-      deviation_of(spec.name, samples_.data().chain, path_of(spec.sections), *spec.ball);
-  for (double& d : found.d) d /= um;
-  return found;
-}
-
 BallQuantities::Identified BallQuantities::identify(const QuantitySpec& spec) {
   const plant::MachineChain& chain = samples_.data().chain;
   const std::vector<Eigen::Vector3d>& bars = spec.ball->bar_centres;
@@ -74,7 +113,7 @@ BallQuantities::Identified BallQuantities::identify(const QuantitySpec& spec) {
   return {identify_locations(chain, readings, set_up), ""};
 }
 
-BallQuantities::Location BallQuantities::location(const QuantitySpec& spec) {
+QuantityValue BallQuantities::location(const QuantitySpec& spec) {
   const BallSpec& ball = *spec.ball;
   assert(ball.error);
   std::string key = fmt::format("{}\n{}", fmt::join(spec.sections, "\n"), ball.tip_is_known);
@@ -85,10 +124,12 @@ BallQuantities::Location BallQuantities::location(const QuantitySpec& spec) {
   if (known == identified_.end()) known = identified_.emplace(key, identify(spec)).first;
   const Identified& found = known->second;
   const LocationEstimate* estimate = found.fit.find(*ball.error);
-  if (estimate == nullptr) return {kNone, found.why_not};
-  if (!estimate->value) return {kNone, estimate->why_not()};
+  if (estimate == nullptr) return {.note = found.why_not};
+  if (!estimate->value) return {.note = estimate->why_not()};
   return {*estimate->value / (is_linear(ball.error->direction) ? um : urad), ""};
 }
+
+std::span<const QuantityEntry> ball_quantities() { return kQuantities; }
 
 std::string_view unit_of_location(const plant::ErrorName& name) {
   return is_linear(name.direction) ? "um" : "urad";

@@ -3,17 +3,19 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "sim/evaluation/case_samples.h"
+#include "sim/evaluation/quantity.h"
 #include "sim/metrology/ball_test.h"
 
 namespace servomill::sim {
 
-struct BallSpec;
-struct QuantitySpec;
+/// Entries of this family: QuantityEntry::is_of_ball.
+std::span<const QuantityEntry> ball_quantities();
 
 /// Every identification is made once, however many quantities ask for its errors.
 class BallQuantities {
@@ -21,16 +23,11 @@ class BallQuantities {
   /// @param samples  must outlive this
   explicit BallQuantities(CaseSamples& samples) : samples_(samples) {}
 
-  /// Reading of the sensor, in um.
-  /// @pre quantity_info(spec.name).is_of_ball with a statistic; the case has a recording
-  BallDeviation deviation(const QuantitySpec& spec);
-
-  /// Value of location_error, in unit_of_location; or NaN and why the sections do not determine it.
-  struct Location {
-    double value;
-    std::string why_not;
-  };
-  Location location(const QuantitySpec& spec);
+  /// The recorded path of the tip; empty if it was not recorded.
+  /// @pre the case has a recording
+  TipPath path_of(const std::vector<std::string>& sections);
+  /// A location error (spec.ball) in unit_of_location; or NaN and why the sections do not tell.
+  QuantityValue location(const QuantitySpec& spec);
 
  private:
   struct Identified {
@@ -38,7 +35,6 @@ class BallQuantities {
     std::string why_not;
   };
 
-  TipPath path_of(const std::vector<std::string>& sections);
   Identified identify(const QuantitySpec& spec);
 
   CaseSamples& samples_;

@@ -45,4 +45,10 @@ std::vector<Eigen::Vector3d> CaseSamples::positions(std::string_view name,
   return out;
 }
 
+AtRow column_of(const CaseData& one, std::string_view name, char label) {
+  const auto column = one.servo->column(name, label);
+  if (!column) return {};
+  return [&servo = *one.servo, c = *column](std::size_t row) { return servo.at(row, c); };
+}
+
 }  // namespace servomill::sim

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/evaluation/comparison.h"
+#include "sim/evaluation/quantity.h"
 #include "sim/evaluation/row_ranges.h"
 
 namespace servomill::sim {
@@ -34,5 +35,9 @@ class CaseSamples {
   const CaseData& data_;
   std::map<std::vector<std::string>, RowRanges> rows_;
 };
+
+/// One column of a recording; empty if it was not recorded.
+/// @param label  axis; '\0' for a signal of one column
+AtRow column_of(const CaseData& one, std::string_view name, char label);
 
 }  // namespace servomill::sim

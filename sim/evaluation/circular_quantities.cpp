@@ -1,28 +1,98 @@
 #include "sim/evaluation/circular_quantities.h"
 
-#include <cassert>
 #include <cmath>
 #include <limits>
 
 #include "plant/vocabulary/units.h"
+#include "sim/evaluation/case_evaluation.h"
 #include "sim/model/scenario.h"
 
 namespace servomill::sim {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+template <double CircularTurn::*kValue>
+QuantityValue of_turn(const QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
+  const auto* turn = one.circles.evaluated(spec.sections[0]);
+  if (turn == nullptr) return {};
+  return {*turn->evaluated.*kValue / um};
+}
+
+template <double BidirectionalCircle::*kValue>
+QuantityValue of_both(const QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
+  const BidirectionalCircle* pair = one.circles.both(spec.sections);
+  if (pair == nullptr) return {};
+  return {pair->*kValue / um};  // and urad
+}
 
 // The value that is larger by magnitude at the two reversals of an axis.
-double larger_at_reversal(const CircularTurn& turn, const SectionCircle& circle, char axis,
-                          double Reversal::*value) {
-  double larger = kNone;
-  for (const Reversal& reversal : turn.reversals) {
-    const int letter = reversal.axis == 0 ? circle.first : circle.second;
-    if ("XYZ"[letter] != axis) continue;
-    if (!(std::abs(reversal.*value) <= std::abs(larger))) larger = reversal.*value;
+template <double Reversal::*kValue>
+QuantityValue larger_at_reversal(const QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
+  const auto* turn = one.circles.evaluated(spec.sections[0]);
+  if (turn == nullptr) return {};
+  double larger = std::numeric_limits<double>::quiet_NaN();
+  for (const Reversal& reversal : turn->evaluated->reversals) {
+    const int letter = reversal.axis == 0 ? turn->circle.first : turn->circle.second;
+    if ("XYZ"[letter] != spec.axis) continue;
+    if (!(std::abs(reversal.*kValue) <= std::abs(larger))) larger = reversal.*kValue;
   }
-  return larger;
+  return {larger / um};
 }
+
+constexpr QuantityEntry kQuantities[] = {
+    {.name = "circular_deviation",
+     .unit = "um",
+     .help = "ISO 230-4 G: smallest radial separation of two concentric circles around the true "
+             "path",
+     .circles = 1,
+     .evaluate = of_turn<&CircularTurn::G>},
+    {.name = "circular_deviation_least_squares",
+     .unit = "um",
+     .help = "G about the least-squares centre: range of the radial deviation",
+     .circles = 1,
+     .evaluate = of_turn<&CircularTurn::G_least_squares>},
+    {.name = "bidirectional_circular_deviation",
+     .unit = "um",
+     .help = "ISO 230-4 G(b): the same as G around the paths of both directions",
+     .circles = 2,
+     .evaluate = of_both<&BidirectionalCircle::G_b>},
+    {.name = "radial_deviation_max",
+     .unit = "um",
+     .help = "ISO 230-4 F max: largest deviation from the nominal radius, about the least-squares "
+             "centre",
+     .circles = 1,
+     .evaluate = of_turn<&CircularTurn::F_max>},
+    {.name = "radial_deviation_min",
+     .unit = "um",
+     .help = "ISO 230-4 F min: smallest deviation from the nominal radius, about the least-squares "
+             "centre",
+     .circles = 1,
+     .evaluate = of_turn<&CircularTurn::F_min>},
+    {.name = "mean_bidirectional_radial_deviation",
+     .unit = "um",
+     .help = "ISO 230-4 D: nominal radius minus that of the least-squares circle of both "
+             "directions",
+     .circles = 2,
+     .evaluate = of_both<&BidirectionalCircle::D>},
+    {.name = "reversal_spike",
+     .unit = "um",
+     .help = "larger one of the two excursions where the axis reverses on a circle; outward "
+             "positive",
+     .axes = "XYZ",
+     .circles = 1,
+     .evaluate = larger_at_reversal<&Reversal::spike>},
+    {.name = "reversal_step",
+     .unit = "um",
+     .help = "larger one of the two steps of the radius where the axis reverses on a circle",
+     .axes = "XYZ",
+     .circles = 1,
+     .evaluate = larger_at_reversal<&Reversal::step>},
+    {.name = "circle_squareness",
+     .unit = "urad",
+     .help = "(D45 - D135) / (2 R) of a circle, mean of both directions; positive: less than 90 "
+             "deg",
+     .circles = 2,
+     .evaluate = of_both<&BidirectionalCircle::squareness>},
+};
 
 }  // namespace
 
@@ -42,35 +112,22 @@ std::optional<CircularQuantities::Turn>& CircularQuantities::turn(const std::str
                                : turns_.emplace(section, find_turn(section)).first->second;
 }
 
-const BidirectionalCircle& CircularQuantities::both(const std::vector<std::string>& sections) {
-  const auto known = pairs_.find(sections);
-  if (known != pairs_.end()) return known->second;
-  const Turn &one = *turn(sections[0]), &other = *turn(sections[1]);
-  return pairs_.emplace(sections, evaluate_both(one.path, other.path, one.circle.nominal))
-      .first->second;
+const CircularQuantities::Turn* CircularQuantities::evaluated(const std::string& section) {
+  std::optional<Turn>& one = turn(section);
+  if (!one) return nullptr;
+  if (!one->evaluated) one->evaluated = evaluate_turn(one->path, one->circle.nominal);
+  return &*one;
 }
 
-double CircularQuantities::value(const QuantitySpec& spec) {
-  for (const std::string& section : spec.sections) {
-    if (!turn(section)) return kNone;
-  }
-  if (spec.sections.size() == 2) {
-    const BidirectionalCircle& pair = both(spec.sections);
-    if (spec.name == "bidirectional_circular_deviation") return pair.G_b / um;
-    if (spec.name == "mean_bidirectional_radial_deviation") return pair.D / um;
-    assert(spec.name == "circle_squareness");
-    return pair.squareness / urad;
-  }
-  Turn& one = *turn(spec.sections[0]);
-  if (!one.evaluated) one.evaluated = evaluate_turn(one.path, one.circle.nominal);
-  const CircularTurn& found = *one.evaluated;
-  if (spec.name == "circular_deviation") return found.G / um;
-  if (spec.name == "circular_deviation_least_squares") return found.G_least_squares / um;
-  if (spec.name == "radial_deviation_max") return found.F_max / um;
-  if (spec.name == "radial_deviation_min") return found.F_min / um;
-  assert(spec.name == "reversal_spike" || spec.name == "reversal_step");
-  const auto value = spec.name == "reversal_spike" ? &Reversal::spike : &Reversal::step;
-  return larger_at_reversal(found, one.circle, spec.axis, value) / um;
+const BidirectionalCircle* CircularQuantities::both(const std::vector<std::string>& sections) {
+  const auto known = pairs_.find(sections);
+  if (known != pairs_.end()) return &known->second;
+  const auto &one = turn(sections[0]), &other = turn(sections[1]);
+  if (!one || !other) return nullptr;
+  return &pairs_.emplace(sections, evaluate_both(one->path, other->path, one->circle.nominal))
+              .first->second;
 }
+
+std::span<const QuantityEntry> circular_quantities() { return kQuantities; }
 
 }  // namespace servomill::sim

@@ -4,17 +4,20 @@
 #include <Eigen/Core>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "sim/evaluation/case_samples.h"
+#include "sim/evaluation/quantity.h"
 #include "sim/metrology/circular_test.h"
 #include "sim/metrology/section_circle.h"
 
 namespace servomill::sim {
 
-struct QuantitySpec;
+/// Entries of this family, in QuantityEntry::circles 1 or 2.
+std::span<const QuantityEntry> circular_quantities();
 
 /// Every turn, and every pair of turns, is evaluated once, however many quantities ask for it.
 class CircularQuantities {
@@ -22,21 +25,23 @@ class CircularQuantities {
   /// @param samples  must outlive this
   explicit CircularQuantities(CaseSamples& samples) : samples_(samples) {}
 
-  /// In the unit of quantity_info; NaN where a section is no turn of a circle.
-  /// @pre quantity_info(spec.name).circles > 0; the case has a recording
-  double value(const QuantitySpec& spec);
-
- private:
-  // A section as a circle and the true path there.
+  /// A section as a circle and the true path there.
   struct Turn {
     SectionCircle circle;
     std::vector<Eigen::Vector2d> path;  // m
     std::optional<CircularTurn> evaluated = {};
   };
 
+  /// One turn, evaluated; nullptr where the section is no turn of a circle.
+  /// @pre the case has a recording
+  const Turn* evaluated(const std::string& section);
+  /// Two turns together; nullptr where one of the two sections is no turn of a circle.
+  /// @pre the case has a recording
+  const BidirectionalCircle* both(const std::vector<std::string>& sections);
+
+ private:
   std::optional<Turn> find_turn(const std::string& section);
   std::optional<Turn>& turn(const std::string& section);
-  const BidirectionalCircle& both(const std::vector<std::string>& sections);
 
   CaseSamples& samples_;
   std::map<std::string, std::optional<Turn>> turns_;

@@ -15,28 +15,7 @@ namespace servomill::sim {
 struct ProbedFeature;
 struct QuantitySpec;
 
-/// A quantity that a scenario may ask for.
-struct QuantityInfo {
-  std::string_view name;
-  std::string_view unit;
-  std::string_view help;
-  bool needs_axis = false;
-  std::string_view axes = {};  // letters allowed
-  bool has_statistic = false;
-  bool needs_base = false;     // another case to compare with
-  bool needs_imposed = false;  // the scenario's imposed error model
-  int circles = 0;             // sections evaluated together, each one turn of a circle; 0: any
-  bool is_of_ball = false;     // in the spindle, seen by sensors on the table: ball_quantities.h
-  int probes = 0;              // features of the part evaluated together: probe_quantities.h; a
-                               // base case is then optional unless needs_base
-  bool has_fit = false;        // minimum zone or least squares
-};
-
-std::span<const QuantityInfo> quantities();
-std::vector<std::string_view> quantity_names();
-const QuantityInfo& quantity_info(std::string_view name);
-
-/// Data of one case that ran.
+/// What is known of one case that ran.
 struct CaseData {
   std::string name;
   const Series* servo = nullptr;
@@ -65,6 +44,9 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
 
 /// The table as text, aligned.
 std::string format_table(std::span<const ComparisonRow> rows);
+
+/// Text as it may stand between the quotes of a JSON string.
+std::string json_escaped(std::string_view text);
 
 /// One JSON object with the keys case, quantity, axis, statistic, sections, value, unit, reference,
 /// kind, null where there is none; and note where there is one.

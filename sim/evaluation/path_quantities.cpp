@@ -1,19 +1,17 @@
 #include "sim/evaluation/path_quantities.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
+#include "sim/evaluation/case_evaluation.h"
 #include "sim/evaluation/statistic.h"
 #include "sim/evaluation/vector_at.h"
 #include "sim/model/scenario.h"
@@ -26,15 +24,6 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUmPerMm = 1000.0;
 constexpr double kMsPerS = 1000.0;
 constexpr double kSamePlace = 1e-6;  // mm; recorded places are rounded
-
-// Value of a recording at a row; rows are asked for in rising order. Empty: was not recorded.
-using AtRow = std::function<double(std::size_t)>;
-
-AtRow column_of(const CaseData& one, std::string_view name, char label) {
-  const auto column = one.servo->column(name, label);
-  if (!column) return {};
-  return [&servo = *one.servo, c = *column](std::size_t row) { return servo.at(row, c); };
-}
 
 bool is_thinned(const CaseData& one) { return one.servo->column(kSamples).has_value(); }
 
@@ -113,16 +102,35 @@ AtRow length_difference(const CaseData& one, const CaseData& base, std::string_v
   };
 }
 
+AtRow following_error(const QuantitySpec& spec, const CaseData& one, const CaseData*) {
+  return column_of(one, "following_error_linear", spec.axis);
+}
+
+AtRow tool_deviation(const QuantitySpec& spec, const CaseData& one, const CaseData*) {
+  return column_of(one, "tool_deviation", spec.axis);
+}
+
+AtRow contour_error(const QuantitySpec&, const CaseData& one, const CaseData*) {
+  return column_of(one, "contour_error", '\0');
+}
+
 // meas(case) - meas(base) at equal s, um
-AtRow trajectory_difference(const CaseData& one, const CaseData& base, char axis) {
-  return length_difference(one, base, "meas_linear", "programmed_linear", axis);
+AtRow trajectory_difference(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
+  assert(base != nullptr);
+  return length_difference(one, *base, "meas_linear", "programmed_linear", spec.axis);
+}
+
+AtRow imposed_curve_residual(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
+  return minus(trajectory_difference(spec, one, base), column_of(one, "imposed_linear", spec.axis));
 }
 
 // |p_WT(case) - p_WT(base)| at equal s, um
-AtRow tool_difference(const CaseData& one, const CaseData& base) {
+AtRow tool_difference(const QuantitySpec&, const CaseData& one, const CaseData* base) {
+  assert(base != nullptr);
   std::array<AtRow, 3> axes;
   for (std::size_t i = 0; i < 3; ++i) {
-    axes[i] = length_difference(one, base, "tool_position_true", "tool_position_nominal", "XYZ"[i]);
+    axes[i] =
+        length_difference(one, *base, "tool_position_true", "tool_position_nominal", "XYZ"[i]);
     if (!axes[i]) return {};
   }
   return [axes = std::move(axes)](std::size_t row) {
@@ -132,37 +140,18 @@ AtRow tool_difference(const CaseData& one, const CaseData& base) {
   };
 }
 
-AtRow tool_tip_deviation(const CaseData& one) {
+AtRow tool_tip_deviation(const QuantitySpec&, const CaseData& one, const CaseData*) {
   return [&servo = *one.servo, first = *one.servo->column("tool_deviation", 'X')](std::size_t row) {
     return vector_at(servo, row, first).norm();
   };
 }
 
 // urad
-AtRow tool_axis_deviation(const CaseData& one) {
+AtRow tool_axis_deviation(const QuantitySpec&, const CaseData& one, const CaseData*) {
   return [&servo = *one.servo, nominal = *one.servo->column("tool_axis_nominal", 'I'),
           actual = *one.servo->column("tool_axis_true", 'I')](std::size_t row) {
     return angle_between(vector_at(servo, row, nominal), vector_at(servo, row, actual)) / urad;
   };
-}
-
-// Signed values of the quantities with a path signal.
-AtRow signed_value(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
-  if (spec.name == "following_error") return column_of(one, "following_error_linear", spec.axis);
-  if (spec.name == "tool_deviation") return column_of(one, "tool_deviation", spec.axis);
-  assert(base != nullptr);
-  AtRow difference = trajectory_difference(one, *base, spec.axis);
-  if (spec.name == "trajectory_difference") return difference;
-  return minus(std::move(difference), column_of(one, "imposed_linear", spec.axis));
-}
-
-AtRow value_of(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
-  if (has_path_signal(spec.name)) return signed_value(spec, one, base);
-  if (spec.name == "tool_tip_deviation") return tool_tip_deviation(one);
-  if (spec.name == "tool_axis_deviation") return tool_axis_deviation(one);
-  if (spec.name == "contour_error") return column_of(one, "contour_error", '\0');
-  assert(spec.name == "tool_difference" && base != nullptr);
-  return tool_difference(one, *base);
 }
 
 double statistic_of(std::string_view name, const AtRow& value, const RowRanges& rows) {
@@ -172,11 +161,12 @@ double statistic_of(std::string_view name, const AtRow& value, const RowRanges& 
   return statistic.value();
 }
 
-// A statistic of all samples of a thinned recording; none if its rows do not tell of the quantity.
-std::optional<double> statistic_of_samples(const QuantitySpec& spec, const CaseData& one,
-                                           const RowRanges& rows) {
-  const std::string signal = spec.name == "following_error" ? "following_error_linear" : spec.name;
-  const auto told = [&](const char* what) { return column_of(one, signal + what, spec.axis); };
+// A statistic of all samples of a thinned recording; none if its rows do not tell of the signal.
+std::optional<double> statistic_of_samples(const QuantitySpec& spec, std::string_view signal,
+                                           const CaseData& one, const RowRanges& rows) {
+  const auto told = [&](const char* what) {
+    return column_of(one, std::string(signal) + what, spec.axis);
+  };
   const AtRow least = told("_least"), greatest = told("_greatest");
   const AtRow mean = told("_mean"), rms = told("_rms");
   const AtRow samples = column_of(one, kSamples, '\0');
@@ -203,107 +193,142 @@ double response_time(const CaseData& one, const AtRow& residual, const AtRow& im
   return ee > 0.0 ? -re / ee * kMsPerS : kNone;
 }
 
-// The two that look at the imposed curve beside its residual.
-double of_imposed_curve(const QuantitySpec& spec, const CaseData& one, const CaseData& base,
-                        const RowRanges& rows) {
-  QuantitySpec residual = spec;
-  residual.name = "imposed_curve_residual";
-  const AtRow difference = signed_value(residual, one, &base);
-  const AtRow imposed = column_of(one, "imposed_linear", spec.axis);
-  if (!difference || !imposed) return kNone;
-  if (spec.name == "response_time") return response_time(one, difference, imposed, rows);
-  assert(spec.name == "brought_out");
-  return 100.0 * (1.0 - statistic_of("max", difference, rows) / statistic_of("max", imposed, rows));
+std::string note_on_rows(const CaseData& one) {
+  return is_thinned(one) ? "at the rows that are recorded (record.period_ms)" : "";
 }
 
-// The tool stands from one place to another (mm) if both are the same but for rounding.
-bool stands(double s, double later) { return later - s < 1e-7; }
+using Signal = AtRow (*)(const QuantitySpec&, const CaseData&, const CaseData*);
+
+// Statistic of a value along the path.
+// @tparam kRecorded  name of the recorded signal; nullptr: that of the quantity
+template <Signal kValue, const char* kRecorded = nullptr>
+QuantityValue along_path(const QuantitySpec& spec, CaseEvaluation& compared, const CaseData* base) {
+  const CaseData& one = compared.data;
+  const RowRanges& rows = compared.samples.rows(spec.sections);
+  if (base == nullptr) {
+    std::string_view signal = spec.name;
+    if constexpr (kRecorded != nullptr) signal = kRecorded;
+    if (const auto of_samples = statistic_of_samples(spec, signal, one, rows)) return {*of_samples};
+  }
+  return {statistic_of(spec.statistic, kValue(spec, one, base), rows), note_on_rows(one)};
+}
+
+double realised_share(const CaseData&, const AtRow& residual, const AtRow& imposed,
+                      const RowRanges& rows) {
+  return 100.0 * (1.0 - statistic_of("max", residual, rows) / statistic_of("max", imposed, rows));
+}
+
+// Looks at the imposed curve beside its residual.
+template <double (*kValue)(const CaseData&, const AtRow&, const AtRow&, const RowRanges&)>
+QuantityValue of_imposed_curve(const QuantitySpec& spec, CaseEvaluation& compared,
+                               const CaseData* base) {
+  const CaseData& one = compared.data;
+  const AtRow residual = imposed_curve_residual(spec, one, base);
+  const AtRow imposed = column_of(one, "imposed_linear", spec.axis);
+  QuantityValue out{.note = note_on_rows(one)};
+  if (residual && imposed) {
+    out.value = kValue(one, residual, imposed, compared.samples.rows(spec.sections));
+  }
+  return out;
+}
+
+QuantityValue cycle_time(const QuantitySpec&, CaseEvaluation& one, const CaseData*) {
+  return {one.data.duration};
+}
+
+QuantityValue blocks(const QuantitySpec&, CaseEvaluation& one, const CaseData*) {
+  return {one.data.blocks};
+}
+
+constexpr char kFollowingError[] = "following_error_linear";
+constexpr std::string_view kResidual = "imposed_curve_residual";
+
+constexpr QuantityEntry kQuantities[] = {
+    {.name = kResidual,
+     .unit = "um",
+     .help = "trajectory (scale) minus that of the base case minus the imposed displacement, at "
+             "equal s",
+     .axes = "XYZ",
+     .has_statistic = true,
+     .needs_base = true,
+     .needs_imposed = true,
+     .evaluate = along_path<imposed_curve_residual>,
+     .signal = imposed_curve_residual},
+    {.name = "brought_out",
+     .unit = "%",
+     .help = "1 - largest imposed_curve_residual / largest imposed displacement",
+     .axes = "XYZ",
+     .needs_base = true,
+     .needs_imposed = true,
+     .evaluate = of_imposed_curve<realised_share>,
+     .derived_from = kResidual},
+    {.name = "response_time",
+     .unit = "ms",
+     .help = "delay that explains the imposed_curve_residual best, by least squares over its "
+             "samples",
+     .axes = "XYZ",
+     .needs_base = true,
+     .needs_imposed = true,
+     .evaluate = of_imposed_curve<response_time>,
+     .derived_from = kResidual},
+    {.name = "trajectory_difference",
+     .unit = "um",
+     .help = "trajectory (scale) minus that of the base case, at equal s",
+     .axes = "XYZ",
+     .has_statistic = true,
+     .needs_base = true,
+     .evaluate = along_path<trajectory_difference>,
+     .signal = trajectory_difference},
+    {.name = "following_error",
+     .unit = "um",
+     .help = "set point minus position that the NC reads",
+     .axes = "XYZ",
+     .has_statistic = true,
+     .evaluate = along_path<following_error, kFollowingError>,
+     .signal = following_error,
+     .is_of_servo = true},
+    {.name = "tool_deviation",
+     .unit = "um",
+     .help = "true minus nominal tool centre point at equal s, in the workpiece",
+     .axes = "XYZ",
+     .has_statistic = true,
+     .evaluate = along_path<tool_deviation>,
+     .signal = tool_deviation},
+    {.name = "tool_tip_deviation",
+     .unit = "um",
+     .help = "distance of the true from the nominal tool centre point at equal s",
+     .has_statistic = true,
+     .evaluate = along_path<tool_tip_deviation>},
+    {.name = "tool_axis_deviation",
+     .unit = "urad",
+     .help = "angle between the true and the nominal tool axis at equal s",
+     .has_statistic = true,
+     .evaluate = along_path<tool_axis_deviation>},
+    {.name = "contour_error",
+     .unit = "um",
+     .help = "distance of the true tool centre point to the nominal path",
+     .has_statistic = true,
+     .evaluate = along_path<contour_error>},
+    {.name = "tool_difference",
+     .unit = "um",
+     .help = "distance of the true tool centre point from that of the base case, at equal s",
+     .has_statistic = true,
+     .needs_base = true,
+     .evaluate = along_path<tool_difference>},
+    {.name = "cycle_time",
+     .unit = "s",
+     .help = "duration of the program that the NC runs",
+     .evaluate = cycle_time,
+     .is_of_program = true},
+    {.name = "blocks",
+     .unit = "1",
+     .help = "motion blocks of the program that the NC runs",
+     .evaluate = blocks,
+     .is_of_program = true},
+};
 
 }  // namespace
 
-bool has_path_signal(std::string_view quantity) {
-  return quantity == "imposed_curve_residual" || quantity == "trajectory_difference" ||
-         quantity == "tool_deviation" || quantity == "following_error";
-}
-
-struct PathSignal::Parts {
-  Parts(const QuantitySpec& spec, const CaseData& one, const CaseData* base)
-      : rows(CaseSamples(one).rows(spec.sections)),
-        at(rows),
-        s(column_of(one, "s", '\0')),
-        value(signed_value(spec, one, base)) {
-    for (const char axis : std::string_view("ABC")) {
-      if (AtRow ref = column_of(one, "ref_rotary", axis)) rotary.push_back(std::move(ref));
-    }
-  }
-
-  // Turn of the rotary axes from one row to another.
-  double turn(std::size_t from, std::size_t to) const {
-    double sum = 0.0;
-    for (const AtRow& ref : rotary) sum += std::abs(ref(to) - ref(from));
-    return sum;
-  }
-
-  // The same from a row until the tool moves on.
-  double turn_while_standing(RowRanges::Cursor from) const {
-    double sum = 0.0;
-    while (!rotary.empty()) {
-      const std::size_t row = from.row();
-      from.step();
-      if (from.is_at_end() || !stands(s(row), s(from.row()))) break;
-      sum += turn(row, from.row());
-    }
-    return sum;
-  }
-
-  RowRanges rows;
-  RowRanges::Cursor at;
-  AtRow s, value;
-  std::vector<AtRow> rotary;
-  std::optional<std::size_t> before;   // row of the sample before
-  double turned = 0.0, to_turn = 0.0;  // since the tool stands; in all until it moves on
-};
-
-PathSignal::PathSignal(const QuantitySpec& spec, const CaseData& one, const CaseData* base)
-    : parts_(std::make_unique<Parts>(spec, one, base)) {
-  assert(has_path_signal(spec.name));
-}
-PathSignal::PathSignal(PathSignal&&) noexcept = default;
-PathSignal::~PathSignal() = default;
-
-std::size_t PathSignal::size() const { return parts_->value ? parts_->rows.size() : 0; }
-
-bool PathSignal::next(PathSample& sample) {
-  Parts& p = *parts_;
-  if (!p.value || p.at.is_at_end()) return false;
-  const std::size_t row = p.at.row();
-  sample.s = p.s(row);
-  if (p.before && stands(p.s(*p.before), sample.s)) {
-    p.turned += p.turn(*p.before, row);
-  } else {
-    p.turned = 0.0;
-    p.to_turn = p.turn_while_standing(p.at);
-  }
-  sample.turned = p.to_turn > 0.0 ? p.turned / p.to_turn : 0.0;
-  sample.value = p.value(row);
-  p.before = row;
-  p.at.step();
-  return true;
-}
-
-PathValue path_value(const QuantitySpec& spec, CaseSamples& samples, const CaseData* base) {
-  const CaseData& one = samples.data();
-  const RowRanges& rows = samples.rows(spec.sections);
-  if (base == nullptr) {
-    if (const auto of_samples = statistic_of_samples(spec, one, rows)) return {*of_samples};
-  }
-  const std::string note =
-      is_thinned(one) ? "at the rows that are recorded (record.period_ms)" : "";
-  if (spec.name == "brought_out" || spec.name == "response_time") {
-    assert(base != nullptr);
-    return {of_imposed_curve(spec, one, *base, rows), note};
-  }
-  return {statistic_of(spec.statistic, value_of(spec, one, base), rows), note};
-}
+std::span<const QuantityEntry> path_quantities() { return kQuantities; }
 
 }  // namespace servomill::sim

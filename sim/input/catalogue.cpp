@@ -6,7 +6,7 @@
 #include "controllers/gcode/reader.h"
 #include "controllers/gcode/readers/differences.h"
 #include "sim/config/document.h"
-#include "sim/evaluation/comparison.h"
+#include "sim/evaluation/quantity.h"
 #include "strategies/registry.h"
 
 namespace servomill::sim {
@@ -30,7 +30,7 @@ std::string describe_strategies() {
 
 std::string describe_quantities() {
   std::string out;
-  for (const QuantityInfo& info : quantities()) {
+  for (const QuantityEntry& info : quantities()) {
     out += fmt::format("{:<24} {:<3} {}\n", info.name, info.unit, info.help);
   }
   return out;

@@ -1,5 +1,6 @@
 #include "sim/input/read_ball.h"
 
+#include "sim/evaluation/quantity.h"
 #include "sim/model/scenario.h"
 
 namespace servomill::sim {
@@ -33,10 +34,10 @@ std::optional<plant::ErrorName> read_error(Reader& table, const JointLayout& lay
 
 }  // namespace
 
-void read_ball(Reader& table, const JointLayout& layout, QuantitySpec& spec) {
+void read_ball(Reader& table, const QuantityEntry& entry, const JointLayout& layout,
+               QuantitySpec& spec) {
   spec.ball.emplace();
-  const bool identifies = spec.name == "location_error";
-  if (spec.name == "ball_bar_deviation" || (identifies && table.has("bar"))) {
+  if (entry.bars == BallBars::required || (entry.bars == BallBars::optional && table.has("bar"))) {
     for (Reader& bar : table.tables("bar")) read_bar(bar, spec);
     spec.sections_place = table.place("bar");
   } else {
@@ -46,7 +47,7 @@ void read_ball(Reader& table, const JointLayout& layout, QuantitySpec& spec) {
       table.fault("sections", "must name at least one section");
     }
   }
-  if (!identifies) return;
+  if (!entry.identifies) return;
   spec.ball->tip_is_known = table.boolean_or("tip_is_known", false);
   if (table.has("error")) spec.ball->error = read_error(table, layout);
 }

@@ -6,10 +6,12 @@
 
 namespace servomill::sim {
 
+struct QuantityEntry;
 struct QuantitySpec;
 
-/// Keys sections or bar, tip_is_known and error of a [[quantity]] into the spec of that name.
+/// Keys sections or bar, tip_is_known and error of a [[quantity]].
 /// @param layout  of the machine; empty where that could not be read: no error is then looked up
-void read_ball(Reader& table, const JointLayout& layout, QuantitySpec& spec);
+void read_ball(Reader& table, const QuantityEntry& entry, const JointLayout& layout,
+               QuantitySpec& spec);
 
 }  // namespace servomill::sim

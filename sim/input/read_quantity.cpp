@@ -11,9 +11,8 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/ball_quantities.h"
-#include "sim/evaluation/comparison.h"
 #include "sim/evaluation/nominal_part.h"
-#include "sim/evaluation/probe_quantities.h"
+#include "sim/evaluation/quantity.h"
 #include "sim/input/known_name.h"
 #include "sim/input/read_ball.h"
 
@@ -36,16 +35,15 @@ class QuantityReader {
 
   void read(Reader& table) {
     QuantitySpec spec;
-    const auto names = quantity_names();
     const std::size_t before = table.faults();
-    const std::size_t index = table.choice("name", names);
+    const std::size_t index = table.choice("name", quantity_names());
     if (table.faults() > before) {
       table.skip_rest();
       return;
     }
-    spec.name = names[index];
-    const QuantityInfo& info = quantity_info(spec.name);
-    if (info.needs_axis) read_axis(table, info, spec);
+    const QuantityEntry& info = quantities()[index];
+    spec.name = info.name;
+    if (info.needs_axis()) read_axis(table, info, spec);
     if (info.has_statistic) {
       spec.statistic = kStatistics[table.choice_or("statistic", 0, kStatistics)];
     }
@@ -56,7 +54,7 @@ class QuantityReader {
     if (info.probes > 0) {
       read_part(table, info, spec);
     } else if (info.is_of_ball) {
-      read_ball(table, out_.machine.chain.layout, spec);
+      read_ball(table, info, out_.machine.chain.layout, spec);
     } else {
       spec.sections = info.circles > 0 ? table.texts("sections") : table.texts_or("sections", {});
       spec.sections_place = table.place("sections");
@@ -67,7 +65,7 @@ class QuantityReader {
   }
 
  private:
-  void read_axis(Reader& table, const QuantityInfo& info, QuantitySpec& spec) const {
+  void read_axis(Reader& table, const QuantityEntry& info, QuantitySpec& spec) const {
     spec.axis = info.axes[table.choice("axis", letters_of(info.axes))];
     const JointLayout& layout = out_.machine.chain.layout;
     const auto axis = axis_of(spec.axis);
@@ -77,7 +75,7 @@ class QuantityReader {
     }
   }
 
-  void read_compared_cases(Reader& table, const QuantityInfo& info, QuantitySpec& spec) {
+  void read_compared_cases(Reader& table, const QuantityEntry& info, QuantitySpec& spec) {
     std::vector<std::string> all;
     for (const CaseSpec& one : out_.cases) all.push_back(one.name);
     if (info.needs_base || (info.probes > 0 && table.has("base"))) {
@@ -99,7 +97,7 @@ class QuantityReader {
   }
 
   // Features that a quantity evaluates, and how they are fitted.
-  void read_part(Reader& table, const QuantityInfo& info, QuantitySpec& spec) {
+  void read_part(Reader& table, const QuantityEntry& info, QuantitySpec& spec) {
     spec.part.emplace();
     std::vector<std::string> names;
     for (const ProbeSpec& one : out_.probes) names.push_back(one.name);
@@ -118,33 +116,32 @@ class QuantityReader {
       const std::string name = table.text(key);
       spec.part->probes.push_back(name);
       if (table.faults() > before || !all_named) continue;
-      if (must_be_known(table, key, name, "probe", names)) must_suit(table, key, name, spec);
+      if (must_be_known(table, key, name, "probe", names)) must_suit(table, info, key, name);
     }
     if (info.has_fit) spec.part->minimum_zone = table.choice_or("fit", 0, kFits) == 0;
   }
 
   // A probe measures a kind of feature; a quantity is of some kinds only.
-  void must_suit(Reader& table, std::string_view key, const std::string& name,
-                 const QuantitySpec& spec) {
+  void must_suit(Reader& table, const QuantityEntry& info, std::string_view key,
+                 const std::string& name) {
     const auto probe = std::find_if(out_.probes.begin(), out_.probes.end(),
                                     [&](const ProbeSpec& one) { return one.name == name; });
     if (probe->feature.targets.empty()) return;  // its fault has been noted
     const FeatureKind kind = probe->feature.kind;
-    const auto kinds = kinds_of(spec.name);
-    if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) return;
+    if (std::count(info.kinds.begin(), info.kinds.end(), kind) > 0) return;
     std::vector<std::string_view> wanted;
-    for (const FeatureKind one : kinds) wanted.push_back(name_of(one));
-    table.fault(key, fmt::format("is a {}; {} is of: {}", name_of(kind), spec.name,
+    for (const FeatureKind one : info.kinds) wanted.push_back(name_of(one));
+    table.fault(key, fmt::format("is a {}; {} is of: {}", name_of(kind), info.name,
                                  fmt::join(wanted, ", ")));
   }
 
   // One quantity, or one for each circle, ball bar or location error.
-  void add(Reader& table, const QuantityInfo& info, QuantitySpec& spec) {
+  void add(Reader& table, const QuantityEntry& info, QuantitySpec& spec) {
     if (info.circles > 0) {
       add_circles(table, spec, static_cast<std::size_t>(info.circles));
-    } else if (spec.name == "ball_bar_deviation") {
+    } else if (info.bars == BallBars::required) {
       add_bars(spec);
-    } else if (spec.name == "location_error") {
+    } else if (info.identifies) {
       add_location_errors(spec);
     } else {
       out_.quantities.push_back(std::move(spec));

@@ -9,7 +9,6 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/config/reader.h"
-#include "sim/evaluation/probe_quantities.h"
 #include "sim/input/known_name.h"
 #include "sim/input/read_case.h"
 #include "sim/input/read_cutting.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "sim/evaluation/comparison.h"
+#include "sim/evaluation/quantity.h"
 #include "sim/model/scenario.h"
 
 namespace servomill::sim {
@@ -41,7 +41,7 @@ CircularSection circular_section(const std::vector<Eigen::Vector3d>& positions) 
 std::set<std::string> circular_section_names(const Scenario& scenario) {
   std::set<std::string> names;
   for (const QuantitySpec& quantity : scenario.quantities) {
-    if (quantity_info(quantity.name).circles == 0) continue;
+    if (quantity_entry(quantity.name).circles == 0) continue;
     names.insert(quantity.sections.begin(), quantity.sections.end());
   }
   return names;
@@ -51,7 +51,7 @@ std::vector<Fault> circular_faults(const Scenario& scenario,
                                    const std::map<std::string, CircularSection>& sections) {
   std::vector<Fault> faults;
   for (const QuantitySpec& quantity : scenario.quantities) {
-    if (quantity_info(quantity.name).circles == 0) continue;
+    if (quantity_entry(quantity.name).circles == 0) continue;
     std::string wrong;
     for (const std::string& name : quantity.sections) {
       if (wrong.empty()) wrong = wrong_alone(sections.at(name), name, quantity.axis);

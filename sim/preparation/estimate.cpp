@@ -9,6 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/probed_part.h"
+#include "sim/evaluation/quantity.h"
 #include "sim/system/background.h"
 
 namespace servomill::sim {
@@ -28,7 +29,7 @@ double columns_of(const MachineSettings& machine) {
 constexpr double kUsualCompression = 6.0, kLeastCompression = 4.0;
 
 bool needs_every_row(const QuantitySpec& quantity) {
-  const QuantityInfo& info = quantity_info(quantity.name);
+  const QuantityEntry& info = quantity_entry(quantity.name);
   return info.circles > 0 || info.is_of_ball;
 }
 

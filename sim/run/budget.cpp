@@ -11,7 +11,7 @@
 #include <ranges>
 #include <utility>
 
-#include "sim/evaluation/path_quantities.h"
+#include "sim/evaluation/path_signal.h"
 #include "sim/evaluation/statistic.h"
 #include "sim/preparation/preparation_cache.h"
 
@@ -278,7 +278,7 @@ std::vector<QuantitySpec> asked_for(const Scenario& scenario, std::span<const st
 
 bool is_of_any_case(std::string_view quantity) {
   if (!has_path_signal(quantity)) return false;
-  const QuantityInfo& info = quantity_info(quantity);
+  const QuantityEntry& info = quantity_entry(quantity);
   return !info.needs_base && !info.needs_imposed;
 }
 
@@ -288,9 +288,8 @@ std::vector<QuantitySpec> budget_quantities(const Scenario& scenario,
   std::vector<QuantitySpec> out;
   for (const QuantitySpec& asked : asked_for(scenario, also)) {
     QuantitySpec one = asked;
-    if (one.name == "brought_out" || one.name == "response_time") {
-      one.name = "imposed_curve_residual";
-    }
+    const std::string_view derived_from = quantity_entry(one.name).derived_from;
+    if (!derived_from.empty()) one.name = derived_from;
     if (!has_path_signal(one.name)) continue;
     one.statistic = "max";
     one.reference.clear();

@@ -6,6 +6,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/config/quantity.h"
+#include "sim/evaluation/quantity.h"
 #include "sim/run/budget.h"
 
 namespace servomill::sim {
@@ -211,9 +212,10 @@ Causes all_causes() {
 
 std::optional<Cause> rest_of(const QuantitySpec& quantity, const CaseSpec& one,
                              const CaseSpec* base) {
-  if (quantity.name == "following_error") return std::nullopt;
+  const QuantityEntry& entry = quantity_entry(quantity.name);
+  if (entry.is_of_servo) return std::nullopt;
   const auto any = [&](auto fact) { return fact(one) || (base != nullptr && fact(*base)); };
-  const bool takes_imposed_off = quantity.name == "imposed_curve_residual";
+  const bool takes_imposed_off = entry.needs_imposed;
   if (any(moves_on_purpose) && !takes_imposed_off) return Cause::imposed;
   const bool knows_errors = any([](const CaseSpec& spec) {
     return has_strategy(spec, strategies::Sign::generate) ||

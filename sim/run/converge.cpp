@@ -8,6 +8,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/config/quantity.h"
+#include "sim/evaluation/quantity.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/system/json.h"
 #include "sim/system/text_table.h"
@@ -116,9 +117,10 @@ constexpr std::string_view kForShares = "for shares";  // kind of a quantity tha
 void add_residuals_of_shares(Scenario& scenario) {
   const std::vector<QuantitySpec> given = scenario.quantities;
   for (const QuantitySpec& spec : given) {
-    if (spec.name != "brought_out") continue;
+    const QuantityEntry& share = quantity_entry(spec.name);
+    if (share.derived_from.empty() || share.unit != "%") continue;
     QuantitySpec& residual = scenario.quantities.emplace_back(spec);
-    residual.name = "imposed_curve_residual";
+    residual.name = share.derived_from;
     residual.statistic = "max";
     residual.kind = kForShares;
   }

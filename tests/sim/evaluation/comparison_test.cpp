@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <limits>
-#include <set>
 
+#include "sim/evaluation/quantity.h"
 #include "sim/model/scenario.h"
 
 namespace servomill::sim::comparison_test {
@@ -70,10 +70,10 @@ class Comparison : public testing::Test {
                const std::vector<std::string>& sections = {}, const std::string& of = "one") {
     QuantitySpec spec;
     spec.name = name;
-    spec.axis = quantity_info(name).needs_axis ? 'Y' : '\0';
+    spec.axis = quantity_entry(name).needs_axis() ? 'Y' : '\0';
     spec.statistic = statistic;
     spec.cases = {of};
-    if (quantity_info(name).needs_base) spec.base = "base";
+    if (quantity_entry(name).needs_base) spec.base = "base";
     spec.sections = sections;
     const auto rows = compare(std::vector<QuantitySpec>{spec}, cases_);
     EXPECT_EQ(rows.size(), 1U);
@@ -194,16 +194,6 @@ TEST(ToJson, IsOneObjectWithNullForWhatThereIsNot) {
   EXPECT_EQ(to_json(quoted),
             R"({"case": "a \"b\"\\\u000a", "quantity": "blocks", "axis": null, "statistic": null, )"
             R"("sections": null, "value": 123, "unit": "1", "reference": null, "kind": null})");
-}
-
-TEST(Quantities, AreNamedOnceAndExplained) {
-  const auto names = quantity_names();
-  EXPECT_EQ(std::set<std::string_view>(names.begin(), names.end()).size(), names.size());
-  for (const QuantityInfo& info : quantities()) {
-    EXPECT_EQ(&quantity_info(info.name), &info);
-    EXPECT_FALSE(info.help.empty() || info.unit.empty()) << info.name;
-    EXPECT_EQ(info.needs_axis, !info.axes.empty()) << info.name;
-  }
 }
 
 }  // namespace

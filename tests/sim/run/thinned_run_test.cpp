@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "sim/evaluation/quantity.h"
 #include "sim/preparation/estimate.h"
 #include "sim/records/row_thinning.h"
 #include "tests/sim/small_scenario.h"
@@ -83,7 +84,7 @@ TEST_F(ThinnedRun, ComparesAsAllRowsDo) {
   for (std::size_t i = 0; i < of_all.comparison.size(); ++i) {
     const ComparisonRow &wanted = of_all.comparison[i], &found = of_thinned.comparison[i];
     SCOPED_TRACE(wanted.case_name + " " + wanted.quantity + " " + wanted.statistic);
-    if (quantity_info(wanted.quantity).needs_base) {
+    if (quantity_entry(wanted.quantity).needs_base) {
       EXPECT_NEAR(found.value, wanted.value, kBetween);
       EXPECT_EQ(found.note, "at the rows that are recorded (record.period_ms)");
     } else if (wanted.statistic == "max" || wanted.statistic == "range") {

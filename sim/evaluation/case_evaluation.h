@@ -1,0 +1,23 @@
+/// A case with what several quantities look at, each found once.
+#pragma once
+
+#include "sim/evaluation/ball_quantities.h"
+#include "sim/evaluation/case_samples.h"
+#include "sim/evaluation/circular_quantities.h"
+
+namespace servomill::sim {
+
+struct CaseEvaluation {
+  /// @param of  must outlive this
+  explicit CaseEvaluation(const CaseData& of)
+      : data(of), samples(of), circles(samples), ball(samples) {}
+  CaseEvaluation(const CaseEvaluation&) = delete;
+  CaseEvaluation& operator=(const CaseEvaluation&) = delete;
+
+  const CaseData& data;
+  CaseSamples samples;
+  CircularQuantities circles;
+  BallQuantities ball;
+};
+
+}  // namespace servomill::sim
