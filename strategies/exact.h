@@ -2,7 +2,7 @@
 /// circle, the inverse kinematics at every point, as many points as the tolerance needs.
 #pragma once
 
-#include "strategies/registry.h"
+#include "strategies/entry.h"
 
 namespace servomill::strategies {
 

@@ -2,7 +2,7 @@
 /// -d. Knows neither the program nor its origin: the error is evaluated in machine coordinates.
 #pragma once
 
-#include "strategies/registry.h"
+#include "strategies/entry.h"
 
 namespace servomill::strategies {
 

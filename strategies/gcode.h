@@ -14,7 +14,7 @@
 
 #include <stdexcept>
 
-#include "strategies/registry.h"
+#include "strategies/entry.h"
 
 namespace servomill::strategies {
 

@@ -2,7 +2,7 @@
 /// middle: the compensation of X. Li (2024) as published, for both definitions of the error.
 #pragma once
 
-#include "strategies/registry.h"
+#include "strategies/entry.h"
 
 namespace servomill::strategies {
 

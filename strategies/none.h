@@ -1,7 +1,7 @@
 /// Leaves everything as it is: the machine as it was built.
 #pragma once
 
-#include "strategies/registry.h"
+#include "strategies/entry.h"
 
 namespace servomill::strategies {
 

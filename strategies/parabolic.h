@@ -2,7 +2,7 @@
 /// points a thirtieth of the residual.
 #pragma once
 
-#include "strategies/registry.h"
+#include "strategies/entry.h"
 
 namespace servomill::strategies {
 

@@ -11,18 +11,13 @@
 #include "strategies/table.h"
 
 namespace servomill::strategies {
-namespace {
 
-const std::array<Entry, 7>& table_of_entries() {
-  static const std::array<Entry, 7> kEntries = {
-      exact_entry(), feedback_entry(),  gcode_entry(), harmonic_entry(),
-      none_entry(),  parabolic_entry(), table_entry()};
+std::span<const Entry> entries() {
+  static const std::array kEntries = {exact_entry(),    feedback_entry(), gcode_entry(),
+                                      harmonic_entry(), none_entry(),     parabolic_entry(),
+                                      table_entry()};
   return kEntries;
 }
-
-}  // namespace
-
-std::span<const Entry> entries() { return table_of_entries(); }
 
 const Entry* find(std::string_view name) {
   for (const Entry& entry : entries()) {

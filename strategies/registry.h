@@ -1,33 +1,13 @@
 /// The list of strategies. Allowed names, keys, help texts and error messages all follow from it.
 #pragma once
 
-#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
 
-#include "plant/vocabulary/parameters.h"
-#include "strategies/strategy.h"
+#include "strategies/entry.h"
 
 namespace servomill::strategies {
-
-/// All that the other rooms know of a strategy: they ask what it can do and never compare its name.
-struct Entry {
-  std::string_view name;
-  std::string_view summary;
-  std::span<const ParameterSpec> parameters;
-  /// @throws InputError without a place when the parameters contradict the belief
-  std::unique_ptr<Strategy> (*make)(const Parameters&, Sign, const Belief&);
-  bool reads_gains = false;  ///< false: Belief::Kv is NaN, so that nothing depends on it
-  bool reads_errors = true;  ///< false: knows no geometric errors, and takes neither model nor sign
-  bool acts = true;          ///< false: leaves everything as it is
-  /// Use of the feedback hardware by its signals: a case has one, and so one such
-  /// strategy. True exactly where Strategy::displaces_feedback() is.
-  bool uses_feedback_hardware = false;
-  /// Tells if it adds the error where the machine starts, which two strategies of a case that know
-  /// the same model must not both do; nullptr: no parameter decides that.
-  bool (*holds_error_at_reference)(const Parameters&) = nullptr;
-};
 
 /// All strategies, sorted by name.
 std::span<const Entry> entries();

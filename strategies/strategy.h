@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plant/geometry/volumetric.h"
@@ -34,6 +35,17 @@ struct Belief {
                                // NaN unless the entry reads_gains
 };
 
+/// What a strategy may see of a run at one instant.
+struct Reading {
+  double t = 0.0;                   // s, since the start of the program
+  double s = 0.0;                   // m, arc length on the path of the original program
+  Joints Q_ref = Joints::Zero();    // m, rad; as the NC interpolated it last
+  Joints dQ_ref = Joints::Zero();   // per s
+  Joints ddQ_ref = Joints::Zero();  // per s^2
+  Joints Q_fb = Joints::Zero();     // m, rad; of a feedback strategy the scales, without its own
+                                    // displacement; of others what the position loops read last
+};
+
 /// Offset of the set points, added in the NC where `entry` says.
 class SetPointPart {
  public:
@@ -42,6 +54,10 @@ class SetPointPart {
   /// @param Q_ref  interpolated position (5; m, rad)
   /// @return offset of all joints (5; m, rad)
   virtual Joints offset(const Joints& Q_ref) const = 0;
+  /// The same in a run, once per position period, with a state of its own if it has one.
+  virtual Joints advance(const Reading& now) { return offset(now.Q_ref); }
+  /// Why it cannot go on, which ends the case; empty while it can.
+  virtual std::string_view failure() const { return {}; }
 };
 
 /// What the security blocks of a feedback did to the virtual displacement of one joint in one run.
@@ -75,6 +91,18 @@ class FeedbackPart {
   /// @param lanes   those of the runs
   /// @return d of the runs, until the next call; of other lanes anything
   virtual const JointLanes& advance(const JointLanes& Q_meas, const LaneFlags& lanes) = 0;
+  /// Tells if `observe` is to be called before each `settle` and model period of a run, which then
+  /// wait for `advance` in the order in which they were observed.
+  virtual bool observes() const { return false; }
+  virtual void observe(const Reading& now, std::size_t lane) {
+    (void)now;
+    (void)lane;
+  }
+  /// Why one run cannot go on, which ends its case; empty while it can.
+  virtual std::string_view failure(std::size_t lane) const {
+    (void)lane;
+    return {};
+  }
   /// Where one run has been saturated since it was settled; in the order of the joints.
   virtual std::vector<Saturation> saturations(std::size_t lane) const {
     (void)lane;

@@ -16,7 +16,7 @@
 /// for each axis with spacing h. Beyond the ends values are constant.
 #pragma once
 
-#include "strategies/registry.h"
+#include "strategies/entry.h"
 
 namespace servomill::strategies {
 

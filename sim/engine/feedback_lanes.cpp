@@ -14,6 +14,7 @@ void FeedbackLanes::add(std::size_t run, const strategies::Strategy& strategy,
     together = all_.end() - 1;
   }
   use(*together, run - first_, true);
+  model_period_ = model_period;
 }
 
 void FeedbackLanes::use(Together& together, std::size_t lane, bool used) {
@@ -34,8 +35,36 @@ FeedbackLanes::Together& FeedbackLanes::of(std::size_t run) {
   return *found;
 }
 
+void FeedbackLanes::set_reference(std::size_t run, const AxisSetPoint& set, double s) {
+  strategies::Reading& reading = readings_[run - first_];
+  reading.s = s;
+  reading.Q_ref = set.Q_ref;
+  reading.dQ_ref = set.dQ_ff;
+  reading.ddQ_ref = set.ddQ_ff;
+}
+
 Joints FeedbackLanes::settle(std::size_t run, const Joints& Q_meas) {
-  return of(run).part->settle(Q_meas, run - first_);
+  strategies::FeedbackPart& part = *of(run).part;
+  if (part.observes()) {
+    strategies::Reading& reading = readings_[run - first_];
+    reading.Q_fb = Q_meas;
+    part.observe(reading, run - first_);
+  }
+  return part.settle(Q_meas, run - first_);
+}
+
+std::string_view FeedbackLanes::failure(std::size_t run) {
+  return of(run).part->failure(run - first_);
+}
+
+void FeedbackLanes::observe(Together& together) {
+  for (std::size_t lane = 0; lane < kLaneWidth; ++lane) {
+    if (!together.lanes[lane]) continue;
+    strategies::Reading& reading = readings_[lane];
+    reading.t = static_cast<double>(periods_) * model_period_;
+    reading.Q_fb = axes_.Q_meas(first_ + lane);
+    together.part->observe(reading, lane);
+  }
 }
 
 std::vector<strategies::Saturation> FeedbackLanes::drop(std::size_t run) {
@@ -49,6 +78,7 @@ void FeedbackLanes::advance() {
   bool are_read = false;
   for (Together& together : all_) {
     if (together.count == 0) continue;
+    if (together.part->observes()) observe(together);
     if (together.count == 1) {
       wait(together);
       continue;
@@ -57,6 +87,7 @@ void FeedbackLanes::advance() {
     are_read = true;
     together.d = &together.part->advance(Q_meas_, together.lanes);
   }
+  ++periods_;
 }
 
 void FeedbackLanes::wait(Together& one) {

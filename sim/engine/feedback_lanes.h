@@ -1,7 +1,9 @@
 /// Feedback parts of runs in lockstep.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "plant/vocabulary/joint_lanes.h"
@@ -23,10 +25,14 @@ class FeedbackLanes {
   /// A run has the feedback of a strategy from now on, and displacements of 0 (5; m, rad).
   /// @param model_period  s, of all runs
   void add(std::size_t run, const strategies::Strategy& strategy, double model_period);
+  /// What the NC of a run commands from now on, for strategies that look.
+  void set_reference(std::size_t run, const AxisSetPoint& set, double s);
   /// Settles at standstill in Q_meas; d of all joints (5; m, rad).
   Joints settle(std::size_t run, const Joints& Q_meas);
   /// The run goes on no longer; where it has been saturated.
   std::vector<strategies::Saturation> drop(std::size_t run);
+  /// Why the strategy of a run cannot go on; empty while it can.
+  std::string_view failure(std::size_t run);
   /// To be called once a model period, after ServoAxes::read_scales.
   void advance();
   /// To be called before ServoAxes::take_readings: what acts now acts on the axes.
@@ -45,12 +51,16 @@ class FeedbackLanes {
   Together& of(std::size_t run);
   void use(Together& together, std::size_t lane, bool used);
   void wait(Together& one);
+  void observe(Together& together);
   void act(Together& together);
 
   ServoAxes& axes_;
   std::size_t first_;
   std::vector<Together> all_;
   JointLanes Q_meas_{};
+  std::array<strategies::Reading, kLaneWidth> readings_ = {};
+  double model_period_ = 0.0;  // s
+  std::size_t periods_ = 0;    // that have begun
 };
 
 }  // namespace servomill::sim

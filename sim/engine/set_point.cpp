@@ -54,7 +54,8 @@ const AxisSetPoint& SetPoint::settle() {
   return out_;
 }
 
-const AxisSetPoint& SetPoint::advance(const controllers::Trajectory::Sample& sample) {
+const AxisSetPoint& SetPoint::advance(const controllers::Trajectory::Sample& sample, double t,
+                                      const Joints& Q_read) {
   out_ = {sample.Q_ref, sample.Q_ref, sample.dQ_ref, sample.ddQ_ref};
   if (filters_) {
     out_.Q_ref = filters_->Q(sample.Q_ref);
@@ -64,7 +65,8 @@ const AxisSetPoint& SetPoint::advance(const controllers::Trajectory::Sample& sam
   }
   if (corrections_.empty()) return out_;
 
-  Offsets offsets = corrections_at(sample.Q_ref);
+  Offsets offsets =
+      corrections_at({t, sample.s, sample.Q_ref, sample.dQ_ref, sample.ddQ_ref, Q_read});
   if (filters_) {
     offsets.before_filter = filters_->offset(offsets.before_filter);
   }
@@ -73,17 +75,25 @@ const AxisSetPoint& SetPoint::advance(const controllers::Trajectory::Sample& sam
   return out_;
 }
 
-SetPoint::Offsets SetPoint::corrections_at(const Joints& Q_ref) {
+SetPoint::Offsets SetPoint::corrections_at(strategies::Reading now) {
+  const Joints Q_ref = now.Q_ref;
   Offsets offsets;
   for (Correction& correction : corrections_) {
     // behind the filter, a table is looked up where the axis is sent, not where the program is
     const bool before = correction.in_nc.entry() == EntryPoint::before_filter;
-    const Joints& Q = before ? Q_ref : out_.Q_ref;
+    now.Q_ref = before ? Q_ref : out_.Q_ref;
     const Joints value =
-        correction.in_nc.wants_value() ? correction.part->offset(Q) : Joints(Joints::Zero());
+        correction.in_nc.wants_value() ? correction.part->advance(now) : Joints(Joints::Zero());
     offsets.of(correction.in_nc.entry()) += correction.in_nc.advance(value);
   }
   return offsets;
+}
+
+std::string_view SetPoint::failure() const {
+  for (const Correction& correction : corrections_) {
+    if (const auto why = correction.part->failure(); !why.empty()) return why;
+  }
+  return {};
 }
 
 // A correction has no analytic derivative: the NC differentiates it over a position period.

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "controllers/path/nominal_filter.h"
@@ -26,7 +27,11 @@ class SetPoint {
   double delay() const { return delay_; }
 
   /// Set point for what the trajectory asks for, one position period after the call before.
-  const AxisSetPoint& advance(const controllers::Trajectory::Sample& sample);
+  /// @param t, Q_read  s, and what the position loops read last: for strategies that look
+  const AxisSetPoint& advance(const controllers::Trajectory::Sample& sample, double t = 0.0,
+                              const Joints& Q_read = Joints::Zero());
+  /// Why a correction cannot go on; empty while all can.
+  std::string_view failure() const;
 
  private:
   struct Correction {
@@ -42,7 +47,7 @@ class SetPoint {
     Joints feed_forward = Joints::Zero();
     Joints& of(EntryPoint entry);
   };
-  Offsets corrections_at(const Joints& Q_ref);
+  Offsets corrections_at(strategies::Reading now);
   void feed_forward(const Joints& offset);
 
   const controllers::Trajectory& reference_;

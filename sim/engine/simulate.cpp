@@ -11,6 +11,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/engine/feedback_lanes.h"
+#include "sim/engine/last_ticks.h"
 #include "sim/engine/recorder.h"
 #include "sim/engine/servo_axes.h"
 #include "sim/engine/set_point.h"
@@ -18,8 +19,6 @@
 
 namespace servomill::sim {
 namespace {
-
-constexpr std::size_t kLastTicks = 2000;  // position periods kept of a case that stops
 
 std::vector<Rate> rates_of(const CaseInputs& in) {
   const Tick delay =
@@ -38,47 +37,11 @@ Outcome interrupted(double time) {
   return {false, true, fmt::format("interrupted at {:.4f} s", time), '-', time};
 }
 
-// The last position periods, kept in a ring so that a case that stops can be looked into.
-class LastTicks {
- public:
-  explicit LastTicks(std::vector<int> joints) : present_(std::move(joints)) {
-    ring_.resize(kLastTicks * kPerRow);
-  }
-  void keep(double time, const Joints& Q_cmd, const Joints& Q_read, const Joints& Q_true,
-            const Joints& current) {
-    double* row = ring_.data() + (count_++ % kLastTicks) * kPerRow;
-    *row++ = time;
-    for (const Joints* Q : {&Q_cmd, &Q_read, &Q_true, &current}) {
-      for (int j = 0; j < kJoints; ++j) *row++ = (*Q)[j];
-    }
-  }
-  Series series(const JointLayout& layout) const {
-    std::string letters;
-    for (const int j : present_) letters += layout.letter_of(j);
-    Series out({{"time", "s", "time since the start of the program", "", ""},
-                {"cmd", "m or rad", "set point", letters, "axis"},
-                {"read", "m or rad", "position that the NC reads", letters, "axis"},
-                {"true", "m or rad", "position of the slide or table", letters, "axis"},
-                {"current", "A", "torque-forming current", letters, "axis"}});
-    const std::size_t rows = std::min(count_, kLastTicks);
-    for (std::size_t n = count_ - rows; n < count_; ++n) {
-      const double* from = ring_.data() + (n % kLastTicks) * kPerRow;
-      double* to = out.add_row();
-      *to++ = *from;
-      for (std::size_t block = 0; block < 4; ++block) {
-        for (const int j : present_)
-          *to++ = from[1 + block * kJoints + static_cast<std::size_t>(j)];
-      }
-    }
-    return out;
-  }
-
- private:
-  static constexpr std::size_t kPerRow = 1 + 4 * kJoints;
-  std::vector<int> present_;
-  std::vector<double> ring_;
-  std::size_t count_ = 0;
-};
+// A strategy that cannot go on ends its case.
+Outcome failed(std::string_view why, double time, int line) {
+  return {false, false, fmt::format("{} at {:.4f} s, line {} of the program", why, time, line), '-',
+          time};
+}
 
 // The reference of one trajectory some time ago, asked for once at each instant however many runs
 // follow and record it.
@@ -189,12 +152,21 @@ class CaseRun {
   Tick end() const { return end_; }
   bool goes_on_at(Tick n) const { return n <= end_ && result_.outcome.finished; }
 
-  void interpolate(Tick n) {
-    set_ = set_point_.advance(reference_.at(nc_.periods.seconds(n)));
+  // False if a strategy cannot go on.
+  bool interpolate(Tick n) {
+    const double t = nc_.periods.seconds(n);
+    const auto& reference = reference_.at(t);
+    set_ = set_point_.advance(reference, t, axes_.Q_read(run_));
+    if (in_.feedback) feedback_.set_reference(run_, set_, reference.s);
     last_ticks_.keep(nc_.periods.seconds(n), set_.Q_cmd, axes_.Q_read(run_), axes_.Q_true(run_),
                      axes_.current(run_));
     axes_.follow(set_, run_);
     if (cut_) feel_cut(n);
+    std::string_view failure = set_point_.failure();
+    if (failure.empty() && in_.feedback) failure = feedback_.failure(run_);
+    if (!failure.empty())
+      result_.outcome = failed(failure, t, in_.path.line(in_.pieces[reference.move]));
+    return result_.outcome.finished;
   }
 
   // False if the machine stops.
@@ -260,6 +232,7 @@ class CaseRun {
     Joints d = Joints::Zero();
     if (in_.feedback) {
       feedback_.add(run_, *in_.feedback, model_period_of(in_));
+      feedback_.set_reference(run_, set_, reference_.at(0.0).s);
       for (int n = 0; n < 50; ++n) {  // Q + d(Q) = Q_cmd, a contraction by the slope of the errors
         d = feedback_.settle(run_, Q);
         Q = set_.Q_cmd - d;
@@ -337,7 +310,9 @@ class Lockstep {
       axes_.take_readings();
     }
     if (due & kPositionLoop) {
-      each([&](CaseRun& run) { run.interpolate(n); });
+      each([&](CaseRun& run) {
+        if (!run.interpolate(n)) next_end_ = n;
+      });
       axes_.run_position_loops();
       if (!axes_.all_well()) supervise(n);
     }
@@ -421,7 +396,11 @@ class IdealRun {
         result.outcome = interrupted(periods_.seconds(n));
         break;
       }
-      set = set_point_.advance(in_.reference.at(periods_.seconds(n), cursor_));
+      const double t = periods_.seconds(n);
+      const auto sample = in_.reference.at(t, cursor_);
+      set = set_point_.advance(sample, t, set.Q_cmd);
+      now_ = {t, sample.s, set.Q_ref, set.dQ_ff, set.ddQ_ff};
+      if (!goes_on(in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
       if (cut_) cut_->advance(reference_at(n));
       const bool is_recorded = n % in_.record_period == 0;
       if (!is_recorded && !travel_.matters()) continue;
@@ -438,6 +417,14 @@ class IdealRun {
  private:
   controllers::Trajectory::Sample reference_at(Tick n) {
     return in_.reference.at(periods_.seconds(n) - set_point_.delay(), record_cursor_);
+  }
+
+  // False if a strategy cannot go on.
+  bool goes_on(int line, Outcome& outcome) const {
+    std::string_view failure = set_point_.failure();
+    if (failure.empty() && feedback_) failure = feedback_->failure(0);
+    if (!failure.empty()) outcome = failed(failure, now_.t, line);
+    return failure.empty();
   }
 
   // Adds the saturations of a recorded instant.
@@ -475,6 +462,10 @@ class IdealRun {
     Joints Q_true = set.Q_cmd;
     for (int k = 0; feedback_ && k < 50; ++k) {
       const Joints before = Q_true;
+      if (feedback_->observes()) {
+        now_.Q_fb = before;
+        feedback_->observe(now_, 0);
+      }
       Q_true = set.Q_cmd - feedback_->settle(before);
       if (Q_true == before) break;
     }
@@ -485,6 +476,7 @@ class IdealRun {
   const LoopPeriods& periods_;
   SetPoint set_point_;
   std::unique_ptr<strategies::FeedbackPart> feedback_;
+  strategies::Reading now_;
   Recorder recorder_;
   Travel travel_;
   std::optional<Cut> cut_;

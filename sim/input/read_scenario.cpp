@@ -25,6 +25,7 @@
 #include "sim/input/scenario_source.h"
 #include "sim/model/schedule.h"
 #include "sim/system/base64.h"
+#include "strategies/registry.h"
 
 namespace servomill::sim {
 namespace {

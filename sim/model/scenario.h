@@ -21,7 +21,7 @@
 #include "sim/model/design.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"
-#include "strategies/registry.h"
+#include "strategies/entry.h"
 
 namespace servomill::sim {
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "strategies/registry.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::perfect_belief_test {

@@ -18,15 +18,15 @@ namespace servomill::strategies {
 inline Belief belief_in(const plant::ErrorModel& errors,
                         const char* structure = "[w C' B' X b Y Z (C1) t]") {
   const plant::MachineChain chain = plant::make_chain(plant::parse_structure(structure));
-  Belief belief{chain.layout, plant::VolumetricModel(chain, errors)};
-  belief.p_ST << 0.0, 0.0, -110.0 * mm;
-  belief.lower << -200.0 * mm, -200.0 * mm, -200.0 * mm, -2.0, -7.0;
-  belief.upper << 200.0 * mm, 200.0 * mm, 200.0 * mm, 2.0, 7.0;
-  belief.reference = belief.lower;
-  belief.reference.head<3>().array() += 100 * 1.6384 * mm;
-  belief.reference.tail<2>() << 20.0 * deg, 30.0 * deg;
-  belief.Kv.setConstant(80.0);
-  return belief;
+  Belief identified{chain.layout, plant::VolumetricModel(chain, errors)};
+  identified.p_ST << 0.0, 0.0, -110.0 * mm;
+  identified.lower << -200.0 * mm, -200.0 * mm, -200.0 * mm, -2.0, -7.0;
+  identified.upper << 200.0 * mm, 200.0 * mm, 200.0 * mm, 2.0, 7.0;
+  identified.reference = identified.lower;
+  identified.reference.head<3>().array() += 100 * 1.6384 * mm;
+  identified.reference.tail<2>() << 20.0 * deg, 30.0 * deg;
+  identified.Kv.setConstant(80.0);
+  return identified;
 }
 
 /// The declared defaults; the first word for what has none.

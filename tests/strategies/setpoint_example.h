@@ -1,7 +1,7 @@
 /// The example of strategies/README.md, "Add a strategy".
 #pragma once
 
-#include "strategies/registry.h"
+#include "strategies/entry.h"
 
 namespace servomill::strategies {
 

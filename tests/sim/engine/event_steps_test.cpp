@@ -6,6 +6,7 @@
 #include "plant/drives/drive_bank.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/set_point.h"
+#include "strategies/registry.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::event_steps_test {
