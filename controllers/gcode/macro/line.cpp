@@ -72,21 +72,33 @@ void take_block_number(Line& line) {
   skip_blanks(line.body, line.begin);
 }
 
-// Letters that a statement of macros begins with: most lines have none of these pairs.
+// Looks at the first word only, behind '/' and N: most lines begin with another.
 bool may_be_macro(std::string_view text) {
-  constexpr auto kFirst = [] {
-    std::array<bool, 256> table{};
-    for (const char c : std::string_view("IWGPDiwgpd")) table[static_cast<unsigned char>(c)] = true;
-    return table;
-  }();
-  constexpr std::array<std::string_view, 7> kPairs = {"IF", "WH", "GO", "G6", "DP", "PO", "PC"};
-  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
-    if (!kFirst[static_cast<unsigned char>(text[i])]) continue;
-    const std::array pair = {upper(text[i]), upper(text[i + 1])};
-    const std::string_view both(pair.data(), pair.size());
-    if (std::find(kPairs.begin(), kPairs.end(), both) != kPairs.end()) return true;
+  std::size_t at = 0;
+  const auto skip = [&](std::string_view characters) {
+    while (at < text.size() && characters.find(text[at]) != std::string_view::npos) ++at;
+  };
+  skip("/ \t");
+  if (at < text.size() && upper(text[at]) == 'N') {
+    ++at;
+    while (at < text.size() && (is_digit(text[at]) || is_blank(text[at]))) ++at;
   }
-  return false;
+  if (at + 1 >= text.size()) return false;
+  const char next = upper(text[at + 1]);
+  switch (upper(text[at])) {
+    case 'I':
+    case 'W':
+    case 'P':
+    case 'D':
+    case 'B':
+      return true;
+    case 'G':
+      return next == 'O' || next == '6';
+    case 'M':
+      return next == '9';
+    default:
+      return is_digit(text[at]);  // /2
+  }
 }
 
 Cursor cursor_at(std::string_view body, std::size_t at) {
@@ -171,7 +183,8 @@ bool is_macro_only(std::string_view text, Line& line) {
     case Statement::output:
       return true;
     case Statement::words:
-      return has_code(line.body, 'G', "65") || has_code(line.body, 'G', "66");
+      return has_code(line.body, 'G', "65") || has_code(line.body, 'G', "66") ||
+             (has_code(line.body, 'M', "99") && line.body.find_first_of("Pp") != std::string::npos);
     default:
       return false;
   }

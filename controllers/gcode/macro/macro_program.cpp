@@ -12,8 +12,9 @@ namespace {
 
 // O100 IF, O<name> CALL: LinuxCNC's flow control, behind which IF[ ... has no other meaning.
 bool has_o_keyword(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos || (text[first] != 'O' && text[first] != 'o')) return false;
+  std::size_t first = 0;
+  while (first < text.size() && (text[first] == ' ' || text[first] == '\t')) ++first;
+  if (first == text.size() || (text[first] != 'O' && text[first] != 'o')) return false;
   if (first + 1 < text.size() && text[first + 1] == '<') return true;
   const std::size_t behind = text.find_first_not_of(" \t0123456789", first + 1);
   if (behind == std::string_view::npos) return false;

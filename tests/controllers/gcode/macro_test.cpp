@@ -101,8 +101,8 @@ TEST(Macro, CallsAreChecked) {
             "2:1: error: G65 needs a P word, the number of a program");
   EXPECT_EQ(refusal("G65 P77 A1.\nM2\n"),
             "1:5: error: there is no program O77 in this file, and no file 77.ngc");
-  EXPECT_EQ(refusal("G90 G65 P1 A1.\nM2\nO1\nM99\n"),
-            "1:1: error: G65 stands before its arguments and alone: write G in a block of its own");
+  EXPECT_EQ(refusal("#1=1.\nG90 G65 P1 A1.\nM2\nO1\nM99\n"),
+            "2:1: error: G65 stands before its arguments and alone: write G in a block of its own");
   EXPECT_EQ(refusal("G65 P1\nM2\nO1\nG65 P1\nM99\n"),
             "4:5: error: more than 4 macros called by each other; in O1, called in p.nc:4, in O1, "
             "called in p.nc:4, in O1, called in p.nc:4, in O1, called in p.nc:1");
@@ -208,6 +208,13 @@ TEST(Macro, AComparisonNearerThanControlsCalculateIsWarnedOf) {
 // Readings that Fanuc and Haas share count, since no other control reads the program.
 TEST(Macro, WordsAreReadAsTheControlsDoThatHaveMacros) {
   EXPECT_EQ(run("G4 P1500\nIF[1EQ1]GOTO9\nN9 M2\n", Reader::any), "W 1.5");
+}
+
+// Fanuc B-64124EN/01, subprogram, from memory; Haas has M99 P too, from memory.
+TEST(Macro, AReturnToABlockNeedsNoVariables) {
+  const std::string program = "M98 P100\nG0 X9.\nN5 G0 Y1.\nM2\nO100\nG0 X1.\nM99 P5\n";
+  EXPECT_EQ(run(program), "R 1 0 0 | R 1 1 0");
+  EXPECT_EQ(run("G0 X1.\n/M99 P9\nX2.\nN9 Y1.\nM2\n", Reader::any), "R 1 0 0 | R 1 1 0");
 }
 
 TEST(Macro, OtherReadersDoNotHaveIt) {
