@@ -126,6 +126,7 @@ class Interpreter::Machine {
   void read_as_control();
   void read_pending_line();
   void look_for_missing_points();
+  void note_other_arithmetic();
   int original_column(int column) const;
   void execute();
   void run_block();
@@ -363,8 +364,9 @@ class Interpreter::Machine {
   bool has_warned_of_points_ = false;
   std::set<ReaderRule> tolerated_;
   std::set<std::string> noted_;
-  std::string_view line_;  // as it was read last
-  LinePlace here_;         // where it begins
+  std::set<int> assigned_;  // numbered parameters that the program has set; of the reader `any`
+  std::string_view line_;   // as it was read last
+  LinePlace here_;          // where it begins
   FlowState flow_;
   Block block_;
   Request request_;

@@ -1,6 +1,9 @@
 // System variables of Fanuc and Haas that a simulation knows.
 // Source: Fanuc B-63944EN, custom macro, system variables; Haas Mill operator's manual, macro
 // variables; both from memory. Where the two differ each reader has its own.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 
 #include "controllers/gcode/interpreter_machine.h"
@@ -11,7 +14,58 @@ namespace {
 constexpr long kEnd = 5001, kMachine = 5021, kCurrent = 5041, kExternalOffset = 5201,
                kLastOffset = 5326;
 
+constexpr const char* kNoOffset =
+    "the work offset is not given; --work-offset (other than 0) or --parameter-file names it";
+
+// An offset that nobody has given is 0 here, and somewhere else on the machine.
+bool is_offset_known(const Parameters& parameters, const std::map<int, double>& stored,
+                     int system) {
+  const int first = parameter::work_offset(system);
+  if (stored.contains(first)) return true;
+  for (int i = 0; i < kAxisWords; ++i) {
+    if (parameters.get(first + i) != 0.0) return true;
+  }
+  return false;
+}
+
+constexpr std::string_view kOtherArithmetic =
+    "FIX, FUP, ATAN, MOD, AND, OR and XOR are read as LinuxCNC has them; Fanuc and Haas differ for "
+    "numbers below 0, in the range of angles, and count bits; choose with --reader";
+
+bool differs(OpCode code) {
+  constexpr std::array kCodes = {OpCode::fix,        OpCode::fup,         OpCode::atan,
+                                 OpCode::modulo,     OpCode::logical_and, OpCode::logical_or,
+                                 OpCode::logical_xor};
+  return std::find(kCodes.begin(), kCodes.end(), code) != kCodes.end();
+}
+
 }  // namespace
+
+// A program that uses variables and says nowhere for which control: no O-words, no macro
+// statements.
+void Interpreter::Machine::note_other_arithmetic() {
+  constexpr double kLastCommon = 999.0;
+  const bool is_of_linuxcnc = block_.o_word.flow != Flow::none || !flow_.labels.empty();
+  if (is_of_linuxcnc || !flow_.calls.empty()) return;
+  const auto note = [&](int column, const std::string& text) {
+    if (noted_.insert(text).second) warn(column, text);
+  };
+  for (std::size_t i = 0; i < block_.code.size(); ++i) {
+    const Op& op = block_.code[i];
+    if (differs(op.code)) note(op.column, std::string(kOtherArithmetic));
+    const bool has_number = op.code == OpCode::numbered && i > 0 &&
+                            block_.code[i - 1].code == OpCode::push &&
+                            block_.code[i - 1].value <= kLastCommon;
+    if (!has_number) continue;
+    const int number = static_cast<int>(block_.code[i - 1].value);
+    const bool is_given = assigned_.contains(number) || setup_.stored.contains(number) ||
+                          setup_.parameters.contains(fmt::format("#{}", number));
+    if (is_given) continue;
+    note(op.column, fmt::format("#{} is read before it is set: 0 (LinuxCNC), or vacant, with its "
+                                "word left out (Fanuc, Haas); choose with --reader",
+                                number));
+  }
+}
 
 // Lengths in the unit in force.
 std::optional<double> Interpreter::Machine::macro_position(long number, std::string& why) const {
@@ -29,6 +83,10 @@ std::optional<double> Interpreter::Machine::macro_position(long number, std::str
   }
   if (first != kEnd && state_.compensation.is_on) {
     why = "cutter compensation is on: it is not known yet; G40 first";
+    return std::nullopt;
+  }
+  if (first == kMachine && !is_offset_known(parameters_, setup_.stored, state_.work_system)) {
+    why = kNoOffset;
     return std::nullopt;
   }
   if (first == kCurrent && state_.tool_offset != AxisWords::Zero()) {
@@ -74,6 +132,11 @@ std::optional<double> Interpreter::Machine::macro_variable(long number, std::str
   if (number >= 4001 && number < 4200) return macro_mode(number, why);
   const long axis = (number - kExternalOffset) % 20;
   const bool is_offset = number >= kExternalOffset + 20 && number <= kLastOffset;
+  const int system = static_cast<int>((number - kExternalOffset) / 20);
+  if (is_offset && !is_offset_known(parameters_, setup_.stored, system)) {
+    why = kNoOffset;
+    return std::nullopt;
+  }
   if (is_offset && axis < kAxisWords) {
     const double value = parameters_.get(static_cast<int>(number));
     return axis < 3 ? value * mm / state_.unit : value;

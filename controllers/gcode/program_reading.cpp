@@ -91,6 +91,7 @@ void Interpreter::Machine::read_executed_line() {
       setup_.decimal_point == DecimalPoint::unset) {
     look_for_missing_points();
   }
+  if (setup_.reader == Reader::any && !block_.code.empty()) note_other_arithmetic();
   is_strict || !reading_.concerns(block_, state_) ? execute() : read_as_control();
 }
 
@@ -386,6 +387,7 @@ void Interpreter::Machine::assign_parameters() {
     const Assignment& a = block_.assignments[i];
     if (a.name < 0) {
       parameters_.set(new_numbers_[i].first, new_numbers_[i].second);
+      if (setup_.reader == Reader::any) assigned_.insert(new_numbers_[i].first);
       continue;
     }
     const std::string& name = block_.names[static_cast<std::size_t>(a.name)];

@@ -187,6 +187,12 @@ TEST(Macro, PositionsModesAndOffsetsAreThoseOfTheBlockBefore) {
   EXPECT_EQ(run("G0 X1. Y2. Z3.\n#1=#5001+#5042\n#2=#5022\n#3=#5223\nX#1 Y#2 Z#3\nM2\n",
                 Reader::fanuc, offsets),
             "R 101 202 303 | R 103 402 600");
+  const std::string unknown =
+      "the work offset is not given; --work-offset (other than 0) or --parameter-file names it";
+  EXPECT_EQ(refusal("G0 X1.\n#1=#5221\nM2\n"), "2:4: error: #5221 is a work offset: " + unknown);
+  EXPECT_EQ(refusal("G0 X1.\n#1=#5021\nM2\n"),
+            "2:4: error: #5021 is the machine position: " + unknown);
+  EXPECT_EQ(run("G10 L2 P2 X5. Y0. Z0.\nG0 X#5241\nM2\n"), "R 5 0 0");
   EXPECT_EQ(run("G91 G20 G1 X1. F10.\n#1=#4001\n#2=#4003\n#3=#4006\nG21 G0 G90\nG#1 X#2 Y#3 "
                 "F#4109\nM2\n"),
             "F 25.4 0 0 f254 | F 91 20 0");
@@ -225,6 +231,24 @@ TEST(Macro, OtherReadersDoNotHaveIt) {
   }
   // O-words and parameters of LinuxCNC stay what they are
   EXPECT_EQ(run("#1=2\no1 if [#1 gt 1]\nG0 X#1 Y#2\no1 endif\nM2\n", Reader::any), "R 2 0 0");
+}
+
+// Nothing in them says for which control they are: LinuxCNC's reading, with a warning.
+TEST(Macro, VariablesThatControlsReadDifferentlyAreWarnedOf) {
+  const Reading found =
+      read("#1=FIX[-1.5]\nG0 X#1 Y#2\nX[#1+#2]\n#3=[1 AND 2]\nM2\n", Reader::any, {});
+  EXPECT_EQ(found.moves, "R -2 0 0");
+  ASSERT_EQ(found.warnings.size(), 2u);
+  EXPECT_EQ(to_string(found.warnings[0]),
+            "p.nc:1:4: error: FIX, FUP, ATAN, MOD, AND, OR and XOR are read as LinuxCNC has them; "
+            "Fanuc and Haas differ for numbers below 0, in the range of angles, and count bits; "
+            "choose with --reader");
+  EXPECT_EQ(to_string(found.warnings[1]),
+            "p.nc:2:9: error: #2 is read before it is set: 0 (LinuxCNC), or vacant, with its word "
+            "left out (Fanuc, Haas); choose with --reader");
+  // O-words are LinuxCNC's
+  const Reading flow = read("o1 if [1]\nG0 X#2 Y[FIX[-1]]\no1 endif\nM2\n", Reader::any, {});
+  EXPECT_TRUE(flow.warnings.empty());
 }
 
 TEST(Macro, ProgramsThatItCallsAreFound) {
