@@ -25,4 +25,16 @@ inline ErrorModel random_errors(Uniform& random, double size) {
   return errors;
 }
 
+/// Errors of up to `size` at unevenly spaced points from -0.5 on.
+inline LinearTable random_table(Uniform& random, double size, int points) {
+  LinearTable table;
+  double s = -0.5;
+  for (int i = 0; i < points; ++i) {
+    table.s.push_back(s);
+    table.error.push_back(size * random());
+    s += 0.1 * (1.01 + random()) / (i % 3 + 1);
+  }
+  return table;
+}
+
 }  // namespace servomill::plant

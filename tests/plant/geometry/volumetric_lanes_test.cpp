@@ -1,5 +1,5 @@
 /// The volumetric error in lanes: against 4x4 matrices in long double, against itself for one pose
-/// and on each instruction set, and its parts.
+/// and on each instruction set.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -118,17 +118,6 @@ ErrorModel of_linear_axes(ErrorModel errors) {
     errors.locations[axis].setZero();
   }
   return errors;
-}
-
-LinearTable random_table(Uniform& random, double size, int points) {
-  LinearTable table;
-  double s = -0.5;
-  for (int i = 0; i < points; ++i) {
-    table.s.push_back(s);
-    table.error.push_back(size * random());
-    s += 0.1 * (1.01 + random()) / (i % 3 + 1);
-  }
-  return table;
 }
 
 struct ErrorCase {
@@ -320,36 +309,6 @@ TEST(VolumetricLanes, AgreeOnAllInstructionSets) {
       ASSERT_EQ(results[l], results[1]);  // all but the baseline round once in a b + c
     }
   });
-}
-
-// --- parts --------------------------------------------------------------------------------------
-
-TEST(TableLookup, HasTheValuesOfItsTable) {
-  Uniform random(74);
-  for (int points = 1; points < 40; ++points) {
-    const LinearTable table = random_table(random, 1.0, points);
-    const TableLookup lookup(table);
-    const double first = table.s.front(), last = table.s.back();
-    for (int n = -20; n <= 120; ++n) {
-      const double at = first + (last - first + 0.01) * n / 100.0;
-      ASSERT_EQ(lookup.value(at), table.value(at)) << points << " points, at " << at;
-    }
-    for (const double s : table.s) {
-      ASSERT_EQ(lookup.value(s), table.value(s));
-      ASSERT_EQ(lookup.value(std::nextafter(s, -1e9)), table.value(std::nextafter(s, -1e9)));
-      ASSERT_EQ(lookup.value(std::nextafter(s, 1e9)), table.value(std::nextafter(s, 1e9)));
-    }
-  }
-}
-
-TEST(TableLookup, TakesPointsOfVeryDifferentSpacing) {
-  const LinearTable table{{0.0, 1e-12, 2e-12, 1.0, 1.0 + 1e-9, 1e6},
-                          {0.0, 1.0, -1.0, 2.0, 3.0, 4.0}};
-  const TableLookup lookup(table);
-  for (const double at :
-       {-1.0, 0.0, 5e-13, 1e-12, 1.5e-12, 2e-12, 0.3, 1.0, 1.0 + 5e-10, 2.0, 999999.0, 1e6, 1e7}) {
-    ASSERT_EQ(lookup.value(at), table.value(at)) << at;
-  }
 }
 
 TEST(HarmonicInLanes, IsTheSine) {
