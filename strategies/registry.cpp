@@ -8,6 +8,7 @@
 #include "strategies/harmonic.h"
 #include "strategies/none.h"
 #include "strategies/parabolic.h"
+#include "strategies/plugin_file.h"
 #include "strategies/table.h"
 
 namespace servomill::strategies {
@@ -23,12 +24,15 @@ const Entry* find(std::string_view name) {
   for (const Entry& entry : entries()) {
     if (entry.name == name) return &entry;
   }
-  return nullptr;
+  return find_in_plugins(name);
 }
 
 std::vector<std::string_view> names() {
   std::vector<std::string_view> out;
   for (const Entry& entry : entries()) out.push_back(entry.name);
+  for (const LoadedPlugin& plugin : loaded_plugins()) {
+    for (const Entry* entry : plugin.entries) out.push_back(entry->name);
+  }
   return out;
 }
 

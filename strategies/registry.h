@@ -9,12 +9,13 @@
 
 namespace servomill::strategies {
 
-/// All strategies, sorted by name.
+/// All strategies of the tree, sorted by name.
 std::span<const Entry> entries();
 
-/// The entry of that name, or nullptr.
+/// The entry of that name, of the tree or of a plug-in (strategies/plugin_file.h); or nullptr.
 const Entry* find(std::string_view name);
 
+/// Of the tree and of plug-ins.
 std::vector<std::string_view> names();
 
 }  // namespace servomill::strategies

@@ -10,21 +10,26 @@
 #include "strategies/registry.h"
 
 namespace servomill::sim {
+namespace {
+
+std::string describe(const strategies::Entry& entry) {
+  std::string out = fmt::format("{}: {}\n", entry.name, entry.summary);
+  for (const ParameterSpec& p : entry.parameters) {
+    std::string allowed = p.is_number ? (p.unit.empty() ? "number" : std::string(p.unit)) : "";
+    for (const std::string_view word : p.words) {
+      allowed += fmt::format("{}\"{}\"", allowed.empty() ? "" : " | ", word);
+    }
+    out += fmt::format("  {:<20} {} [{}; default {}]\n", p.name, p.help, allowed,
+                       p.default_text.empty() ? "none" : p.default_text);
+  }
+  return out + '\n';
+}
+
+}  // namespace
 
 std::string describe_strategies() {
   std::string out;
-  for (const strategies::Entry& entry : strategies::entries()) {
-    out += fmt::format("{}: {}\n", entry.name, entry.summary);
-    for (const ParameterSpec& p : entry.parameters) {
-      std::string allowed = p.is_number ? (p.unit.empty() ? "number" : std::string(p.unit)) : "";
-      for (const std::string_view word : p.words) {
-        allowed += fmt::format("{}\"{}\"", allowed.empty() ? "" : " | ", word);
-      }
-      out += fmt::format("  {:<20} {} [{}; default {}]\n", p.name, p.help, allowed,
-                         p.default_text.empty() ? "none" : p.default_text);
-    }
-    out += '\n';
-  }
+  for (const std::string_view name : strategies::names()) out += describe(*strategies::find(name));
   return out;
 }
 

@@ -1,20 +1,12 @@
 #include "sim/input/input_files.h"
 
-#include <boost/crc.hpp>
-
+#include "plant/vocabulary/checksum.h"
 #include "sim/system/read_file.h"
 
 namespace servomill::sim {
 namespace {
 
 constexpr std::size_t kMostDocuments = 100;
-
-std::uint64_t crc64(const std::string& bytes) {
-  constexpr std::uint64_t kPolynomial = 0x42F0E1EBA9EA3693;
-  boost::crc_optimal<64, kPolynomial, ~std::uint64_t{0}, ~std::uint64_t{0}, true, true> crc;
-  crc.process_bytes(bytes.data(), bytes.size());
-  return crc.checksum();
-}
 
 }  // namespace
 

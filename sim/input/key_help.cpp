@@ -13,9 +13,9 @@ struct Help {
 
 // Sentences: what the key describes, and a default that follows from other keys.
 constexpr Help kHelp[] = {
-    {"", "title",
-     "title of the experiment, shown in tables and figures; default: name of the file"},
+    {"", "title", "of the experiment, for tables and figures; default: name of the file"},
     {"", "source", "reference of the experiment: paper, standard, measurement"},
+    {"", "plugins", "shared libraries with strategies of their own"},
     {"", "based_on",
      "scenario file that this one overrides, key by key; cases of the same name are replaced"},
     {"", "machine", "machine file, or the machine itself as a table"},

@@ -10,6 +10,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/config/reader.h"
 #include "sim/input/known_name.h"
+#include "sim/input/plugins.h"
 #include "sim/input/read_case.h"
 #include "sim/input/read_cutting.h"
 #include "sim/input/read_design.h"
@@ -44,6 +45,7 @@ class ScenarioReader {
     root.raw("machine_override");  // is in the machine by now
     out_.title = root.text_or("title", out_.name);
     out_.source = root.text_or("source", "");
+    const std::string plugins = read_plugins(root);
     Reader machine = root.table("machine");
     out_.machine = read_machine(machine, &out_.errors);
     Reader program = root.table("program");
@@ -74,6 +76,7 @@ class ScenarioReader {
     check_plan();
     case_reader.read_machines(document_);
     document_.merge(with_contents_of_files());
+    if (!plugins.empty()) document_.set(plugins);
     out_.resolved = document_.to_toml();
   }
 

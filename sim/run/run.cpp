@@ -6,11 +6,22 @@
 
 #include "sim/preparation/stability_check.h"
 #include "sim/system/background.h"
+#include "strategies/plugin_watch.h"
 
 namespace servomill::sim {
 namespace {
 
 constexpr auto kProgressPeriod = std::chrono::milliseconds(20);  // an interrupt waits for it, too
+
+// Should a plug-in not return, what else is complete is kept.
+[[noreturn]] void keep_others(const RunControl& control, const std::vector<CaseOutput>& outputs,
+                              const std::vector<std::atomic<bool>>& done,
+                              const std::vector<std::exception_ptr>& failures, std::size_t first) {
+  for (std::size_t i = first; i < outputs.size(); ++i) {
+    if (done[i] && !failures[i] && control.case_done) control.case_done(outputs[i]);
+  }
+  strategies::PluginRescue::done();
+}
 
 }  // namespace
 
@@ -29,8 +40,7 @@ RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
   std::vector<PreparedCase> prepared = prepare_cases(scenario, control.cache);
   if (control.prepared) control.prepared(estimate(scenario, prepared, control.threads));
 
-  // cases are independent: which thread runs which makes no difference to the result
-  const std::size_t count = prepared.size();
+  const std::size_t count = prepared.size();  // independent: any thread may run any of them
   std::vector<CaseOutput> outputs(count);
   std::vector<std::atomic<float>> progress(count);
   std::vector<std::atomic<bool>> done(count);
@@ -57,8 +67,10 @@ RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
     ~NoMore() { next = count; }
   };
   const NoMore no_more{next, count};
+  const strategies::PluginRescue rescue;
   for (std::size_t i = 0; i < count;) {
     if (!done[i]) {
+      if (strategies::PluginRescue::is_wanted()) keep_others(control, outputs, done, failures, i);
       std::this_thread::sleep_for(kProgressPeriod);
     } else {
       if (failures[i]) std::rethrow_exception(failures[i]);

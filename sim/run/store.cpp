@@ -197,7 +197,7 @@ std::vector<std::string> split_lines(const std::string& text) {
 
 void write_build(Hdf5Group& root) {
   root.attribute("servomill_version", kVersion);
-  root.attribute("servomill_build", build_identity());
+  root.attribute("servomill_build", result_identity());
 }
 
 std::string build_of(const InputFile& file) {

@@ -44,10 +44,10 @@ void refuse_other(const Shard& one, const Shard& first) {
                                  "differ; run these shards again by one build",
                                  one.build, first.path, first.build));
   }
-  if (one.build != build_identity()) {
+  if (one.build != result_identity()) {
     throw InputError({one.path}, fmt::format("was written by servomill {}; this is {}, which would "
                                              "say that it wrote all of it: merge with that build",
-                                             one.build, build_identity()));
+                                             one.build, result_identity()));
   }
   if (one.resolved != first.resolved) refuse("holds a sweep of another scenario than");
   if (const auto file = changed_file(first.swept_files, one.swept_files); !file.empty()) {

@@ -29,7 +29,7 @@ bool has_point_series(const std::string& folder, const Sweep& sweep, std::uint64
   if (!std::filesystem::exists(path, ignored)) return false;
   try {
     const InputFile file(path);
-    return build_of(file) == build_identity() &&
+    return build_of(file) == result_identity() &&
            file.text("/inputs", "resolved") == sweep.at(point).resolved;
   } catch (const InputError&) {
     return false;  // something else

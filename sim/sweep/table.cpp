@@ -207,12 +207,12 @@ void SweepTable::take_over(const std::string& name, const Scenario& base) {
     throw;
   }
   const InputFile file(name);
-  if (const std::string build = build_of(file); build != build_identity()) {
+  if (const std::string build = build_of(file); build != result_identity()) {
     throw InputError(
         {name}, fmt::format("was written by servomill {}, this is {}: points of two builds may "
                             "differ; go on with that build, name another --output or use --force "
                             "to run all of it again",
-                            build, build_identity()));
+                            build, result_identity()));
   }
   const std::string why = why_other(*header, base, selection_);
   if (!why.empty()) throw InputError({name}, why + "; use --force to overwrite");

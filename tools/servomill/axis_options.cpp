@@ -21,12 +21,14 @@ void add_axis_options(Options& options) {
                 "axis, or several (X,Y), or all");
   options.add()("case", po::value<std::string>()->value_name("NAME"),
                 "takes the machine as this case of the scenario has it");
+  add_plugin_option(options);
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario, as for servomill run, such as "
                 "machine_override.axis.Y.Kv=\"4 m/min/mm\"");
 }
 
 sim::Scenario scenario_for_axes(const Options& options) {
+  load_plugins(options);
   sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
   if (!options.has("case")) return scenario;
   const auto& name = options.get<std::string>("case");

@@ -191,7 +191,9 @@ int budget_command(const Arguments& arguments) {
   options.add()("force,f", "replaces the result file if it exists");
   options.add()("json", "prints one JSON object a budget");
   options.add()("quiet,q", "no progress bar");
+  add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
+  load_plugins(options);
 
   const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
   const std::vector<sim::QuantitySpec> quantities = chosen(scenario, options);

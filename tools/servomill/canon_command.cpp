@@ -19,7 +19,9 @@ int canon_command(const Arguments& arguments) {
                   "PROGRAM");
   add_program_options(options);
   add_machine_option(options);
+  add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
+  load_plugins(options);
   const auto warnings = sim::canon(
       options.word(), program_inputs(options),
       [](std::string_view lines) { std::fwrite(lines.data(), 1, lines.size(), stdout); });

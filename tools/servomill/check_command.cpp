@@ -92,7 +92,9 @@ int check_command(const Arguments& arguments) {
       "the extreme points of arcs. The cycle time is that of the motion, planned as in a run.",
       "FILE");
   declare(options);
+  add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
+  load_plugins(options);
   if (options.words().empty()) throw InputError({"servomill check"}, "needs a FILE; see --help");
   const sim::ProgramInputs inputs = program_inputs(options);
   std::size_t faults = 0;

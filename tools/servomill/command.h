@@ -91,6 +91,11 @@ class ProgressBar {
   std::size_t shown_ = 0;
 };
 
+/// --plugin FILE, of commands that read scenarios.
+void add_plugin_option(Options& options);
+/// @throws InputError
+void load_plugins(const Options& options);
+
 /// Value of --threads. @throws InputError
 unsigned thread_count(const Options& options);
 

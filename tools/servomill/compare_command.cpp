@@ -13,7 +13,9 @@ int compare_command(const Arguments& arguments) {
       "from the recorded signals.",
       "OUT.h5");
   options.add()("json", "prints one JSON object a line");
+  add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
+  load_plugins(options);
   if (options.words().empty()) {
     throw InputError({"servomill compare"}, "needs at least one OUT.h5; see --help");
   }

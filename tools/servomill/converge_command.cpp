@@ -70,7 +70,9 @@ int converge_command(const Arguments& arguments) {
                 "threads (default: one a core); results do not depend on it");
   options.add()("json", "prints one JSON object a line of the comparison");
   options.add()("quiet,q", "no progress bar");
+  add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
+  load_plugins(options);
 
   const std::set<sim::Refinement> refinements = chosen(options);
   const sim::ScenarioSource source(options.word(), options.list("set"));

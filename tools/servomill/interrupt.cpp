@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "plant/vocabulary/interrupt.h"
+#include "sim/input/plugins.h"
 #include "sim/system/output_name.h"
 #include "tools/servomill/command.h"
 
@@ -29,6 +30,15 @@ std::mutex kept_mutex;
 std::function<std::string()> what_is_kept;
 std::string kept_when_thrown;  // what an interrupt that went through as an exception has left
 
+// Not through stdio, whose lock a thread that was stopped might hold.
+void write_to_stderr(const std::string& text) {
+  for (std::size_t from = 0; from < text.size();) {
+    const ssize_t written = ::write(STDERR_FILENO, text.data() + from, text.size() - from);
+    if (written <= 0) return;
+    from += static_cast<std::size_t>(written);
+  }
+}
+
 void on_signal(int signal) {
   interrupt_wanted = true;
   std::signal(signal, SIG_DFL);
@@ -43,6 +53,15 @@ void on_signal(int signal) {
   ::_exit(kInterrupted);
 }
 
+// The same for a plug-in that does not return or has crashed.
+[[noreturn]] void end_after_plugin(const std::string& why) {
+  sim::TemporaryFile::remove_all();
+  const std::scoped_lock lock(kept_mutex);
+  const std::string kept = what_is_kept ? what_is_kept() : "";
+  write_to_stderr(why + (kept.empty() ? "\n" : "\n" + kept + "\n"));
+  ::_exit(kSystemFailed);
+}
+
 void watch() {
   while (sem_wait(&wanted) != 0) {
   }
@@ -55,6 +74,7 @@ void watch() {
 const std::atomic<bool>& stop_on_interrupt() {
   static const bool installed = [] {
     sem_init(&wanted, 0, 0);
+    sim::on_plugin_failure(end_after_plugin);
     std::thread(watch).detach();
     // system calls go on: a full pipe is no fault
     struct sigaction action {};
@@ -89,13 +109,7 @@ void print_interrupted() {
 
 void print_interrupted(const std::string& kept) {
   if (told.exchange(true)) return;
-  const std::string text = kept.empty() ? "interrupted\n" : "interrupted; " + kept + "\n";
-  // not through stdio, whose lock a thread that was stopped might hold
-  for (std::size_t from = 0; from < text.size();) {
-    const ssize_t written = ::write(STDERR_FILENO, text.data() + from, text.size() - from);
-    if (written <= 0) return;
-    from += static_cast<std::size_t>(written);
-  }
+  write_to_stderr(kept.empty() ? "interrupted\n" : "interrupted; " + kept + "\n");
 }
 
 std::string kept_in(const std::string& partial_path, const std::string& details) {

@@ -61,7 +61,9 @@ int list_command(const Arguments& arguments) {
                 "where machines and scenarios are looked for");
   options.add()("json", "keys: prints one JSON object a key");
   options.add()("markdown", "keys: prints a page with one table a section");
+  add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
+  load_plugins(options);
   if (const auto words = options.words(); !words.empty() && words.front() == "keys") {
     list_keys_of(options);
     return kDone;

@@ -19,7 +19,9 @@ int merge_command(const Arguments& arguments) {
   options.add()("partial", "merges what there is, where shards or points are missing");
   options.add()("force,f", "replaces the result file if it exists");
   options.add()("quiet,q", "prints nothing but faults");
+  add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
+  load_plugins(options);
   const Place place{"servomill merge"};
   if (options.words().empty()) throw InputError(place, "needs at least one SHARD.h5; see --help");
   if (!options.has("output")) throw InputError(place, "needs the name of the result: -o OUT.h5");

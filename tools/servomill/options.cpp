@@ -9,6 +9,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/user_file.h"
+#include "sim/input/plugins.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {
@@ -122,6 +123,15 @@ void ProgressBar::clear() {
   fmt::print(stderr, "\r{:<{}}\r", "", shown_);
   std::fflush(stderr);
   shown_ = 0;
+}
+
+void add_plugin_option(Options& options) {
+  options.add()("plugin", po::value<std::vector<std::string>>()->value_name("FILE"),
+                "loads a shared library with strategies of its own (strategies/README.md)");
+}
+
+void load_plugins(const Options& options) {
+  for (const std::string& file : options.list("plugin")) sim::load_plugin(file);
 }
 
 unsigned thread_count(const Options& options) {

@@ -101,7 +101,9 @@ int run_command(const Arguments& arguments) {
   options.add()("force,f", "replaces the result file if it exists");
   options.add()("json", "prints the comparison as one JSON object a line");
   options.add()("quiet,q", "prints nothing but warnings and faults");
+  add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
+  load_plugins(options);
 
   const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
   const std::string path =

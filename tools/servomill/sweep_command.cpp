@@ -127,7 +127,9 @@ int sweep_command(const Arguments& arguments) {
                   "stopped or the input was refused; their rows say why.",
                   "SCENARIO.toml");
   add_options(options);
+  add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
+  load_plugins(options);
 
   const sim::Sweep sweep(options.word(), options.list("set"));
   const sim::Selection selection = selection_of(options, sweep);

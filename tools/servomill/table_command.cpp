@@ -250,7 +250,9 @@ int table_command(const Arguments& arguments) {
                 "changes a key of the scenario or of the machine file, as for servomill run");
   options.add()("force,f", "replaces files of the same names");
   options.add()("quiet,q", "prints nothing but faults");
+  add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
+  load_plugins(options);
   if (!options.has("output") || options.get<std::string>("output").empty()) {
     throw InputError({"servomill table"}, "needs the name of a folder: -o FOLDER");
   }

@@ -1,0 +1,14 @@
+#include "plant/vocabulary/checksum.h"
+
+#include <boost/crc.hpp>
+
+namespace servomill {
+
+std::uint64_t crc64(std::string_view bytes) {
+  constexpr std::uint64_t kPolynomial = 0x42F0E1EBA9EA3693;
+  boost::crc_optimal<64, kPolynomial, ~std::uint64_t{0}, ~std::uint64_t{0}, true, true> crc;
+  crc.process_bytes(bytes.data(), bytes.size());
+  return crc.checksum();
+}
+
+}  // namespace servomill

@@ -1,0 +1,66 @@
+#include "sim/input/plugins.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sim/config/quantity.h"
+#include "sim/config/reader.h"
+#include "sim/input/scenario_document.h"
+#include "strategies/plugin_file.h"
+#include "strategies/plugin_watch.h"
+
+namespace servomill::sim {
+namespace {
+
+// In resolved documents: a result is data, and must not have code run that it names.
+constexpr std::string_view kLoaded = "loaded:";
+
+// A number without a unit that is known would be taken as one in SI.
+void check_units(const strategies::Entry& entry, const std::string& file) {
+  for (const ParameterSpec& one : entry.parameters) {
+    if (one.unit.empty() || parse_unit(one.unit).unit) continue;
+    throw InputError({file}, fmt::format("strategy {}: parameter {} has the unit '{}', which is "
+                                         "not known",
+                                         entry.name, one.name, one.unit));
+  }
+}
+
+void load(const std::string& file, const Place& at) {
+  strategies::load_plugin(file, at);
+  for (const strategies::LoadedPlugin& plugin : strategies::loaded_plugins()) {
+    for (const strategies::Entry* entry : plugin.entries) check_units(*entry, plugin.file);
+  }
+}
+
+}  // namespace
+
+void load_plugin(const std::string& file) { load(file, {}); }
+
+void on_plugin_failure(std::function<void(const std::string& why)> then) {
+  strategies::on_plugin_failure(std::move(then));
+}
+
+std::string read_plugins(Reader& root) {
+  const Place at = root.place("plugins");
+  for (const std::string& name : root.texts_or("plugins", {})) {
+    if (!name.starts_with(kLoaded)) {
+      load(beside(at, name), at);
+    } else if (const std::string file = name.substr(kLoaded.size());
+               !strategies::is_loaded_by_name(file)) {
+      throw InputError(
+          at, fmt::format("was computed with the plug-in {}: pass it with --plugin", file));
+    }
+  }
+  std::vector<std::string> files;
+  for (const strategies::LoadedPlugin& one : strategies::loaded_plugins()) {
+    const std::filesystem::path file = one.file;
+    files.push_back(quoted_text(std::string(kLoaded) + file.filename().string()));
+  }
+  return files.empty() ? "" : fmt::format("plugins=[{}]", fmt::join(files, ", "));
+}
+
+}  // namespace servomill::sim

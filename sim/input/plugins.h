@@ -1,0 +1,25 @@
+/// Plug-ins that the user names: on the command line, and in scenarios.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace servomill::sim {
+
+class Reader;
+
+/// Loads a shared library with strategies; scenarios that are read from now on find them.
+/// @throws InputError as strategies::load_plugin does
+void load_plugin(const std::string& file);
+
+/// What is to be done, on a thread of its own, with a sentence about a plug-in that did not return
+/// or crashed, before the process ends with status 3.
+void on_plugin_failure(std::function<void(const std::string& why)> then);
+
+/// Loads those of the key `plugins` of a scenario. A resolved document has the names of the files
+/// alone, and those must have been loaded: reading a result runs no code that it names.
+/// @return what the resolved document has of all that are loaded: "plugins=[...]"; or empty
+/// @throws InputError
+std::string read_plugins(Reader& root);
+
+}  // namespace servomill::sim

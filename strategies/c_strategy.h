@@ -1,0 +1,27 @@
+/// Strategies in C (strategies/plugin_c.h) as entries like those of the tree.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "strategies/entry.h"
+#include "strategies/plugin_c.h"
+
+namespace servomill::strategies {
+
+/// An entry with the texts and keys that it refers to.
+struct OwnedEntry {
+  std::string label;  // "strategy ramp (libramp.so)"
+  std::vector<ParameterSpec> parameters;
+  Entry entry;
+};
+
+/// Why a strategy cannot be used as it is declared; empty if it can.
+std::string wrong_with(const servomill_strategy& declared);
+
+/// @param file  of the plug-in
+/// @pre wrong_with(declared) is empty; it outlives the entry, as does the entry all runs
+std::unique_ptr<OwnedEntry> entry_of(const servomill_strategy& declared, const std::string& file);
+
+}  // namespace servomill::strategies

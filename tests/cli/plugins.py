@@ -1,0 +1,191 @@
+#!/usr/bin/python3
+"""Strategies out of the tree: loaded, run, refused, and what becomes of one that goes wrong.
+
+    plugins.py SERVOMILL FOLDER_OF_PLUGINS
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+PLUGINS = os.path.abspath(sys.argv.pop(2))
+SERVOMILL = os.path.abspath(sys.argv.pop(1))
+PATIENCE = 60  # s, far more than anything here takes
+SLOPE = 5000.0  # um/m
+
+STRATEGY = """
+[[case]]
+name = "{type}"
+[[case.strategy]]
+type = "{type}"
+{keys}
+"""
+QUANTITY = """
+[[quantity]]
+name = "trajectory_difference"
+axis = "Y"
+base = "nominal"
+cases = {cases}
+"""
+
+
+def library(name):
+    return os.path.join(PLUGINS, name + ".so")
+
+
+def scenario_text(*strategies, head=""):
+    """The scenario of the gallery with these strategies, (type, keys), in place of its table."""
+    with open(os.path.join(HERE, "gallery", "scenario.toml"), encoding="utf-8") as file:
+        text = file.read()
+    text = text[:text.index('[[case]]\nname = "table"')]
+    text += "".join(STRATEGY.format(type=name, keys=keys) for name, keys in strategies)
+    return head + text + QUANTITY.format(cases=json.dumps([name for name, _ in strategies]))
+
+
+class Plugins(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        for name in ("machine.toml", "part.ngc"):
+            shutil.copy(os.path.join(HERE, "gallery", name), self.folder)
+
+    def write(self, text, name="s.toml"):
+        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def servomill(self, *arguments, status=0):
+        done = subprocess.run([SERVOMILL, *arguments], cwd=self.folder, capture_output=True, text=True,
+                              timeout=PATIENCE, check=False)
+        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+        return done
+
+    def run_ramp(self, output, *more, head="", keys=f"slope_um_per_m = {SLOPE}"):
+        self.write(scenario_text(("smooth_ramp", keys), head=head))
+        return self.servomill("run", "s.toml", "-o", output, "--json", *more)
+
+    def open(self, name):
+        return h5py.File(os.path.join(self.folder, name))
+
+    def test_a_virtual_displacement_moves_the_axis_by_its_negative(self):
+        self.run_ramp("out.h5", "--plugin", library("ramp"))
+        with self.open("out.h5") as file:
+            for name, slope in (("nominal", 0.0), ("smooth_ramp", SLOPE * 1e-6)):
+                x, y = file[f"cases/{name}/servo/meas_linear"][-1, :2]  # at rest at X10 Y5
+                self.assertAlmostEqual(x, 10.0, delta=1e-4)
+                self.assertAlmostEqual(y, 5.0 - slope * x, delta=1e-4)
+            self.assertRegex(file.attrs["servomill_build"], r"^\S+ with ramp 1\.2 \([0-9a-f]{16}\)$")
+
+    def test_an_offset_follows_the_identified_model(self):
+        self.write(scenario_text(("identified", 'model = "imposed"\nsign = "generate"')))
+        self.servomill("run", "s.toml", "-o", "out.h5", "--plugin", library("ramp"))
+        with self.open("out.h5") as file:
+            x, y = file["cases/identified/servo/meas_linear"][-1, :2]
+        self.assertAlmostEqual(y - 5.0, 0.150 * np.sin(2.0 * np.pi * x / 62.0), delta=1e-3)  # EYX
+
+    def test_the_scenario_can_name_it(self):
+        by_option = self.run_ramp("option.h5", "--plugin", library("ramp"))
+        by_key = self.run_ramp("key.h5", head=f'plugins = ["{library("ramp")}"]\n')
+        self.assertEqual(by_option.stdout, by_key.stdout)
+        with self.open("option.h5") as one, self.open("key.h5") as other:
+            for signal, data in one["cases/smooth_ramp/servo"].items():
+                self.assertEqual(data[:].tobytes(), other["cases/smooth_ramp/servo/" + signal][:].tobytes(), signal)
+
+    def test_a_result_is_compared_with_the_plugin_that_the_user_names(self):
+        for output, printed in (("key.h5", self.run_ramp("key.h5", head=f'plugins = ["{library("ramp")}"]\n').stdout),
+                                ("option.h5", self.run_ramp("option.h5", "--plugin", library("ramp")).stdout)):
+            refused = self.servomill("compare", output, status=2).stderr
+            self.assertIn("was computed with the plug-in ramp.so: pass it with --plugin", refused)
+            done = self.servomill("compare", output, "--json", "--plugin", library("ramp"))
+            self.assertEqual(done.stdout, printed)
+
+    def test_runs_in_lockstep_give_the_same_bits(self):
+        slopes = [100.0 * n for n in range(1, 12)]  # more than eight lanes
+        self.write(scenario_text(("smooth_ramp", "")))
+        sweep = f"sweep={{case.smooth_ramp.strategy.slope_um_per_m={slopes}}}"
+        self.servomill("sweep", "s.toml", "-q", "-o", "sweep.h5", "--plugin", library("ramp"), "--set", sweep)
+        with self.open("sweep.h5") as file:
+            values = [data[:] for name, data in file["sweep"].items() if "trajectory_difference" in name]
+        self.assertEqual(len(values), 1)
+        for slope, value in list(zip(slopes, values[0]))[::5]:
+            row = json.loads(self.run_ramp(f"{slope}.h5", "--plugin", library("ramp"),
+                                           keys=f"slope_um_per_m = {slope}").stdout)
+            self.assertEqual(row["value"], float(f"{value:.9g}"), slope)
+
+    def test_it_is_listed_with_its_keys(self):
+        listed = self.servomill("list", "strategies", "--plugin", library("ramp")).stdout
+        self.assertIn("smooth_ramp: displaces Y in proportion to X\n"
+                      "  slope_um_per_m       of the displacement of Y over X [um/m; default 100]\n", listed)
+
+    def test_its_keys_are_checked(self):
+        for keys, message in (("slop_um_per_m = 1.0", "did you mean 'slope_um_per_m'?"),
+                              ("time_constant_ms = 0.0", "must be >= 0.001")):
+            self.write(scenario_text(("smooth_ramp", keys)))
+            self.assertIn(message, self.servomill("check", "s.toml", "--plugin", library("ramp"), status=2).stderr)
+
+    def test_without_it_the_strategy_is_unknown(self):
+        self.write(scenario_text(("smooth_ramp", "")))
+        self.assertIn("must be one of exact, feedback", self.servomill("check", "s.toml", status=2).stderr)
+
+    def test_refusals(self):
+        for name, why in (
+                ("other_version", "was built for version 999 of the plug-in interface, this program has 1; build it "
+                                  "again with the headers of this program"),
+                ("no_function", "is no plug-in: it does not export the function servomill_plugin_c_entry"),
+                ("taken_name", "its strategy 'feedback' has the name of another one"),
+                ("small_struct", "strategy 1: its struct has 8 bytes, expected at least 88")):
+            done = self.servomill("list", "strategies", "--plugin", library(name), status=2)
+            self.assertEqual(done.stderr, f"{library(name)}: error: {why}\n")
+        self.assertEqual(self.servomill("list", "strategies", "--plugin", "no.so", status=2).stderr,
+                         "no.so: error: No such file or directory\n")
+        done = self.servomill("list", "strategies", "--plugin", "part.ngc", status=2)
+        self.assertTrue(done.stderr.startswith("part.ngc: error: cannot be loaded: "), done.stderr)
+        self.write('plugins = ["no.so"]\n' + scenario_text())
+        self.assertEqual(self.servomill("check", "s.toml", status=2).stderr,
+                         "s.toml:1:11: error: no.so: No such file or directory\n")
+
+    def test_one_that_goes_wrong_ends_its_case_alone(self):
+        for name, why in (("refusing", "displacement: X is beyond 10 mm"),
+                          ("writing_nan", "displacement returned what is not finite"),
+                          ("offset_nan", "offset returned what is not finite"),
+                          ("turning", "displacement: displaces a rotary axis, and its declaration says that it does "
+                                      "not"),
+                          ("never_made", "settle: needs a licence")):
+            self.write(scenario_text((name, "")).replace("X10", "X20"))
+            self.write("G17 G21 G40 G49 G54 G90 G94\nG1 F1000 X5\nG1 X20\nM30\n", "part.ngc")
+            done = self.servomill("run", "s.toml", "-f", "-o", "out.h5", "--plugin", library("faulty"), status=1)
+            line = 2 if name == "never_made" else 3
+            time = "0.0000" if name == "never_made" else r"0\.\d{4}"
+            self.assertRegex(done.stdout, rf"{name} +stopped: strategy {name}: {why} at {time} s, line {line} of the "
+                                          "program\n")
+            with self.open("out.h5") as file:
+                self.assertEqual(file["cases/nominal"].attrs["finished"], 1)
+                self.assertEqual(file["cases/" + name].attrs["finished"], 0)
+
+    def test_one_that_hangs_or_crashes_ends_the_command_and_leaves_the_other_cases(self):
+        for name, why in (("hanging", "did not return within 10 s"), ("crashing", "crashed (signal 11)")):
+            self.write(scenario_text((name, ""), ("offset_nan", "")))
+            done = self.servomill("run", "s.toml", "-j", "2", "-o", name + ".h5", "--plugin", library("faulty"), status=3)
+            first, kept = done.stderr.splitlines()
+            self.assertEqual(first, f"strategy {name} ({library('faulty')}): the plug-in {why}")
+            self.assertTrue(kept.startswith(f"kept in {name}.h5"), kept)
+            partial = kept.removeprefix("kept in ").split(":")[0]
+            with self.open(partial) as file:
+                complete = sorted(file["cases"])
+            self.assertIn("nominal", complete)
+            self.assertNotIn(name, complete)
+            if name == "hanging":  # the case behind it had all the time
+                self.assertEqual(complete, ["nominal", "offset_nan"])
+            self.assertTrue(kept.endswith(f": complete cases {', '.join(complete)}; interrupted " +
+                                          ", ".join(sorted({name, "offset_nan"} - set(complete)))), kept)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,42 @@
+/* Libraries that are refused, one for each value of REFUSED. */
+#include <stddef.h>
+
+#include "strategies/plugin_c.h"
+
+#define OTHER_VERSION 1
+#define NO_FUNCTION 2
+#define TAKEN_NAME 3
+#define SMALL_STRUCT 4
+
+static const char* create(const servomill_setup* setup, void** state) {
+  (void)setup;
+  *state = NULL;
+  return NULL;
+}
+static const char* nothing(void* state, const servomill_reading* now, double d[SERVOMILL_JOINTS]) {
+  (void)state;
+  (void)now;
+  (void)d;
+  return NULL;
+}
+
+static const servomill_strategy kStrategy = {
+    .size = REFUSED == SMALL_STRUCT ? 8 : sizeof(servomill_strategy),
+    .name = REFUSED == TAKEN_NAME ? "feedback" : "refused",
+    .create = create,
+    .displacement = nothing};
+
+static const servomill_strategy* const kStrategies[] = {&kStrategy};
+static const servomill_plugin_c kPlugin = {
+    .abi = REFUSED == OTHER_VERSION ? 999 : SERVOMILL_PLUGIN_ABI,
+    .size = sizeof(servomill_plugin_c),
+    .name = "refused",
+    .version = "0",
+    .strategies = kStrategies,
+    .strategy_count = 1};
+
+#if REFUSED == NO_FUNCTION
+#define servomill_plugin_c_entry another_function
+#endif
+const servomill_plugin_c* servomill_plugin_c_entry(void);
+const servomill_plugin_c* servomill_plugin_c_entry(void) { return &kPlugin; }
