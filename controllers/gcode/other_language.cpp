@@ -122,7 +122,9 @@ std::string other_language(std::string_view line, int column) {
   const bool is_smoothness = line.find("G187") != line.npos || line.find("g187") != line.npos;
   if (column > 0 && !is_smoothness && at + 1 < line.size() && upper(line[at]) == 'E' &&
       (is_digit(line[at + 1]) || line[at + 1] == '-' || line[at + 1] == '.')) {
-    return "an E word feeds the extruder of a printer; programs for milling are read here";
+    return "an E word feeds the extruder of a printer, or sets the generator of wire EDM; programs "
+           "for "
+           "milling are read here";
   }
   return {};
 }

@@ -26,7 +26,8 @@ ToolControl Interpreter::Machine::tool_control_of(int code) const {
   }
   if (code == 434) return ToolControl::rotary_axes;
   if (!setup_.machine) {
-    fail(column, "G43.5: where the rotary axes go depends on the machine, and none is given");
+    fail(column,
+         "G43.5: where the rotary axes go depends on the machine, and none is given (--machine)");
   }
   return ToolControl::tool_axis;
 }
@@ -113,7 +114,8 @@ void Interpreter::Machine::orient_tool() {
     fail(request().motion.column, "G53.1 must stand without motion in its block");
   }
   if (!setup_.machine) {
-    fail(column, "G53.1: where the rotary axes go depends on the machine, and none is given");
+    fail(column,
+         "G53.1: where the rotary axes go depends on the machine, and none is given (--machine)");
   }
   if (setup_.machine->number_of_rotary_axes() == 0) {
     fail(column, "G53.1: the machine has no rotary axis");

@@ -70,6 +70,11 @@ void ReadingStep::machine_coordinates() {
     memory.lone_G53_line = 0;
     return;
   }
+  if (words.has_axis() && is_incremental()) {
+    fail(code->column,
+         "G53 under G91: a place of the machine (LinuxCNC refuses it), or a distance (Mitsubishi "
+         "M700V p. 508); write G90");
+  }
   if (words.has_axis()) return;
   if (!has_work_offset()) {
     memory.lone_G53_line = block_.line;

@@ -133,7 +133,7 @@ const Refusal kRefusals[] = {
     {"PLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX\n",
      "t.h:4:1: error: read as \"G53.1\": G53.1: where the rotary axes go depends on the machine, "
      "and "
-     "none is given"},
+     "none is given (--machine)"},
     {"L M128\nL X+1 RL F1\n", "t.h:5:1: error: RL and RR with M128; end it with M129"},
     {"L M128\nL Z+1 FMAX M91\n", "t.h:5:1: error: M91 with M128; end it with M129: [530] p. 290"},
     {"L C+0 FMAX\nL C+190 FMAX\n",

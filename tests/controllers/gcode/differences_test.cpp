@@ -210,6 +210,17 @@ TEST(WordDifferences, AreWarnedOfInALoneG53BeforeAMoveWithoutAWorkOffset) {
   EXPECT_TRUE(warnings_of("G53 G0\nG55\nX1.\nG0 G53 G54 G90\nX1.\nM2\n").empty());
 }
 
+TEST(WordDifferences, AreRefusedInG53UnderG91) {
+  const std::string refusal =
+      "G53 under G91: a place of the machine (LinuxCNC refuses it), or a distance (Mitsubishi "
+      "M700V "
+      "p. 508); write G90";
+  EXPECT_EQ(moves_of("G91\nG53 G0 Z0\nM2\n", setup_for(Reader::any)),
+            "p.nc:2:1: error: " + refusal);
+  EXPECT_EQ(moves_of("G91\nG90 G53 G0 Z0.\nM2\n", setup_for(Reader::haas)),
+            moves_of("G53 G0 Z0\nM2\n", setup_for(Reader::linuxcnc)));
+}
+
 // A function of the builder must not be lost where the program is written again.
 TEST(MachineFunctions, BecomeCommentsWithAWarning) {
   ProgramSetup setup = setup_for(Reader::any);

@@ -396,8 +396,8 @@ TEST(Reader, OtherLanguagesAreRefusedByName) {
             "p.nc:1:6: error: 'CYCLE' is a word of Siemens' language; programs in G-code are read "
             "here");
   EXPECT_EQ(refusal("G1 X1 F100 E0.5\nM2\n"),
-            "p.nc:1:12: error: an E word feeds the extruder of a printer; programs for milling are "
-            "read here");
+            "p.nc:1:12: error: an E word feeds the extruder of a printer, or sets the generator of "
+            "wire EDM; programs for milling are read here");
 }
 
 TEST(TolerantLine, KeepsEveryColumn) {

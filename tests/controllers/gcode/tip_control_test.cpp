@@ -289,10 +289,10 @@ TEST(TipControlErrors, WithoutAMachine) {
       "is given");
   EXPECT_EQ(message("G43.5 H1"),
             "p.nc:1:1: error: G43.5: where the rotary axes go depends on the machine, and none is "
-            "given");
+            "given (--machine)");
   EXPECT_EQ(message("G68.2 J10\nG53.1"),
             "p.nc:2:1: error: G53.1: where the rotary axes go depends on the machine, and none is "
-            "given");
+            "given (--machine)");
 }
 
 TEST(TipControlErrors, ABlockWithAnErrorChangesNothing) {
