@@ -30,7 +30,7 @@ struct ProgramInputs {
   std::vector<std::string> ignored_codes = {};       // "M82", of the machine's builder
   bool block_delete = false;                         // leave out lines that start with '/'
   long most_jumps = 1'000'000;                       // loops turned and subroutines called
-  /// Of all runs of one program; nullptr: each run makes its own.
+  /// Shared by the runs of one program; nullptr: each run makes its own.
   std::shared_ptr<controllers::SharedTrials> trials = {};
 };
 
