@@ -55,7 +55,7 @@ void error_at(const void* model, const double* Q, double* error) {
   std::copy_n(d.data(), 3, error);
 }
 
-// What a strategy was declared and made with; shared by its runs.
+// Declaration and parameters of a strategy; shared by its runs.
 struct Made {
   const servomill_strategy* declared;
   const char* label;

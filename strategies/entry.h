@@ -1,4 +1,4 @@
-/// What a strategy declares of itself: its name, its keys and what it can do.
+/// Declaration of a strategy: its name, its keys and what it can do.
 #pragma once
 
 #include <functional>

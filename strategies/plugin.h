@@ -10,7 +10,7 @@
 ///     constexpr auto kRamp = servomill::plugin::strategy<Ramp>("ramp", "displaces Y over X");
 ///     SERVOMILL_PLUGIN("my plug-in", "1.0", kRamp)
 ///
-/// What they throw ends the case with what() as the message.
+/// Exceptions of them end the case with what() as the message.
 #pragma once
 
 #include <algorithm>

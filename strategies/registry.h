@@ -15,7 +15,7 @@ std::span<const Entry> entries();
 /// The entry of that name, of the tree or of a plug-in (strategies/plugin_file.h); or nullptr.
 const Entry* find(std::string_view name);
 
-/// Of the tree and of plug-ins.
+/// Entries of the tree and of plug-ins.
 std::vector<std::string_view> names();
 
 }  // namespace servomill::strategies

@@ -1,4 +1,4 @@
-/// What every way of compensating a machine's geometric errors offers to a run.
+/// Interface of every way of compensating a machine's geometric errors to a run.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +21,7 @@ namespace servomill::strategies {
 /// them.
 enum class Sign : std::int8_t { generate = 1, correct = -1 };
 
-/// What a strategy believes and knows. Never the truth: the errors are an identified model.
+/// Knowledge of a strategy. Never the actual errors: its errors are an identified model.
 struct Belief {
   JointLayout layout;
   plant::VolumetricModel model;                    // machine and errors as identified
@@ -35,7 +35,7 @@ struct Belief {
                                // NaN unless the entry reads_gains
 };
 
-/// What a strategy may see of a run at one instant.
+/// Reading of a run at one instant, as a strategy may see it.
 struct Reading {
   double t = 0.0;                   // s, since the start of the program
   double s = 0.0;                   // m, arc length on the path of the original program
@@ -60,7 +60,7 @@ class SetPointPart {
   virtual std::string_view failure() const { return {}; }
 };
 
-/// What the security blocks of a feedback did to the virtual displacement of one joint in one run.
+/// Saturation of the virtual displacement of one axis during one run.
 struct Saturation {
   int joint = 0;
   bool of_rate = false;  // its rate of change was held back, else its size
@@ -103,7 +103,7 @@ class FeedbackPart {
     (void)lane;
     return {};
   }
-  /// Where one run has been saturated since it was settled; in the order of the joints.
+  /// Saturations of one run since it was settled; in the order of the joints.
   virtual std::vector<Saturation> saturations(std::size_t lane) const {
     (void)lane;
     return {};
@@ -116,13 +116,13 @@ class FeedbackPart {
   }
 };
 
-/// What correcting leaves: true minus ideal pose, believed.
+/// Residual of a correction: true minus ideal pose by the identified model.
 struct Leftover {
   double tip = 0.0;   // m
   double axis = 0.0;  // rad, of the direction of the tool; turns about itself do not count
 };
 
-/// Where a compensation table has no points any more.
+/// Position at which a compensation table ends.
 struct BeyondTable {
   int joint = 0;     // over which it runs
   double end = 0.0;  // m, its first or last point
@@ -137,7 +137,7 @@ class Strategy {
   /// Rewrites the moves of a program; the line and arc length of the original are carried over.
   virtual bool rewrites() const { return false; }
   virtual std::vector<Move> rewrite(const std::vector<Move>& moves) const { return moves; }
-  /// Whether it can rewrite moves under tool-centre-point control, with the tool of Belief::p_ST.
+  /// True if it can rewrite moves under TCP control, with the tool of Belief::p_ST.
   virtual bool rewrites_tip_moves() const { return false; }
 
   virtual std::unique_ptr<SetPointPart> set_point() const { return nullptr; }
@@ -147,11 +147,11 @@ class Strategy {
     return {};
   }
 
-  /// Whether it has a part that displaces the feedback.
+  /// True if it has a part that displaces the feedback.
   virtual bool displaces_feedback() const { return false; }
-  /// Whether any of its parts displaces rotary axes, too.
+  /// True if any of its parts displaces rotary axes, too.
   virtual bool displaces_rotary() const { return false; }
-  /// What stays of the errors that it corrects because no axis that it displaces can take it there,
+  /// Residual of the errors that it corrects because no axis that it displaces can remove it,
   /// lags and steps of its own left aside; nullopt if it corrects nothing.
   /// @param Q  programmed position (5; m, rad)
   virtual std::optional<Leftover> uncorrectable(const Joints& Q) const {

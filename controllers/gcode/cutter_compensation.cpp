@@ -85,7 +85,7 @@ Corner line_to_line(const Cutter& cutter, const Vector2d& tool, const Vector2d& 
   return {CornerKind::concave, tool - retreat * direction, {}};
 }
 
-// Where a line and a circle of the centre of the tool meet.
+// Intersection of a line and a circle of the tool centre.
 // @param height    of the line over the centre of the circle, towards `up` (m)
 // @param forwards  which of the two points, along the line
 std::optional<Vector2d> meeting(const Vector2d& centre, double radius, double height,

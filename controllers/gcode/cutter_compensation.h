@@ -86,7 +86,7 @@ Corner corner(const Cutter& cutter, const Eigen::Vector2d& tool, const HeldMove&
 /// The point beside the begin of a programmed move, `radius` away from it.
 Eigen::Vector2d point_beside_begin(const Cutter& cutter, const PlaneMove& move);
 
-/// What `move_end` may find.
+/// Result of `move_end`.
 struct EndTolerance {
   double radius;  // m, how much the radius of an arc may change
   double sweep;   // rad, how much an arc may become longer

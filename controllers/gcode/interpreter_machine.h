@@ -239,7 +239,7 @@ class Interpreter::Machine {
   // what is saved and restored, one level for each call of a subroutine
   void saved_modes();  // M70 M71 M72 M73
   SavedModes save_modal_state() const;
-  /// Whether anything had to be done.
+  /// True if anything had to be done.
   bool restore_modal_state(const SavedModes& saved);
   bool restore_m_codes(const SavedModes& saved, const SavedModes& now);
   bool restore_g_codes(const SavedModes& saved, const SavedModes& now);
@@ -330,7 +330,7 @@ class Interpreter::Machine {
   AxisWords programmed_end() const;
   AxisWords machine_end() const;
   Eigen::Vector2d polar_end(const Eigen::Vector2d& begin) const;
-  /// Of a move: m/s or rad/s; under G95 a revolution.
+  /// Feed of a move: m/s or rad/s; under G95 a revolution.
   double move_feed(double length, double angle) const;
   void require_feed() const;
 

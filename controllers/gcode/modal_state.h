@@ -1,4 +1,4 @@
-/// What the interpreter remembers from block to block, parameters aside.
+/// Modal state of the interpreter from block to block, parameters aside.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,14 +34,14 @@ struct Compensation {
   HeldMove last_front;                   // of the queue before this one
   std::optional<Eigen::Vector2d> begin;  // where the front of the queue begins, if known
   bool refuses_arc = false;              // G40, and no straight move since
-  /// Where G40 has left the tool, as `to_account`; until the next motion. M6 goes on from there.
+  /// Place of the tool after G40, as `to_account`; until the next motion. M6 continues from there.
   std::optional<AxisWords> left_at;
 
   bool acts() const { return is_on && cutter.radius > 0.0; }
   const HeldMove& front() const { return queue.empty() ? last_front : queue.front().path; }
 };
 
-/// Where work coordinates lie in others, and how X and Y are turned.
+/// Origin of work coordinates in other ones, and the rotation of X and Y.
 struct WorkZero {
   AxisWords origin = AxisWords::Zero();  // m, rad
   double cos_rotation = 1.0, sin_rotation = 0.0;
@@ -112,26 +112,26 @@ struct ModalState {
   int second_axis() const { return (normal_axis + 2) % 3; }
   Eigen::Vector2d in_plane(const AxisWords& p) const { return {p[first_axis()], p[second_axis()]}; }
   AxisWords with_plane(AxisWords p, const Eigen::Vector2d& in_plane) const;
-  /// Where the program is: `position` but for cutter compensation.
+  /// Programmed position: `position` but for cutter compensation.
   AxisWords programmed() const {
     return compensation.is_entered ? with_plane(position, compensation.programmed) : position;
   }
-  /// Whether X Y Z are the tip in the workpiece.
+  /// True if X Y Z are the tip in the workpiece.
   bool controls_tip() const { return tool_control != ToolControl::none || plane != nullptr; }
   /// Tip in the spindle nose, m.
   Eigen::Vector3d p_ST() const { return -tool_offset.head<3>(); }
-  /// Where the tilted work plane, or work coordinates without one, lie in the workpiece.
+  /// Frame of the tilted work plane, or of work coordinates without one, in the workpiece.
   WorkPlane plane_in_workpiece() const;
   /// Direction in W of one that the program gives.
   Eigen::Vector3d direction_in_workpiece(const Eigen::Vector3d& v) const;
 
-  /// Where work coordinates lie in those of the machine, tool offset and tilted plane left out.
+  /// Frame of work coordinates in machine coordinates, without tool offset and tilted plane.
   WorkZero zero() const { return {rotated(shift) + work_offset, cos_rotation, sin_rotation}; }
 
   AxisWords rotated(const AxisWords& v) const;
   AxisWords unrotated(const AxisWords& v) const;
 
-  /// Where the machine is when the work coordinates are these.
+  /// Machine coordinates of these work coordinates.
   AxisWords to_machine(const AxisWords& work) const;
   /// The same with `tool_account`, and back.
   AxisWords to_account(const AxisWords& work) const;

@@ -1,4 +1,4 @@
-/// What a program finds when it begins.
+/// Settings of the control at the start of a program.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ struct SharedTrials {
   std::shared_ptr<const PossibleReaders> found;
 };
 
-/// What the machine knows before the first block.
+/// Data of the machine before the first block.
 struct ProgramSetup {
   std::map<int, double> stored;  // of the parameter file, in mm and degrees
   /// "#101", "#<name>" or "#<_name>", in program terms (whatever unit the program gives them).

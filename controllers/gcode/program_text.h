@@ -44,7 +44,7 @@ inline bool is_blank(std::string_view line) {
 /// mark (UTF-8) at the begin is left out.
 class ProgramText {
  public:
-  /// Where a line begins.
+  /// Beginning of a line.
   struct Mark {
     std::uint64_t offset = 0;  // in bytes
     int line = 0;              // number of the line before
@@ -70,7 +70,7 @@ class ProgramText {
   /// 32 KiB only so much.
   /// @throws InputError if the file can no longer be read, or a line never ends
   bool next(std::string_view& line);
-  /// Of the line handed out last, from 1.
+  /// Number of the line handed out last, from 1.
   int number() const { return number_; }
   const std::string& file() const { return file_; }
   /// True for lines of a `LineSource`.
@@ -117,14 +117,14 @@ class ProgramText {
   int column_ = 0;  // of the line of a source
 };
 
-/// What a '%' means where it stands.
+/// Meaning of a '%' by its place.
 enum class Percent { start, end, misplaced };
 
 class PercentRule {
  public:
   void saw_line() { first_ = false; }
   bool saw_nothing() const { return first_; }
-  /// Whether the program began with a '%'.
+  /// True if the program began with a '%'.
   bool is_framed() const { return open_; }
   Percent saw_percent() {
     const Percent meaning = first_ ? Percent::start : open_ ? Percent::end : Percent::misplaced;

@@ -16,7 +16,7 @@ constexpr double kLeaning = 1e-4;      // rad of the tool axis off Z of a tilted
 
 }  // namespace
 
-// What the codes of the group of G43 leave in force.
+// Tool length compensation that the codes of the group of G43 leave in force.
 ToolControl Interpreter::Machine::tool_control_of(int code) const {
   if (code != 434 && code != kVectorControl) return ToolControl::none;
   const int column = request().of(Group::g_tool_length).column;
@@ -32,7 +32,7 @@ ToolControl Interpreter::Machine::tool_control_of(int code) const {
   return ToolControl::tool_axis;
 }
 
-// Where no machine is known, tip and axes differ by the tool if nothing is turned.
+// Without a known machine, tip and axes differ by the tool as long as nothing is rotated.
 std::string Interpreter::Machine::rotary_not_at_zero(const AxisWords& machine) const {
   for (int i = kLinearJoints; i < kAxisWords; ++i) {
     if (machine[i] == 0.0) continue;

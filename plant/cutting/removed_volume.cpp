@@ -250,7 +250,7 @@ struct RemovedVolume::Advance {
   std::uint32_t step = 0;
   std::vector<Stretch> beyond;  // not connected yet
 
-  // What reaches so far makes a difference. The start is to be found to be inside first.
+  // Bodies that reach this far matter. The start must be found to be inside first.
   bool wants(double bound) const { return bound >= (inside ? end + kNothing : 0.0); }
 
   bool joins(const Stretch& stretch) {

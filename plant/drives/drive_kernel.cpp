@@ -6,7 +6,7 @@
 #include "plant/drives/drive_pack.h"
 #include "plant/drives/sub_step.h"
 
-// Where eight numbers are one register, what is called is small enough to be put in its place.
+// With eight numbers in one register, the called functions are small enough to be inlined.
 #ifdef __AVX512F__
 #define SERVOMILL_FLATTEN [[gnu::flatten]]
 #else

@@ -25,7 +25,7 @@ class FeedbackLanes {
   /// A run has the feedback of a strategy from now on, and displacements of 0 (5; m, rad).
   /// @param model_period  s, of all runs
   void add(std::size_t run, const strategies::Strategy& strategy, double model_period);
-  /// What the NC of a run commands from now on, for strategies that look.
+  /// Sets the command of the NC of a run from now on, for strategies that observe it.
   void set_reference(std::size_t run, const AxisSetPoint& set, double s);
   /// Settles at standstill in Q_meas; d of all joints (5; m, rad).
   Joints settle(std::size_t run, const Joints& Q_meas);

@@ -15,7 +15,7 @@ namespace servomill::sim {
 struct ProbedFeature;
 struct QuantitySpec;
 
-/// What is known of one case that ran.
+/// Data of one case that ran.
 struct CaseData {
   std::string name;
   const Series* servo = nullptr;

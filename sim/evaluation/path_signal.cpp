@@ -32,7 +32,7 @@ struct PathSignal::Parts {
     }
   }
 
-  // What rotary axes turn from one row to another.
+  // Rotation of the rotary axes from one row to another.
   double turn(std::size_t from, std::size_t to) const {
     double sum = 0.0;
     for (const AtRow& ref : rotary) sum += std::abs(ref(to) - ref(from));

@@ -20,7 +20,7 @@ struct PathSample {
 /// Tells if there is a PathSignal of a quantity: QuantityEntry::signal.
 bool has_path_signal(std::string_view quantity);
 
-/// What the statistic of a quantity is taken over, sample by sample; nothing is kept of them.
+/// Samples over which the statistic of a quantity is taken, one by one; nothing is kept of them.
 class PathSignal {
  public:
   /// @param one, base  the recordings must outlive it; base: the case it is compared with, nullptr

@@ -59,7 +59,7 @@ std::vector<Vector2d> along_line(const Points& points) {
   return out;
 }
 
-// Whether points around a circle leave no gap of half a turn or more.
+// True if points around a circle leave no gap of half a turn or more.
 bool go_around(const Points& points) {
   const Feature& round = points.feature->feature;
   std::vector<double> angles;
@@ -108,7 +108,7 @@ double mean_position(const Points& points, int axis) {
   return 0.5 * (sum[0] / count[0] + sum[1] / count[1]);
 }
 
-// Where a feature points, as it should be and as it is.
+// Direction of a feature, nominal and measured.
 struct Direction {
   Vector3d nominal, actual;
 };

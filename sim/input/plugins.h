@@ -12,8 +12,8 @@ class Reader;
 /// @throws InputError as strategies::load_plugin does
 void load_plugin(const std::string& file);
 
-/// What is to be done, on a thread of its own, with a sentence about a plug-in that did not return
-/// or crashed, before the process ends with status 3.
+/// Sets the function that receives, on a thread of its own, a sentence about a plug-in that did not
+/// return or crashed, before the process ends with status 3.
 void on_plugin_failure(std::function<void(const std::string& why)> then);
 
 /// Loads those of the key `plugins` of a scenario. A resolved document has the names of the files

@@ -36,7 +36,7 @@ void warn_of(const MachineSettings& machine, const std::string& path,
   }
 }
 
-// What the cases' programs hold beyond LinuxCNC's rules; the cases mostly run the same one.
+// Uses of rules beyond LinuxCNC's in the cases' programs; the cases mostly run the same one.
 void add_program_warnings(const Scenario& scenario, std::vector<Fault>& warnings) {
   for (const CaseSpec& spec : scenario.cases) {
     std::vector<Fault> found;

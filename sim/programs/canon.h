@@ -14,7 +14,7 @@
 
 namespace servomill::sim {
 
-/// What a program needs beside its text.
+/// Inputs of a program next to its text.
 struct ProgramInputs {
   std::string tool_table;                            // file in LinuxCNC's format, or empty
   std::vector<std::string> parameters;               // "#101=1394"
@@ -39,7 +39,7 @@ struct ProgramInputs {
 void choose_reader(const ProgramInputs& inputs, const NcSettings& nc,
                    controllers::ProgramSetup& setup);
 
-/// What the control knows before the program runs.
+/// Settings of the control before the program runs.
 /// @throws InputError
 controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
                                         const std::string& program_file);

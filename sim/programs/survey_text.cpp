@@ -232,7 +232,7 @@ std::string number_or_null(const std::optional<double>& value, double unit) {
   return value ? fmt::format("{:.9g}", *value / unit) : "null";
 }
 
-// Where a list of lines is 0, the control starts with the word.
+// Line 0 in a list means that the control starts with the word.
 std::string uses_json(const std::vector<FirstUse>& uses) {
   std::vector<std::string> out;
   for (const FirstUse& use : uses) {

@@ -163,7 +163,7 @@ void DialectWriter::check_place(const Step& step, const AxisWords& on_grid) cons
   }
 }
 
-// Those that change, and of those without a known position all that the move names. A feed brings
+// Words of the axes that change, and of all named axes without a known position. A feed brings
 // back what a helix of Heidenhain's has left beside the grid; a rapid leaves it there.
 DialectWriter::Words DialectWriter::words_of(const Step& step, const AxisWords& target,
                                              const AxisWords& at) const {

@@ -173,7 +173,7 @@ class Fanuc final : public IsoDialect {
   }
 
  private:
-  // What no block can say of the way to its end.
+  // Motions to an end point that no block can express.
   void assume_ways(const DialectMotion& motion) {
     // B-63844EN/02 p. 48
     if (motion.may_leave_its_line()) {

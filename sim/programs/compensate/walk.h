@@ -66,7 +66,7 @@ class Walk {
   void arrive(const Step& step, const AxisWords& machine);
   /// From here on no position is known: the tool has been changed, or the operator may have jogged.
   void forget_positions();
-  /// Where the program has an axis, whatever tool changes and stops have made of it; machine
+  /// Programmed place of an axis, whatever tool changes and stops have made of it; machine
   /// coordinate. nullopt: nothing has named it
   std::optional<double> programmed(Axis axis) const;
   /// The output brings an axis back there.
@@ -75,7 +75,7 @@ class Walk {
   /// Z ends where LinuxCNC has stored a place, which is another place on other controls.
   void arrive_elsewhere(const Move& move);
 
-  /// Where the output stands (6; machine coordinates).
+  /// Position of the output (6; machine coordinates).
   const AxisWords& out() const { return out_; }
   bool has(Axis axis) const { return correction_.layout().joint_of(axis).has_value(); }
   bool is_known(Axis axis) const { return known_[static_cast<std::size_t>(index_of(axis))]; }
@@ -115,10 +115,10 @@ class Walk {
 inline constexpr std::string_view kWriteAxes =
     "let the CAM system, or servomill post, write positions of the axes";
 
-/// Whether O-words skip the line.
+/// True if O-words skip the line.
 bool is_skipped(const controllers::ExecutedBlock& block);
 
-/// Whether the block goes to a place of the machine.
+/// True if the block moves to a machine position.
 bool is_place_of_machine(const controllers::ExecutedBlock& block);
 
 }  // namespace servomill::sim

@@ -8,39 +8,14 @@
 #include <algorithm>
 #include <set>
 
-#include "controllers/gcode/canon_json.h"
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/line_reader.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "tests/controllers/gcode/tolerant_reading.h"
 
 namespace servomill::controllers::program_reader_test {
 namespace {
-
-struct Read {
-  std::string moves, refusal;
-  std::vector<Fault> warnings;
-};
-
-Read read(const std::string& text, Reader reader, ProgramSetup setup = {}) {
-  Read out;
-  setup.reader = reader;
-  if (reader != Reader::linuxcnc && setup.decimal_point == DecimalPoint::unset) {
-    setup.decimal_point = DecimalPoint::calculator;
-  }
-  try {
-    Interpreter interpreter(text, "p.nc", setup);
-    while (const Move* move = interpreter.next()) out.moves += canon_json(*move) + "\n";
-    out.warnings = interpreter.warnings();
-  } catch (const InputError& error) {
-    out.refusal = error.what();
-  }
-  return out;
-}
-
-std::string refusal(const std::string& text, Reader reader = Reader::any) {
-  return read(text, reader).refusal;
-}
 
 struct Example {
   ReaderRule rule;
@@ -230,7 +205,7 @@ TEST(ReaderRules, AreReadAsTheirPlainFormAndReportedOnce) {
   }
 }
 
-// What whoever rewrites programs gets to see is LinuxCNC's language.
+// Rewriters of programs get lines in LinuxCNC's language.
 TEST(ReaderRules, AreGivenOutAsLinesForLinuxCnc) {
   const std::set<ReaderRule> others = {
       ReaderRule::tool_without_table, ReaderRule::arc_radii,        ReaderRule::unknown_length,

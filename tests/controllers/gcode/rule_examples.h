@@ -26,7 +26,7 @@
 
 namespace servomill::controllers {
 
-/// What the user gives beside the program.
+/// Options that the user gives with the program.
 struct Given {
   bool has_tools = false;    // T1 10 mm long, diameter 2 mm; T2 20 mm, 4 mm
   bool has_homes = false;    // G28 X-10 Y-20 Z-30, G30 X-1 Y-2 Z-3
@@ -165,7 +165,7 @@ class Notation {
   int direction_ = 0;  // of the spindle
 };
 
-/// What a reader makes of a program.
+/// Reading of a program.
 struct Reading {
   std::string moves;  // or the refusal
   std::vector<Fault> warnings;

@@ -80,7 +80,7 @@ TEST(DifferenceExamples, MoveAsTheManualsSay) {
   }
 }
 
-// Of each reading that a reader or an option gives.
+// Each reading that a reader or an option gives.
 TEST(DifferenceExamples, CoverEveryReading) {
   const std::vector<DifferenceExample> all = difference_examples();
   for (const WordDifferenceEntry& entry : word_differences()) {

@@ -297,7 +297,7 @@ TEST(Compensate, TakesToolLengthsWithoutATable) {
   EXPECT_NE(without_header(trial.run().program), with_table);
 }
 
-// What the original leaves where it is stays: the correction of X by Y waits for the next feed.
+// Axes that the original does not move stay: the correction of X by Y waits for the next feed.
 TEST(Compensate, RapidsMoveNoAxisThatTheOriginalDoesNotMove) {
   Trial trial("G21 G90\nG0 X0 Y0 Z0\nG0 Y300\nG1 X1 F100\nM2\n");
   trial.request.error_file = written("skew.toml", "[errors.e]\nEC0Y = \"100 um/m\"\n");
