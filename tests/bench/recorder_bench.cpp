@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/records/output_file.h"
 #include "sim/records/series_writer.h"
 
 namespace servomill::sim {

@@ -16,6 +16,9 @@
 #include <new>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/records/input_file.h"
+#include "sim/records/output_file.h"
+#include "sim/system/system_error.h"
 #include "tests/sim/records/file_snapshots.h"
 
 namespace {
