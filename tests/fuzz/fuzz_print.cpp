@@ -62,7 +62,7 @@ void run(std::string_view text) {
   }
   std::string printed;
   try {
-    printed = controllers::print_program(moves, {}, text.substr(0, 300)).text;
+    printed = controllers::print_program(moves, {.start = setup.start}, text.substr(0, 300)).text;
   } catch (const InputError& error) {
     require(error.faults().front().place.line > 0, "a refusal names the line");
     return;
