@@ -120,8 +120,8 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "Haas 96-8000 p. 217"},
     {smoothing, "G5.1 Q, G5 P, G8 P, G187 and the like",
      "without effect: smoothing is not simulated", "Fanuc, Haas", kFanuc | kHaas,
-     "Fanuc B-63944EN, AI contour control, from memory; Helman CNC, Haas address codes "
-     "(E of G187)"},
+     "Fanuc B-63944EN, AI contour control, from memory; E of G187: a list of Haas's "
+     "address codes, not the manual itself"},
     {machine_function, "M codes for coolant, clamps, chips, gears and the like",
      "without effect on motion", "Haas, builders of other machines", kHaas | kFanuc,
      "Haas Mill operator's manual, M codes; others from memory"},

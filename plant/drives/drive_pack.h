@@ -10,7 +10,7 @@
 #include "plant/vocabulary/pack_exp.h"
 
 namespace servomill::plant {
-namespace {  // NOLINT: one copy for each instruction set
+namespace {  // one copy for each instruction set
 
 // Friction of eight drives, with the members of FrictionParams. Lanes that are not active have any
 // values.

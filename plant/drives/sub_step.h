@@ -9,7 +9,7 @@
 #include "plant/drives/drive_pack.h"
 
 namespace servomill::plant {
-namespace {  // NOLINT: one copy for each instruction set
+namespace {  // one copy for each instruction set
 
 // One sub-step as ExactStep::attempt makes it, for friction that is a function of v and z.
 template <class Arch, FrictionKind kind, bool same>
@@ -140,7 +140,7 @@ class SubStep {
 
   void find_kink(const Mask& may_have) {
     constexpr double kNoTravel = 1e-14;                   // m: a reversal that moves less is none
-    constexpr double kHalvings[] = {3.0, 2.0, 1.0, 1.0};  // by the node behind it
+    constexpr double kHalvings[] = {3.0, 2.0, 1.0, 1.0};  // by the node after it
     const P zero(0.0), least = P(kNoTravel) / h_;
     for (int node = 3; node >= 0; --node) {
       const P& before = node == 0 ? s_.v : y_[node - 1];

@@ -8,7 +8,7 @@
 #include "plant/geometry/volumetric_faults.h"
 
 namespace servomill::plant {
-namespace {  // NOLINT: one copy for each instruction set
+namespace {  // one copy for each instruction set
 
 // Parts that the formulas omit for a machine that does not have them.
 struct Parts {

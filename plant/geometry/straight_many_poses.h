@@ -9,7 +9,7 @@
 #include "plant/geometry/straight_formulas.h"
 
 namespace servomill::plant {
-namespace {  // NOLINT: one copy for each instruction set
+namespace {  // one copy for each instruction set
 
 // Numbers of poses, a row for each axis in the order of the axes.
 struct Rows {

@@ -8,7 +8,7 @@
 #include "plant/geometry/straight_formulas.h"
 
 namespace servomill::plant {
-namespace {  // NOLINT: one copy for each instruction set
+namespace {  // one copy for each instruction set
 
 // Numbers along X, Y, Z in the order of the axes.
 SERVOMILL_INLINE Vector<double> in_order(const StraightProgram& program, const double* xyz) {

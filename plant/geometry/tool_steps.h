@@ -9,7 +9,7 @@
 #include "plant/geometry/volumetric_kernel.h"
 
 namespace servomill::plant {
-namespace {  // NOLINT: one copy for each instruction set
+namespace {  // one copy for each instruction set
 
 template <class N>
 SERVOMILL_INLINE void add(int direction, const N& q, N (&v)[3]) {

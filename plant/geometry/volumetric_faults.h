@@ -8,7 +8,7 @@
 #include "plant/geometry/volumetric_registers.h"
 
 namespace servomill::plant {
-namespace {  // NOLINT: one copy for each instruction set
+namespace {  // one copy for each instruction set
 
 // --- the turn of a vector of angles -------------------------------------------------------------
 

@@ -19,7 +19,7 @@
 #define SERVOMILL_INLINE_LAMBDA __attribute__((always_inline))
 
 namespace servomill::plant {
-namespace {  // NOLINT: one copy for each instruction set
+namespace {  // one copy for each instruction set
 
 using Batch = xsimd::batch<double, SERVOMILL_ARCH>;
 constexpr std::size_t kRegister = Batch::size;

@@ -140,7 +140,7 @@ inline Eigen::Vector3d turned(const ChainAxis& a, const JointMotion& m, const Ei
   return times(a.R_MA, turned(a.axis, m.cosine, m.sine, transpose_times(a.R_MA, v)));
 }
 
-/// Moves a tool pose given in the frame behind it through one ideal joint.
+/// Moves a tool pose, given in the frame on the joint's tool side, through one ideal joint.
 inline void apply(const ChainAxis& a, const JointMotion& m, ToolPose& P) {
   if (is_linear(a.axis)) {
     P.p_WT[index_of(a.axis)] += m.shift;

@@ -7,7 +7,7 @@
 #include "plant/vocabulary/pack.h"
 
 namespace servomill {
-namespace {  // NOLINT: one copy for each instruction set
+namespace {  // one copy for each instruction set
 
 /// e^x for x <= 0, to the last bit or two, by Taylor's series about the nearest multiple of ln 2.
 /// Below -200 it is e^-200: products with it must not become subnormal, which is slow.

@@ -5,7 +5,7 @@
 #pragma once
 
 namespace servomill {
-namespace {  // NOLINT: one copy for each instruction set
+namespace {  // one copy for each instruction set
 
 /// As many whole numbers as N holds numbers.
 template <class N>

@@ -138,7 +138,7 @@ struct Misses {
 
 enum class Miss : std::uint8_t { untouched, blocked, through, no_stock };
 
-// A contact of the stylus lies on a cut surface only if there was raw material below it.
+// A contact of the stylus is on a machined surface only if there was stock below it.
 std::optional<Miss> miss_of(const Meeting& meeting, const plant::ProbeTarget& target,
                             const plant::Stock* stock) {
   switch (meeting.kind) {

@@ -112,7 +112,7 @@ TEST(Conversational, ParametersFromOutside) {
   EXPECT_EQ(framed_moves("L X+Q7 FMAX\n", setup), "1 rapid 12.5 0 0\n");
 }
 
-// Moves before a fault are handed out, none behind it.
+// Moves before a fault are handed out, none after it.
 TEST(Conversational, MovesBeforeAFaultComeFirst) {
   Interpreter interpreter(with_frame("L X+1 F100\nL X+2\nC X+3 Y+3\nL X+9\n"), "t.h",
                           example_setup());

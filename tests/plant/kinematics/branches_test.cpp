@@ -10,7 +10,7 @@ namespace {
 constexpr double kRounding = 1e-12;  // m, rad; some products at 1 m
 const Eigen::Vector3d kTool(0.0, 0.0, -0.11);
 
-// Machines whose tool axis stands at zero in their singular direction.
+// Machines whose tool axis is in its singular direction at zero.
 const std::array<const char*, 3> kUpright = {"[w C' A' b X Y Z t]", "[w C' X b Y Z B t]",
                                              "[w X b Y Z C A t]"};
 

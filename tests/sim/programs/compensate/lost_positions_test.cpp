@@ -82,8 +82,8 @@ TEST(LostPositions, ZBehindAToolChangeNeedsAxesThatAreNamed) {
   EXPECT_TRUE(body(trial).ends_with("X1.\nG53 G0 Y7.\nG43 H1 Z5.\n")) << body(trial);
 }
 
-// Z is nowhere known behind G28, and with it the errors: X and Y stay at their corrected place. Nor
-// is the way through Z20 another one because Z stands at its corrected place.
+// After G28 the position of Z is unknown, and with it the errors: X and Y stay at their corrected
+// positions. The path through Z20 does not change because Z is at its corrected position either.
 TEST(LostPositions, LeaveTheOtherAxesWhereTheyAreBehindG28) {
   for (const Dialect dialect :
        {Dialect::linuxcnc, Dialect::fanuc, Dialect::siemens, Dialect::heidenhain}) {
