@@ -15,7 +15,7 @@
 namespace servomill::strategies {
 namespace {
 
-using IdentifiedModel = Belief;
+using IdentifiedModel = IdentifiedMachine;
 
 void copy(const Joints& from, double* to) { std::copy_n(from.data(), kJoints, to); }
 
@@ -51,7 +51,7 @@ void throw_if_refused(const char* why) {
 void error_at(const void* model, const double* Q, double* error) {
   const auto& identified = *static_cast<const IdentifiedModel*>(model);
   const Eigen::Vector3d d =
-      set_point_displacement(identified, Sign::generate, Iterations::one, Joints(Q));
+      setpoint_displacement(identified, Action::impose, Iterations::one, Joints(Q));
   std::copy_n(d.data(), 3, error);
 }
 
@@ -60,7 +60,7 @@ struct Made {
   const servomill_strategy* declared;
   const char* label;
   std::vector<double> parameters;  // SI
-  Sign sign;
+  Action action;
   IdentifiedModel identified;
 
   servomill_setup setup(double period) const {
@@ -75,7 +75,7 @@ struct Made {
       out.axes[j] = identified.layout.has(j) ? identified.layout.letter_of(j) : '\0';
     }
     if (declared->knows_errors != 0) {
-      out.sign = static_cast<double>(sign);
+      out.sign = static_cast<double>(action);
       out.model = &identified;
       out.error_at = strategies::error_at;
     }
@@ -144,11 +144,11 @@ struct CFeedback {
   }
 };
 
-class COffset final : public SetPointPart {
+class COffset final : public SetpointPart {
  public:
   explicit COffset(std::shared_ptr<const Made> made) : made_(std::move(made)) {}
 
-  SetPointEntry entry() const override { return {}; }
+  SetpointEntry entry() const override { return {}; }
   std::string_view failure() const override { return failure_; }
 
   Joints offset(const Joints& Q_ref) const override {
@@ -190,7 +190,7 @@ class COffset final : public SetPointPart {
   }
 
   std::shared_ptr<const Made> made_;
-  // settling begins a run anew, and is const in SetPointPart
+  // settling begins a run anew, and is const in SetpointPart
   mutable CState state_;
   mutable Joints offset_ = Joints::Zero();
   mutable std::string failure_;
@@ -200,7 +200,7 @@ class CStrategy final : public Strategy {
  public:
   explicit CStrategy(Made made) : made_(std::make_shared<const Made>(std::move(made))) {}
 
-  std::unique_ptr<SetPointPart> set_point() const override {
+  std::unique_ptr<SetpointPart> setpoint() const override {
     if (made_->declared->offset == nullptr) return nullptr;
     return std::make_unique<COffset>(made_);
   }
@@ -280,9 +280,9 @@ std::unique_ptr<OwnedEntry> entry_of(const servomill_strategy& declared, const s
   entry.name = declared.name;
   entry.summary = text(declared.summary);
   entry.parameters = out->parameters;
-  entry.make = [&declared, label = out->label.c_str()](const Parameters& p, Sign sign,
+  entry.make = [&declared, label = out->label.c_str()](const Parameters& p, Action action,
                                                        const IdentifiedModel& identified) {
-    Made made{&declared, label, {}, sign, identified};
+    Made made{&declared, label, {}, action, identified};
     for (std::size_t n = 0; n < declared.parameter_count; ++n) {
       made.parameters.push_back(p.number(declared.parameters[n]->name));
     }

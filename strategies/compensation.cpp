@@ -15,16 +15,16 @@ constexpr int kMaxIterations = 50;    // contraction by |E'|, of the order of 1e
 constexpr LaneFlags kOne = {true};
 
 // Offsets of one run and of eight.
-void find_offset(const Belief& b, const Joints& Q, Eigen::Vector3d& d) {
+void find_offset(const IdentifiedMachine& b, const Joints& Q, Eigen::Vector3d& d) {
   d = b.model.joint_offset(Q, b.p_ST);
 }
-void find_offset(const Belief& b, const JointLanes& Q, LinearJointLanes& d) {
+void find_offset(const IdentifiedMachine& b, const JointLanes& Q, LinearJointLanes& d) {
   b.model.joint_offsets(Q, b.p_ST, d);
 }
 
 // -offset(Q)
 template <class Poses, class Shifts>
-void find_removal(const Belief& b, const Poses& Q, Shifts& d) {
+void find_removal(const IdentifiedMachine& b, const Poses& Q, Shifts& d) {
   find_offset(b, Q, d);
   for (auto& joint : d) {
     for (std::size_t k = 0; k < kLanesOf<Shifts>; ++k) {
@@ -33,10 +33,10 @@ void find_removal(const Belief& b, const Poses& Q, Shifts& d) {
   }
 }
 
-// d with d = -offset(Q + d). On the set point it is the non-ideal inverse: F_ni(Q + d) = F_i(Q). On
+// d with d = -offset(Q + d). On the setpoint it is the non-ideal inverse: F_ni(Q + d) = F_i(Q). On
 // a reading it is the error at the position that was programmed, Q + d. What has converged stays.
 template <class Poses, class Shifts>
-void find_converged_removal(const Belief& b, const Poses& Q, LaneFlags open, Shifts& d) {
+void find_converged_removal(const IdentifiedMachine& b, const Poses& Q, LaneFlags open, Shifts& d) {
   Poses shifted;
   Shifts next;
   std::copy(std::begin(Q), std::end(Q), std::begin(shifted));
@@ -62,9 +62,9 @@ void find_converged_removal(const Belief& b, const Poses& Q, LaneFlags open, Shi
 }
 
 template <class Poses, class Shifts>
-void find_feedback_displacement(const Belief& b, Sign sign, Iterations iterations, const Poses& Q,
-                                const LaneFlags& lanes, Shifts& d) {
-  if (sign == Sign::correct) return find_offset(b, Q, d);
+void find_feedback_displacement(const IdentifiedMachine& b, Action action, Iterations iterations,
+                                const Poses& Q, const LaneFlags& lanes, Shifts& d) {
+  if (action == Action::compensate) return find_offset(b, Q, d);
   if (iterations == Iterations::one) return find_removal(b, Q, d);
   find_converged_removal(b, Q, lanes, d);
 }
@@ -77,7 +77,7 @@ const ParameterSpec kIterationsSpec = {
     .default_text = "1",
     .is_number = false,
     .words = kWords,
-    .shortcoming = Shortcoming::one_step,
+    .shortcoming = Shortcoming::single_evaluation,
     .ideal = "converged"};
 
 const ParameterSpec kAxesSpec = {
@@ -103,23 +103,23 @@ Iterations iterations_of(const Parameters& parameters) {
   return parameters.word("iterations") == "converged" ? Iterations::converged : Iterations::one;
 }
 
-Eigen::Vector3d set_point_displacement(const Belief& b, Sign sign, Iterations iterations,
-                                       const Joints& Q) {
-  if (sign == Sign::generate) return b.model.joint_offset(Q, b.p_ST);
+Eigen::Vector3d setpoint_displacement(const IdentifiedMachine& b, Action action,
+                                      Iterations iterations, const Joints& Q) {
+  if (action == Action::impose) return b.model.joint_offset(Q, b.p_ST);
   if (iterations == Iterations::one) return -b.model.joint_offset(Q, b.p_ST);
   Eigen::Vector3d d;
   find_converged_removal(b, Q, kOne, d);
   return d;
 }
 
-void feedback_displacement(const Belief& b, Sign sign, Iterations iterations, const Joints& Q,
-                           Eigen::Vector3d& d) {
-  find_feedback_displacement(b, sign, iterations, Q, kOne, d);
+void feedback_displacement(const IdentifiedMachine& b, Action action, Iterations iterations,
+                           const Joints& Q, Eigen::Vector3d& d) {
+  find_feedback_displacement(b, action, iterations, Q, kOne, d);
 }
 
-void feedback_displacement(const Belief& b, Sign sign, Iterations iterations, const JointLanes& Q,
-                           const LaneFlags& lanes, LinearJointLanes& d) {
-  find_feedback_displacement(b, sign, iterations, Q, lanes, d);
+void feedback_displacement(const IdentifiedMachine& b, Action action, Iterations iterations,
+                           const JointLanes& Q, const LaneFlags& lanes, LinearJointLanes& d) {
+  find_feedback_displacement(b, action, iterations, Q, lanes, d);
 }
 
 }  // namespace servomill::strategies

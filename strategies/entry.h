@@ -17,8 +17,9 @@ struct Entry {
   std::string_view summary;
   std::span<const ParameterSpec> parameters;
   /// @throws InputError without a place when the parameters contradict the identified model
-  std::function<std::unique_ptr<Strategy>(const Parameters&, Sign, const Belief&)> make;
-  bool reads_gains = false;  ///< false: Belief::Kv is NaN, so that nothing depends on it
+  std::function<std::unique_ptr<Strategy>(const Parameters&, Action, const IdentifiedMachine&)>
+      make;
+  bool reads_gains = false;  ///< false: IdentifiedMachine::Kv is NaN, so that nothing depends on it
   bool reads_errors = true;  ///< false: knows no geometric errors, and takes neither model nor sign
   bool acts = true;          ///< false: leaves everything as it is
   /// Use of the feedback hardware by its signals: a case has one, and so one such

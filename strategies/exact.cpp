@@ -32,22 +32,22 @@ constexpr double kSameJoints = 1e-9;  // m, rad
 
 class ExactStrategy final : public Strategy {
  public:
-  ExactStrategy(const Belief& belief, const plant::ToolTolerance& tolerance)
-      : belief_(belief), tolerance_(tolerance), inverse_(nominal_inverse(belief)) {}
+  ExactStrategy(const IdentifiedMachine& identified, const plant::ToolTolerance& tolerance)
+      : identified_(identified), tolerance_(tolerance), inverse_(nominal_inverse(identified)) {}
 
   bool rewrites() const override { return true; }
 
   std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
-    return with_points(moves, belief_, [&](const Joints& Q_0, const Joints& Q_1) {
-      const ToolPose P_0 = plant::forward(inverse_.chain(), Q_0, belief_.p_ST);
-      const ToolPose P_1 = plant::forward(inverse_.chain(), Q_1, belief_.p_ST);
+    return with_points(moves, identified_, [&](const Joints& Q_0, const Joints& Q_1) {
+      const ToolPose P_0 = plant::forward(inverse_.chain(), Q_0, identified_.p_ST);
+      const ToolPose P_1 = plant::forward(inverse_.chain(), Q_1, identified_.p_ST);
       if (angle_between(P_0.k_W, P_1.k_W) >= plant::kRoundTurn) {
         throw InputError(
             Place{},
             "the tool axis is reversed (180 deg): no direction of rotation is the shorter one");
       }
       plant::LinearisedPath way = plant::linearise(
-          inverse_, belief_.p_ST, plant::StraightToolPath(P_0, P_1), Q_0, tolerance_);
+          inverse_, identified_.p_ST, plant::StraightToolPath(P_0, P_1), Q_0, tolerance_);
       // the axes of the program may turn more than straight motion needs
       if (!way.is_complete || (way.points.back().Q - Q_1).norm() > kSameJoints) {
         throw InputError(Place{},
@@ -60,14 +60,14 @@ class ExactStrategy final : public Strategy {
   }
 
  private:
-  Belief belief_;
+  IdentifiedMachine identified_;
   plant::ToolTolerance tolerance_;
   plant::InverseKinematics inverse_;
 };
 
-std::unique_ptr<Strategy> make(const Parameters& p, Sign, const Belief& belief) {
+std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMachine& identified) {
   return std::make_unique<ExactStrategy>(
-      belief, plant::ToolTolerance{p.number("tolerance_um"), p.number("axis_tolerance_urad")});
+      identified, plant::ToolTolerance{p.number("tolerance_um"), p.number("axis_tolerance_urad")});
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ const std::array<ParameterSpec, 9>& specs() {
        .min = 0.0,
        .shortcoming = Shortcoming::saturation,
        .ideal = "1e6"},
-      {.name = "lead_ms",
+      {.name = "extrapolation_time_ms",
        .help = "evaluates the model where the axis will be after this time; auto: 1/Kv",
        .unit = "ms",
        .default_text = "0",
@@ -65,7 +65,7 @@ const std::array<ParameterSpec, 9>& specs() {
 }
 
 struct FeedbackParams {
-  Sign sign = Sign::correct;
+  Action action = Action::compensate;
   Iterations iterations = Iterations::one;
   DisplacedAxes axes = DisplacedAxes::linear;
   double sigma_0 = 0.0;
@@ -179,10 +179,10 @@ class VirtualEncoder final : public FeedbackPart {
   using ShiftLanes = LaneArray[kDisplaced];
 
  public:
-  VirtualEncoder(const Belief& belief, const FeedbackParams& params, double period)
-      : belief_(belief),
+  VirtualEncoder(const IdentifiedMachine& identified, const FeedbackParams& params, double period)
+      : identified_(identified),
         params_(params),
-        all_(belief, params.iterations, params.sigma_0),
+        all_(identified, params.iterations, params.sigma_0),
         leads_(!params.lead.isZero(0.0)),
         max_change_(params.max_rate * period),
         held_(period),
@@ -294,24 +294,24 @@ class VirtualEncoder final : public FeedbackPart {
   }
 
   void find_displacement(const Joints& Q, const LaneFlags&, Eigen::Vector3d& d) const {
-    feedback_displacement(belief_, params_.sign, params_.iterations, Q, d);
+    feedback_displacement(identified_, params_.action, params_.iterations, Q, d);
   }
   void find_displacement(const JointLanes& Q, const LaneFlags& lanes, LinearJointLanes& d) const {
-    feedback_displacement(belief_, params_.sign, params_.iterations, Q, lanes, d);
+    feedback_displacement(identified_, params_.action, params_.iterations, Q, lanes, d);
   }
   void find_displacement(const Joints& Q, const LaneFlags&, Joints& d) const {
-    d = all_.of_feedback(params_.sign, Q);
+    d = all_.of_feedback(params_.action, Q);
   }
   void find_displacement(const JointLanes& Q, const LaneFlags& lanes, JointLanes& d) const {
     Joints one;
     for (std::size_t k = 0; k < kLaneWidth; ++k) {
       for (int j = 0; j < kJoints; ++j) one[j] = lanes[k] ? Q[j][k] : 0.0;
-      if (lanes[k]) one = all_.of_feedback(params_.sign, one);
+      if (lanes[k]) one = all_.of_feedback(params_.action, one);
       for (int j = 0; j < kJoints; ++j) d[j][k] = one[j];
     }
   }
 
-  const Belief& belief_;
+  const IdentifiedMachine& identified_;
   FeedbackParams params_;
   PoseCompensation all_;
   bool leads_;
@@ -325,28 +325,29 @@ class VirtualEncoder final : public FeedbackPart {
 
 class ModifiedFeedback final : public Strategy {
  public:
-  ModifiedFeedback(const Belief& belief, const FeedbackParams& params)
-      : belief_(belief), params_(params) {}
+  ModifiedFeedback(const IdentifiedMachine& identified, const FeedbackParams& params)
+      : identified_(identified), params_(params) {}
   bool displaces_feedback() const override { return true; }
   bool displaces_rotary() const override { return params_.axes == DisplacedAxes::all; }
-  std::optional<Leftover> uncorrectable(const Joints& Q) const override {
-    return strategies::uncorrectable(belief_, params_.sign, params_.axes, params_.sigma_0, Q);
+  std::optional<Residual> uncorrectable(const Joints& Q) const override {
+    return strategies::uncorrectable(identified_, params_.action, params_.axes, params_.sigma_0, Q);
   }
   std::unique_ptr<FeedbackPart> feedback(double model_period) const override {
     if (displaces_rotary()) {
-      return std::make_unique<VirtualEncoder<kJoints>>(belief_, params_, model_period);
+      return std::make_unique<VirtualEncoder<kJoints>>(identified_, params_, model_period);
     }
-    return std::make_unique<VirtualEncoder<kLinearJoints>>(belief_, params_, model_period);
+    return std::make_unique<VirtualEncoder<kLinearJoints>>(identified_, params_, model_period);
   }
 
  private:
-  Belief belief_;
+  IdentifiedMachine identified_;
   FeedbackParams params_;
 };
 
-std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& belief) {
+std::unique_ptr<Strategy> make(const Parameters& p, Action action,
+                               const IdentifiedMachine& identified) {
   FeedbackParams params;
-  params.sign = sign;
+  params.action = action;
   params.iterations = iterations_of(p);
   params.axes = displaced_axes_of(p);
   params.max.head<3>().setConstant(p.number("max_um"));
@@ -356,15 +357,15 @@ std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& bel
     params.max.tail<2>().setConstant(p.number("max_mrad"));
     params.max_rate.tail<2>().setConstant(p.number("max_rate_mrad_per_s"));
   }
-  if (p.is_word("lead_ms")) {
+  if (p.is_word("extrapolation_time_ms")) {
     for (int j = 0; j < kJoints; ++j) {
-      if (belief.layout.has(j)) params.lead[j] = 1.0 / belief.Kv[j];
+      if (identified.layout.has(j)) params.lead[j] = 1.0 / identified.Kv[j];
     }
   } else {
-    params.lead.setConstant(p.number("lead_ms"));
+    params.lead.setConstant(p.number("extrapolation_time_ms"));
   }
   params.window = p.number("velocity_window_ms");
-  return std::make_unique<ModifiedFeedback>(belief, params);
+  return std::make_unique<ModifiedFeedback>(identified, params);
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ const std::array<ParameterSpec, 8>& specs() {
        .default_text = "1",
        .min = 1e-3,
        .shortcoming = Shortcoming::block_length},
-      {.name = "rewritten_for",
+      {.name = "rewrite_origin",
        .help =
            "work origin that the errors are evaluated for: where the case has the part, or where "
            "the program's work_offset has it, before the case moves it by its own",
@@ -63,7 +63,7 @@ const std::array<ParameterSpec, 8>& specs() {
 }
 
 struct RewriteParams {
-  Sign sign = Sign::correct;
+  Action action = Action::compensate;
   Iterations iterations = Iterations::one;
   DisplacedAxes axes = DisplacedAxes::linear;
   double sigma_0 = 0.0;
@@ -77,18 +77,18 @@ struct RewriteParams {
 // Displaces one programmed move after the other and appends the blocks that result.
 class Rewriter {
  public:
-  Rewriter(const Belief& belief, const RewriteParams& params, std::vector<Move>& out)
-      : belief_(belief),
+  Rewriter(const IdentifiedMachine& identified, const RewriteParams& params, std::vector<Move>& out)
+      : identified_(identified),
         params_(params),
-        inverse_(nominal_inverse(belief)),
-        all_(belief, params.iterations, params.sigma_0),
+        inverse_(nominal_inverse(identified)),
+        all_(identified, params.iterations, params.sigma_0),
         out_(out),
-        Q_(belief.reference),
-        out_at_(belief.layout.words(belief.reference)),
-        directions_(belief.model.plays().size(), 0.0) {}
+        Q_(identified.reference),
+        out_at_(identified.layout.words(identified.reference)),
+        directions_(identified.model.plays().size(), 0.0) {}
 
   void rewrite(const Move& move) {
-    const ProgrammedWay way(inverse_, belief_.p_ST, Q_, move);
+    const ProgrammedWay way(inverse_, identified_.p_ST, Q_, move);
     move_ = &move;
     way_ = &way;
     s_ = move.s_begin;
@@ -152,7 +152,7 @@ class Rewriter {
   // @return share of the way that the slowest change of direction takes; 0: no axis has turned
   double change_directions(const Joints& a, const Joints& b) {
     constexpr double kStill = 1e-12;  // m, rad
-    const std::vector<plant::Play>& plays = belief_.model.plays();
+    const std::vector<plant::Play>& plays = identified_.model.plays();
     double share = 0.0;
     for (std::size_t i = 0; i < plays.size(); ++i) {
       const double way = b[plays[i].joint] - a[plays[i].joint];
@@ -166,23 +166,23 @@ class Rewriter {
 
   // Displacement that the direction of travel adds to the mean, to first order in the errors.
   Eigen::Vector3d reversal(const Joints& Q) const {
-    const plant::VolumetricModel& model = belief_.model;
+    const plant::VolumetricModel& model = identified_.model;
     const Eigen::Vector3d e =
-        model.error(Q, belief_.p_ST, directions_).dp_W - model.error(Q, belief_.p_ST).dp_W;
+        model.error(Q, identified_.p_ST, directions_).dp_W - model.error(Q, identified_.p_ST).dp_W;
     const Eigen::Matrix3d J = plant::linear_jacobian(model.chain(), Q);
     const Eigen::Vector3d d = J.completeOrthogonalDecomposition().solve(e);
-    return params_.sign == Sign::generate ? d : Eigen::Vector3d(-d);
+    return params_.action == Action::impose ? d : Eigen::Vector3d(-d);
   }
 
   Place place(double t, const Joints& Q_near) const {
     Place out{t, way_->at(t, Q_near), {}};
-    out.words = belief_.layout.words(out.Q);
+    out.words = identified_.layout.words(out.Q);
     const Joints Q_then = out.Q - params_.shift;
     if (displaces_all()) {
-      out.words += belief_.layout.words(all_.of_set_point(params_.sign, Q_then));
+      out.words += identified_.layout.words(all_.of_setpoint(params_.action, Q_then));
     } else {
       out.words.head<3>() +=
-          set_point_displacement(belief_, params_.sign, params_.iterations, Q_then);
+          setpoint_displacement(identified_, params_.action, params_.iterations, Q_then);
     }
     if (!directions_.empty()) out.words.head<3>() += reversal(Q_then);
     return out;
@@ -257,7 +257,7 @@ class Rewriter {
     block.feed = turned * move_->feed / (share * way_->angle());
   }
 
-  const Belief& belief_;
+  const IdentifiedMachine& identified_;
   const RewriteParams& params_;
   plant::InverseKinematics inverse_;
   PoseCompensation all_;
@@ -266,27 +266,27 @@ class Rewriter {
   const Move* move_ = nullptr;
   const ProgrammedWay* way_ = nullptr;
   AxisWords out_at_;                // displaced end of the block before
-  std::vector<double> directions_;  // of travel, of each play of the belief; 0: not yet
+  std::vector<double> directions_;  // of travel, of each play of the identified; 0: not yet
   double s_ = 0.0, t_ = 0.0;
 };
 
 class RewrittenProgram final : public Strategy {
  public:
-  RewrittenProgram(const Belief& belief, const RewriteParams& params)
-      : belief_(belief), params_(params) {}
+  RewrittenProgram(const IdentifiedMachine& identified, const RewriteParams& params)
+      : identified_(identified), params_(params) {}
 
   bool rewrites() const override { return true; }
   bool rewrites_tip_moves() const override { return true; }
   bool displaces_rotary() const override { return params_.axes == DisplacedAxes::all; }
-  std::optional<Leftover> uncorrectable(const Joints& Q) const override {
-    return strategies::uncorrectable(belief_, params_.sign, params_.axes, params_.sigma_0,
+  std::optional<Residual> uncorrectable(const Joints& Q) const override {
+    return strategies::uncorrectable(identified_, params_.action, params_.axes, params_.sigma_0,
                                      Joints(Q - params_.shift));
   }
 
   std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
     refuse_too_many(moves);
     std::vector<Move> out;
-    Rewriter rewriter(belief_, params_, out);
+    Rewriter rewriter(identified_, params_, out);
     for (const Move& move : moves) {
       throw_if_interrupted();
       if (is_motion(move.kind)) {
@@ -313,13 +313,14 @@ class RewrittenProgram final : public Strategy {
                     params_.max_block / mm, blocks, kMostBlocks));
   }
 
-  Belief belief_;
+  IdentifiedMachine identified_;
   RewriteParams params_;
 };
 
-std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& belief) {
+std::unique_ptr<Strategy> make(const Parameters& p, Action action,
+                               const IdentifiedMachine& identified) {
   RewriteParams params;
-  params.sign = sign;
+  params.action = action;
   params.iterations = iterations_of(p);
   params.tolerance = p.number("tolerance_um");
   params.max_block = p.number("max_block_mm");
@@ -327,8 +328,8 @@ std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& bel
   params.sigma_0 = std::sin(p.number("singular_deg"));
   params.tolerance_turn = p.number("tolerance_urad");
   params.max_block_turn = p.number("max_block_deg");
-  if (p.word("rewritten_for") == "program") params.shift = belief.part_shift;
-  return std::make_unique<RewrittenProgram>(belief, params);
+  if (p.word("rewrite_origin") == "program") params.shift = identified.part_shift;
+  return std::make_unique<RewrittenProgram>(identified, params);
 }
 
 }  // namespace

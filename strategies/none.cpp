@@ -3,7 +3,7 @@
 namespace servomill::strategies {
 namespace {
 
-std::unique_ptr<Strategy> make(const Parameters&, Sign, const Belief&) {
+std::unique_ptr<Strategy> make(const Parameters&, Action, const IdentifiedMachine&) {
   return std::make_unique<Strategy>();
 }
 

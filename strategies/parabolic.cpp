@@ -5,8 +5,8 @@
 namespace servomill::strategies {
 namespace {
 
-std::unique_ptr<Strategy> make(const Parameters& p, Sign, const Belief& belief) {
-  return make_error_model(plant::ErrorShape::parabolic, p, belief);
+std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMachine& identified) {
+  return make_error_model(plant::ErrorShape::parabolic, p, identified);
 }
 
 }  // namespace

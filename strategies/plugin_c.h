@@ -82,7 +82,7 @@ typedef struct servomill_strategy {
    * negative; once per model period of the feedback hardware, acts one period later. Or NULL. */
   const char* (*displacement)(void* state, const servomill_reading* reading,
                               double d[SERVOMILL_JOINTS]);
-  /* Offset of the set point behind the feed-forward tap; once per position period. Or NULL. */
+  /* Offset of the setpoint behind the feed-forward tap; once per position period. Or NULL. */
   const char* (*offset)(void* state, const servomill_reading* reading,
                         double offset[SERVOMILL_JOINTS]);
 } servomill_strategy;

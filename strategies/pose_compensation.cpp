@@ -62,27 +62,28 @@ class FirstOrder {
 
 }  // namespace
 
-PoseCompensation::PoseCompensation(const Belief& belief, Iterations iterations, double sigma_0)
-    : belief_(belief), iterations_(iterations), sigma_0_(sigma_0) {}
+PoseCompensation::PoseCompensation(const IdentifiedMachine& identified, Iterations iterations,
+                                   double sigma_0)
+    : identified_(identified), iterations_(iterations), sigma_0_(sigma_0) {}
 
-Joints PoseCompensation::of_set_point(Sign sign, const Joints& Q) const {
-  return displacement(sign == Sign::generate ? Wanted::errors : Wanted::removal, Q);
+Joints PoseCompensation::of_setpoint(Action action, const Joints& Q) const {
+  return displacement(action == Action::impose ? Wanted::errors : Wanted::removal, Q);
 }
 
-Joints PoseCompensation::of_feedback(Sign sign, const Joints& Q) const {
-  return displacement(sign == Sign::correct ? Wanted::errors : Wanted::removal, Q);
+Joints PoseCompensation::of_feedback(Action action, const Joints& Q) const {
+  return displacement(action == Action::compensate ? Wanted::errors : Wanted::removal, Q);
 }
 
 Joints PoseCompensation::displacement(Wanted wanted, const Joints& Q) const {
-  const plant::VolumetricModel& model = belief_.model;
+  const plant::VolumetricModel& model = identified_.model;
   const plant::MachineChain& chain = model.chain();
-  const FirstOrder first(chain, Q, belief_.p_ST, sigma_0_);
-  const plant::VolumetricError error = model.error(Q, belief_.p_ST);
+  const FirstOrder first(chain, Q, identified_.p_ST, sigma_0_);
+  const plant::VolumetricError error = model.error(Q, identified_.p_ST);
   const double sign = wanted == Wanted::errors ? 1.0 : -1.0;
   Joints d = first.step(sign * error.dp_W, sign * error.dk_W, Vector2d::Zero());
   if (iterations_ == Iterations::one) return d;
 
-  const ToolPose at_Q = plant::forward(chain, Q, belief_.p_ST);
+  const ToolPose at_Q = plant::forward(chain, Q, identified_.p_ST);
   ToolPose goal = at_Q;
   if (wanted == Wanted::errors) {
     goal.p_WT += error.dp_W;
@@ -90,8 +91,8 @@ Joints PoseCompensation::displacement(Wanted wanted, const Joints& Q) const {
   }
   for (int n = 0; n < kMaxIterations; ++n) {
     const Joints shifted = Q + d;
-    const ToolPose now = wanted == Wanted::errors ? plant::forward(chain, shifted, belief_.p_ST)
-                                                  : model.forward(shifted, belief_.p_ST);
+    const ToolPose now = wanted == Wanted::errors ? plant::forward(chain, shifted, identified_.p_ST)
+                                                  : model.forward(shifted, identified_.p_ST);
     const Joints step = first.step(goal.p_WT - now.p_WT, goal.k_W - now.k_W, d.tail<2>());
     d += step;
     if (step.cwiseAbs().maxCoeff() < kConverged) break;
@@ -99,27 +100,28 @@ Joints PoseCompensation::displacement(Wanted wanted, const Joints& Q) const {
   return d;
 }
 
-Leftover PoseCompensation::leftover(const Joints& Q, const Joints& d) const {
-  const ToolPose wanted = plant::forward(belief_.model.chain(), Q, belief_.p_ST);
-  const ToolPose got = belief_.model.forward(Q + d, belief_.p_ST);
+Residual PoseCompensation::residual(const Joints& Q, const Joints& d) const {
+  const ToolPose wanted = plant::forward(identified_.model.chain(), Q, identified_.p_ST);
+  const ToolPose got = identified_.model.forward(Q + d, identified_.p_ST);
   return {(got.p_WT - wanted.p_WT).norm(), angle_between(got.k_W, wanted.k_W)};
 }
 
-Leftover uncorrectable(const Belief& belief, DisplacedAxes axes, double sigma_0, const Joints& Q) {
-  const PoseCompensation all(belief, Iterations::converged, sigma_0);
+Residual uncorrectable(const IdentifiedMachine& identified, DisplacedAxes axes, double sigma_0,
+                       const Joints& Q) {
+  const PoseCompensation all(identified, Iterations::converged, sigma_0);
   Joints d = Joints::Zero();
   if (axes == DisplacedAxes::all) {
-    d = all.of_set_point(Sign::correct, Q);
+    d = all.of_setpoint(Action::compensate, Q);
   } else {
-    d.head<3>() = set_point_displacement(belief, Sign::correct, Iterations::converged, Q);
+    d.head<3>() = setpoint_displacement(identified, Action::compensate, Iterations::converged, Q);
   }
-  return all.leftover(Q, d);
+  return all.residual(Q, d);
 }
 
-std::optional<Leftover> uncorrectable(const Belief& belief, Sign sign, DisplacedAxes axes,
-                                      double sigma_0, const Joints& Q) {
-  if (sign != Sign::correct) return std::nullopt;
-  return uncorrectable(belief, axes, sigma_0, Q);
+std::optional<Residual> uncorrectable(const IdentifiedMachine& identified, Action action,
+                                      DisplacedAxes axes, double sigma_0, const Joints& Q) {
+  if (action != Action::compensate) return std::nullopt;
+  return uncorrectable(identified, axes, sigma_0, Q);
 }
 
 }  // namespace servomill::strategies

@@ -1,4 +1,4 @@
-/// Displacement of all joints that brings believed errors of tip and tool axis out or corrects
+/// Displacement of all joints that brings identified errors of tip and tool axis out or corrects
 /// them: rotary axes take what turns the tool axis, linear axes the rest, what those turns do to
 /// the tip included, so that nothing is corrected twice.
 ///
@@ -29,42 +29,43 @@ namespace servomill::strategies {
 /// Constant after construction. Calls do not allocate.
 class PoseCompensation {
  public:
-  /// @param belief     must outlive this
+  /// @param identified     must outlive this
   /// @param sigma_0    see above; for machines whose axes are orthogonal the sine of the angle to
   ///                   the singular direction; > 0
-  PoseCompensation(const Belief& belief, Iterations iterations, double sigma_0);
+  PoseCompensation(const IdentifiedMachine& identified, Iterations iterations, double sigma_0);
 
-  /// Displacement of the set point (5; m, rad) for the programmed position Q.
+  /// Displacement of the setpoint (5; m, rad) for the programmed position Q.
   ///   generate:            F_i(Q + d) = F_ni(Q)
   ///   correct:             F_ni(Q + d) = F_i(Q), the non-ideal inverse
   /// With one iteration both are of first order, and each the negative of the other.
-  Joints of_set_point(Sign sign, const Joints& Q) const;
+  Joints of_setpoint(Action action, const Joints& Q) const;
 
   /// Displacement of the reading (5; m, rad) for the measured position Q: the axes move by its
   /// negative.
   ///   correct:             F_i(Q + d) = F_ni(Q), the reading says where the tool is
   ///   generate:            F_ni(Q + d) = F_i(Q), the error where the program is
-  Joints of_feedback(Sign sign, const Joints& Q) const;
+  Joints of_feedback(Action action, const Joints& Q) const;
 
   /// What is left of the errors when the axes stand at Q + d instead of Q.
-  Leftover leftover(const Joints& Q, const Joints& d) const;
+  Residual residual(const Joints& Q, const Joints& d) const;
 
  private:
   enum class Wanted { errors, removal };
   Joints displacement(Wanted wanted, const Joints& Q) const;
 
-  const Belief& belief_;
+  const IdentifiedMachine& identified_;
   Iterations iterations_;
   double sigma_0_;
 };
 
-/// What stays at the programmed position Q of believed errors that are corrected as well as the
+/// What stays at the programmed position Q of identified errors that are corrected as well as the
 /// axes can, however many iterations that takes: on linear axes what turns the tool, on rotary ones
 /// what they cannot turn or, near a singular direction, give way to.
 /// @param sigma_0  of PoseCompensation, where axes is all
-Leftover uncorrectable(const Belief& belief, DisplacedAxes axes, double sigma_0, const Joints& Q);
+Residual uncorrectable(const IdentifiedMachine& identified, DisplacedAxes axes, double sigma_0,
+                       const Joints& Q);
 /// The same for a strategy: nullopt where it generates errors.
-std::optional<Leftover> uncorrectable(const Belief& belief, Sign sign, DisplacedAxes axes,
-                                      double sigma_0, const Joints& Q);
+std::optional<Residual> uncorrectable(const IdentifiedMachine& identified, Action action,
+                                      DisplacedAxes axes, double sigma_0, const Joints& Q);
 
 }  // namespace servomill::strategies

@@ -7,7 +7,8 @@
 namespace servomill::strategies {
 namespace {
 
-constexpr std::array<std::string_view, 2> kDefinitions = {"joint_interpolation", "posted_location"};
+constexpr std::array<std::string_view, 2> kDefinitions = {"joint_interpolation",
+                                                          "post_processed_location"};
 
 constexpr std::array<std::string_view, 2> kFrames = {"machine", "workpiece"};
 
@@ -51,11 +52,11 @@ bool shifts(const AxisWords& from, const Move& move) {
 // Puts points into moves and hands out their lines, arc lengths and times.
 class Inserter {
  public:
-  Inserter(const Belief& belief, const PointsOfLine& points_of)
-      : belief_(belief), points_of_(points_of) {}
+  Inserter(const IdentifiedMachine& identified, const PointsOfLine& points_of)
+      : identified_(identified), points_of_(points_of) {}
 
   std::vector<Move> run(const std::vector<Move>& moves) {
-    at_ = belief_.layout.words(belief_.reference);
+    at_ = identified_.layout.words(identified_.reference);
     for (const Move& move : moves) {
       throw_if_interrupted();
       if (move.kind == MoveKind::arc && turns(at_, move)) {
@@ -75,7 +76,7 @@ class Inserter {
 
  private:
   void insert(const Move& move) {
-    const JointLayout& layout = belief_.layout;
+    const JointLayout& layout = identified_.layout;
     double t = 0.0;
     for (const plant::PathPoint& point : points(layout.joints(at_), move)) {
       throw_if_interrupted();
@@ -93,13 +94,13 @@ class Inserter {
 
   std::vector<plant::PathPoint> points(const Joints& Q_0, const Move& move) const {
     try {
-      return points_of_(Q_0, belief_.layout.joints(move.end_machine));
+      return points_of_(Q_0, identified_.layout.joints(move.end_machine));
     } catch (const InputError& error) {  // knows no line
       throw InputError({{}, move.line, 0}, error.faults().front().message);
     }
   }
 
-  const Belief& belief_;
+  const IdentifiedMachine& identified_;
   const PointsOfLine& points_of_;
   std::vector<Move> out_;
   AxisWords at_ = AxisWords::Zero();
@@ -115,14 +116,14 @@ struct ErrorModelParams {
 
 class ErrorModelStrategy final : public Strategy {
  public:
-  ErrorModelStrategy(const Belief& belief, const ErrorModelParams& params)
-      : belief_(belief), params_(params), inverse_(nominal_inverse(belief)) {}
+  ErrorModelStrategy(const IdentifiedMachine& identified, const ErrorModelParams& params)
+      : identified_(identified), params_(params), inverse_(nominal_inverse(identified)) {}
 
   bool rewrites() const override { return true; }
 
   std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
-    return with_points(moves, belief_, [&](const Joints& Q_0, const Joints& Q_1) {
-      const plant::PostedSegment segment(inverse_, belief_.p_ST, Q_0, Q_1);
+    return with_points(moves, identified_, [&](const Joints& Q_0, const Joints& Q_1) {
+      const plant::PostProcessedSegment segment(inverse_, identified_.p_ST, Q_0, Q_1);
       auto points = segment.compensated_points(params_.definition, params_.shape, params_.tolerance,
                                                params_.spacing, params_.frame);
       if (!points) throw InputError(Place{}, "the axes cannot reach a location on the way");
@@ -131,45 +132,45 @@ class ErrorModelStrategy final : public Strategy {
   }
 
  private:
-  Belief belief_;
+  IdentifiedMachine identified_;
   ErrorModelParams params_;
   plant::InverseKinematics inverse_;
 };
 
 }  // namespace
 
-std::vector<Move> with_points(const std::vector<Move>& moves, const Belief& belief,
+std::vector<Move> with_points(const std::vector<Move>& moves, const IdentifiedMachine& identified,
                               const PointsOfLine& points_of) {
-  return Inserter(belief, points_of).run(moves);
+  return Inserter(identified, points_of).run(moves);
 }
 
-plant::InverseKinematics nominal_inverse(const Belief& belief) {
+plant::InverseKinematics nominal_inverse(const IdentifiedMachine& identified) {
   plant::InverseSettings settings;
-  settings.lower = belief.lower;
-  settings.upper = belief.upper;
-  return plant::InverseKinematics(belief.model.chain(), settings);
+  settings.lower = identified.lower;
+  settings.upper = identified.upper;
+  return plant::InverseKinematics(identified.model.chain(), settings);
 }
 
 std::span<const ParameterSpec> error_model_specs() { return specs(); }
 
 std::unique_ptr<Strategy> make_error_model(plant::ErrorShape shape, const Parameters& p,
-                                           const Belief& belief) {
+                                           const IdentifiedMachine& identified) {
   ErrorModelParams params;
   params.shape = shape;
   params.definition = p.word("definition") == kDefinitions[0]
                           ? plant::NonlinearError::joint_interpolation
-                          : plant::NonlinearError::posted_location;
+                          : plant::NonlinearError::post_processed_location;
   params.frame =
       p.word("amplitude") == kFrames[0] ? plant::ErrorFrame::machine : plant::ErrorFrame::workpiece;
   if (params.frame == plant::ErrorFrame::workpiece &&
-      params.definition == plant::NonlinearError::posted_location) {
+      params.definition == plant::NonlinearError::post_processed_location) {
     throw InputError({},
                      "amplitude = \"workpiece\" needs definition = \"joint_interpolation\": "
-                     "posted locations are compared in the machine");
+                     "post-processed locations are compared in the machine");
   }
   params.tolerance = p.number("tolerance_um");
   params.spacing = p.number("spacing_mm");
-  return std::make_unique<ErrorModelStrategy>(belief, params);
+  return std::make_unique<ErrorModelStrategy>(identified, params);
 }
 
 }  // namespace servomill::strategies

@@ -28,17 +28,17 @@ using PointsOfLine =
 /// move are shared out among its blocks.
 /// @throws InputError with the line (and no file) for an arc with rotary axes, and where there are
 /// no points
-std::vector<Move> with_points(const std::vector<Move>& moves, const Belief& belief,
+std::vector<Move> with_points(const std::vector<Move>& moves, const IdentifiedMachine& identified,
                               const PointsOfLine& points_of);
 
 /// The nominal machine that a strategy believes in, with its travel.
-plant::InverseKinematics nominal_inverse(const Belief& belief);
+plant::InverseKinematics nominal_inverse(const IdentifiedMachine& identified);
 
 /// Parameters of the strategies that compensate with a model of the error.
 std::span<const ParameterSpec> error_model_specs();
 
 /// Such a strategy.
 std::unique_ptr<Strategy> make_error_model(plant::ErrorShape shape, const Parameters& parameters,
-                                           const Belief& belief);
+                                           const IdentifiedMachine& identified);
 
 }  // namespace servomill::strategies

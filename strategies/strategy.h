@@ -13,16 +13,16 @@
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/joint_lanes.h"
 #include "plant/vocabulary/move.h"
-#include "plant/vocabulary/set_point_entry.h"
+#include "plant/vocabulary/setpoint_entry.h"
 
 namespace servomill::strategies {
 
-/// `generate` brings the believed errors out on the part, as paper [G] does; `correct` removes
+/// `generate` brings the identified errors out on the part, as paper [G] does; `correct` removes
 /// them.
-enum class Sign : std::int8_t { generate = 1, correct = -1 };
+enum class Action : std::int8_t { impose = 1, compensate = -1 };
 
 /// Knowledge of a strategy. Never the actual errors: its errors are an identified model.
-struct Belief {
+struct IdentifiedMachine {
   JointLayout layout;
   plant::VolumetricModel model;                    // machine and errors as identified
   Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();  // m, tool tip at the spindle nose
@@ -46,11 +46,11 @@ struct Reading {
                                     // displacement; of others what the position loops read last
 };
 
-/// Offset of the set points, added in the NC where `entry` says.
-class SetPointPart {
+/// Offset of the setpoints, added in the NC where `entry` says.
+class SetpointPart {
  public:
-  virtual ~SetPointPart() = default;
-  virtual SetPointEntry entry() const = 0;
+  virtual ~SetpointPart() = default;
+  virtual SetpointEntry entry() const = 0;
   /// @param Q_ref  interpolated position (5; m, rad)
   /// @return offset of all joints (5; m, rad)
   virtual Joints offset(const Joints& Q_ref) const = 0;
@@ -117,7 +117,7 @@ class FeedbackPart {
 };
 
 /// Residual of a correction: true minus ideal pose by the identified model.
-struct Leftover {
+struct Residual {
   double tip = 0.0;   // m
   double axis = 0.0;  // rad, of the direction of the tool; turns about itself do not count
 };
@@ -137,10 +137,10 @@ class Strategy {
   /// Rewrites the moves of a program; the line and arc length of the original are carried over.
   virtual bool rewrites() const { return false; }
   virtual std::vector<Move> rewrite(const std::vector<Move>& moves) const { return moves; }
-  /// True if it can rewrite moves under TCP control, with the tool of Belief::p_ST.
+  /// True if it can rewrite moves under TCP control, with the tool of IdentifiedMachine::p_ST.
   virtual bool rewrites_tip_moves() const { return false; }
 
-  virtual std::unique_ptr<SetPointPart> set_point() const { return nullptr; }
+  virtual std::unique_ptr<SetpointPart> setpoint() const { return nullptr; }
   /// The ends of tables beyond which Q (5; m, rad) lies: they hold their last value there.
   virtual std::vector<BeyondTable> beyond_tables(const Joints& Q) const {
     (void)Q;
@@ -154,7 +154,7 @@ class Strategy {
   /// Residual of the errors that it corrects because no axis that it displaces can remove it,
   /// lags and steps of its own left aside; nullopt if it corrects nothing.
   /// @param Q  programmed position (5; m, rad)
-  virtual std::optional<Leftover> uncorrectable(const Joints& Q) const {
+  virtual std::optional<Residual> uncorrectable(const Joints& Q) const {
     (void)Q;
     return std::nullopt;
   }

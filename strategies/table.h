@@ -1,11 +1,11 @@
-/// Compensation tables of the NC, added to the set point. They enter where the NC lets them in,
+/// Compensation tables of the NC, added to the setpoint. They enter where the NC lets them in,
 /// which is what paper [G] could not find out for its control. Forms that controls have:
 ///
 ///     lines, all axes       over each axis x: d(x) of X, Y and Z, summed          HEIDENHAIN
 ///     lines, output = own   pitch error: d_x(x)                                   Siemens LEC
 ///     lines, one output     an axis over another: d_y(x), sag, straightness       Siemens CEC
-///     lattice of two axes   plane, bilinear                                       Beckhoff, ISG
-///     lattice of three      d(x, y, z) of X, Y and Z, trilinear                   Fanuc 3-D
+///     grid of two axes   plane, bilinear                                       Beckhoff, ISG
+///     grid of three      d(x, y, z) of X, Y and Z, trilinear                   Fanuc 3-D
 ///
 /// Between the points of a line the value is linear; between the eight corners of a cell, with
 /// shares u, v, w of its edges,

@@ -15,13 +15,13 @@
 namespace servomill::strategies {
 namespace {
 
-// "table over X", "lattice over X, Y, Z"
+// "table over X", "grid over X, Y, Z"
 std::string name_of(const std::vector<GridLine>& lines, const JointLayout& layout) {
   std::string name;
   for (const GridLine& line : lines) {
     name += fmt::format("{}{}", name.empty() ? "" : ", ", layout.letter_of(line.joint));
   }
-  return fmt::format("{} over {}", lines.size() == 1 ? "table" : "lattice", name);
+  return fmt::format("{} over {}", lines.size() == 1 ? "table" : "grid", name);
 }
 
 // Refuses tables that the NC would refuse, by the names that its operator reads.
@@ -95,7 +95,7 @@ GridTable Tabulation::table(std::vector<GridLine> lines, const Eigen::Vector3d& 
   table.lines = std::move(lines);
   const Iterations iterations = iterations_of(p);
   const auto wanted = [&](const Joints& Q) {
-    return set_point_displacement(machine, sign, iterations, Q);
+    return setpoint_displacement(machine, action, iterations, Q);
   };
   Joints Q = machine.reference;
   const Eigen::Vector3d base = from_reference.cwiseProduct(wanted(Q));

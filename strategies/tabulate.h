@@ -12,9 +12,9 @@ namespace servomill::strategies {
 
 /// The machine whose errors tables hold, and the parameters of the strategy. All throw InputError.
 struct Tabulation {
-  const Belief& machine;
+  const IdentifiedMachine& machine;
   const Parameters& p;
-  Sign sign;
+  Action action;
 
   /// Points over the travel of a joint, or between from_mm and to_mm, by spacing_mm. Refused if
   /// there are none, or more than any NC holds.

@@ -246,9 +246,9 @@ void refuse_rounding(double a, double b, const Place& place) {
 double two_operands(int number, Parser& parser) {
   const double a = parser.operand();
   if (number == 0) return a;
-  constexpr std::array<std::string_view, 4> kSigns = {"", "+", "-", "*"};
+  constexpr std::array<std::string_view, 4> kActions = {"", "+", "-", "*"};
   if (number <= 3) {
-    parser.take_word({kSigns[static_cast<std::size_t>(number)]});
+    parser.take_word({kActions[static_cast<std::size_t>(number)]});
     const double b = parser.operand();
     return number == 1 ? a + b : number == 2 ? a - b : a * b;
   }
@@ -297,9 +297,9 @@ Jump evaluate_jump(int number, std::span<const HeidenhainWord> words,
   Parser parser(words, parameters);
   parser.take_word({"IF"});
   const double a = parser.operand();
-  constexpr std::array<std::array<std::string_view, 2>, 4> kSigns = {
+  constexpr std::array<std::array<std::string_view, 2>, 4> kActions = {
       {{"EQU", "EQU"}, {"NEQ", "NE"}, {"GT", "GT"}, {"LT", "LT"}}};
-  const auto& sign = kSigns[static_cast<std::size_t>(number - 9)];
+  const auto& sign = kActions[static_cast<std::size_t>(number - 9)];
   parser.take_word({sign[0], sign[1]});
   const double b = parser.operand();
   parser.take_word({"GOTO"});

@@ -48,14 +48,14 @@ class Post {
         file_(file),
         inverse_(inverse),
         options_(options),
-        safe_(inverse, options.safe, options.part_zero, options.work_system),
+        safe_(inverse, options.safe, options.work_offset, options.work_system),
         free_axis_(inverse, {chord_of(options), options.tolerance.axis}),
         rounding_(options.tolerance.tip),
         Q_(options.start) {
     if (options.mode == PostMode::joints) rounding_ -= chord_of(options);
   }
 
-  Posted run(std::vector<Warning>* of_refused) {
+  PostProcessed run(std::vector<Warning>* of_refused) {
     if (is_safe()) retract();
     if (options_.tool > 0 && data_.first_without_tool() != nullptr) load(options_.tool, 0);
     for (std::size_t i = 0; i < data_.records.size() && faults_.size() < kMostFaults; ++i) {
@@ -254,7 +254,7 @@ class Post {
   }
 
   ToolPose pose_of(const ClRecord& record) const {
-    return {record.P.p_WT + options_.part_zero, record.P.k_W};
+    return {record.P.p_WT + options_.work_offset, record.P.k_W};
   }
 
   void go_to(std::size_t i) {
@@ -330,7 +330,7 @@ class Post {
                      "a singular direction; a retract there would avoid it",
                      inverse_.chain().layout.letter_of(kLinearJoints + joint), angle / deg));
     for (const Joints& Q : turn) {
-      block(MoveKind::feed, line, here_, Q, 0.0, rotation_between(Q_, Q) / options_.turn_rate);
+      block(MoveKind::feed, line, here_, Q, 0.0, rotation_between(Q_, Q) / options_.rotary_rate);
     }
     out_.inserted += turn.size();
   }
@@ -369,7 +369,7 @@ class Post {
       const double share = point.t - t;
       const bool stands = path.length() < kStandingTip;
       const double time =
-          share * (stands ? path.angle() / options_.turn_rate : path.length() / feed);
+          share * (stands ? path.angle() / options_.rotary_rate : path.length() / feed);
       block(MoveKind::feed, line, path.at(point.t), point.Q, share * path.length(), time);
       t = point.t;
     }
@@ -410,7 +410,7 @@ class Post {
     most_bent_ = line;
   }
 
-  // The NC slows down where a posted time is too short.
+  // The NC slows down where a post-processed time is too short.
   void note_speed(int line, const ToolPose& P, const Joints& Q, double time) {
     if (!(time > 0.0)) return;
     // under tip control linear joints go elsewhere than to Q in between
@@ -432,14 +432,13 @@ class Post {
   void block(MoveKind kind, int line, const ToolPose& P, const Joints& Q, double way, double time) {
     last_line_ = line;
     Move& move = add(kind, line);
-    AxisWords words = inverse_.chain().layout.words(Q);
-    move.end_machine = words;
+    AxisWords words = move.end_machine = inverse_.chain().layout.words(Q);
     if (options_.mode == PostMode::tip) {
       words.head<3>() = P.p_WT;
     } else {
       words -= tool_offset_;
     }
-    words.head<3>() -= options_.part_zero;
+    words.head<3>() -= options_.work_offset;
     move.end = words;
     const bool moves_tip = way > 0.0;
     if (kind == MoveKind::feed) {
@@ -448,7 +447,7 @@ class Post {
       const double turn = (Q - Q_).tail<kJoints - kLinearJoints>().norm();
       note_speed(line, P, Q, time);
       // a block of no time at all: nothing moves
-      move.feed = time > 0.0 ? (moves_tip ? way : turn) / time : options_.turn_rate;
+      move.feed = time > 0.0 ? (moves_tip ? way : turn) / time : options_.rotary_rate;
     }
     s_ += way;
     move.s_end = s_;
@@ -475,7 +474,7 @@ class Post {
   };
   Runs runs_;        // as last programmed
   double rounding_;  // m, share of the tolerance of the tip
-  Posted out_;
+  PostProcessed out_;
   std::vector<Fault> faults_;
   Joints Q_;
   ToolPose here_;
@@ -518,9 +517,10 @@ std::string reason(const plant::JointSolution& solution, const plant::InverseKin
                      inverse.settings().upper[solution.joint] / unit);
 }
 
-Posted post(const ClData& data, const std::string& file, const plant::InverseKinematics& inverse,
-            const PostOptions& options, std::vector<Warning>* of_refused) {
-  return Post(data, file, inverse, options).run(of_refused);
+PostProcessed post(const ClData& data, const std::string& file,
+                   const plant::InverseKinematics& inverse, const PostOptions& options,
+                   std::vector<Warning>* refused) {
+  return Post(data, file, inverse, options).run(refused);
 }
 
 }  // namespace servomill::controllers

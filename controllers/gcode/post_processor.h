@@ -32,14 +32,14 @@ struct PostOptions {
   SafeApproachParams safe;
   PostMode mode = PostMode::joints;
   plant::ToolTolerance tolerance;
-  Eigen::Vector3d part_zero = Eigen::Vector3d::Zero();  // m in W: what the work offset holds
-  int work_system = 1;                                  // 1 is G54
-  ToolTable tools;                                      // empty: lengths are 0
+  Eigen::Vector3d work_offset = Eigen::Vector3d::Zero();  // m in W: what the work offset holds
+  int work_system = 1;                                    // 1 is G54
+  ToolTable tools;                                        // empty: lengths are 0
   int tool = 0;                   // in front of the first LOADTL; 0: no tool, H0
   double feed = 0.0;              // m/s, where the data give none; 0: they must
-  double turn_rate = 1.0;         // rad/s of the tool axis where the tip stands still
+  double rotary_rate = 1.0;       // rad/s of the tool axis where the tip stands still
   Joints start = Joints::Zero();  // m, rad; chooses among the solutions of the first location
-  // m/s, rad/s: of which posted times are told to ask too much
+  // m/s, rad/s: of which post-processed times are told to ask too much
   Joints v_max = Joints::Constant(std::numeric_limits<double>::infinity());
 };
 
@@ -47,7 +47,7 @@ struct PostOptions {
 /// round corners with (G64 P).
 inline constexpr double kChordTolerance = 0.5;
 
-struct Posted {
+struct PostProcessed {
   std::vector<Move> moves;  // `line` is that of the cutter location
   std::vector<Warning> warnings;
   std::size_t inserted = 0;  // points between locations
@@ -73,8 +73,9 @@ struct Posted {
 /// @param of_refused  where a fault ends it: receives the warnings
 /// @throws InputError with every location that the machine cannot reach, or cannot reach from the
 /// one before without a jump of its axes; every feed and tool that is not known
-Posted post(const ClData& data, const std::string& file, const plant::InverseKinematics& inverse,
-            const PostOptions& options, std::vector<Warning>* of_refused = nullptr);
+PostProcessed post(const ClData& data, const std::string& file,
+                   const plant::InverseKinematics& inverse, const PostOptions& options,
+                   std::vector<Warning>* of_refused = nullptr);
 
 /// The part of a message that says why a pose has no joints.
 std::string reason(const plant::JointSolution& solution, const plant::InverseKinematics& inverse);

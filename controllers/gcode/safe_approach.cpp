@@ -14,9 +14,9 @@ constexpr int kZ = 2;         // joint
 }  // namespace
 
 SafeApproach::SafeApproach(const plant::InverseKinematics& inverse,
-                           const SafeApproachParams& params, const Eigen::Vector3d& part_zero,
+                           const SafeApproachParams& params, const Eigen::Vector3d& work_offset,
                            int work_system)
-    : inverse_(inverse), params_(params), part_zero_(part_zero), work_system_(work_system) {}
+    : inverse_(inverse), params_(params), work_offset_(work_offset), work_system_(work_system) {}
 
 ToolPose SafeApproach::clear_of(const ToolPose& P) const {
   return {P.p_WT + params_.clearance * P.k_W, P.k_W};
@@ -56,7 +56,7 @@ std::string SafeApproach::rapid_line(const Joints& Q, int first, int end) const 
   for (int j = first; j < end; ++j) {
     if (!inverse_.chain().layout.has(j)) continue;
     const bool is_linear = j < kLinearJoints;
-    const double value = is_linear ? (Q[j] - part_zero_[j]) / mm : Q[j] / deg;
+    const double value = is_linear ? (Q[j] - work_offset_[j]) / mm : Q[j] / deg;
     words +=
         fmt::format(" {}{}", inverse_.chain().layout.letter_of(j), fixed_text(value, kDecimals));
   }

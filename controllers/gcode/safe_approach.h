@@ -27,10 +27,10 @@ struct SafeApproachParams {
 
 class SafeApproach {
  public:
-  /// @param part_zero    work offset (3; m)
+  /// @param work_offset    work offset (3; m)
   /// @param work_system  1 is G54
   SafeApproach(const plant::InverseKinematics& inverse, const SafeApproachParams& params,
-               const Eigen::Vector3d& part_zero, int work_system);
+               const Eigen::Vector3d& work_offset, int work_system);
 
   double clearance() const { return params_.clearance; }
 
@@ -60,7 +60,7 @@ class SafeApproach {
 
   const plant::InverseKinematics& inverse_;
   SafeApproachParams params_;
-  Eigen::Vector3d part_zero_;
+  Eigen::Vector3d work_offset_;
   int work_system_;
 };
 

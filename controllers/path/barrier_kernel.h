@@ -1,5 +1,5 @@
-/// The arithmetic of quicken.h on eight points at once: slacks, and the derivatives of what they
-/// cost. Included by the kernel: no Eigen here.
+/// The arithmetic of time_optimal_law.h on eight points at once: slacks, and the derivatives of
+/// what they cost. Included by the kernel: no Eigen here.
 #pragma once
 
 #include <array>

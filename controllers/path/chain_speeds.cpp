@@ -5,13 +5,14 @@
 #include <cstddef>
 #include <utility>
 
-#include "controllers/path/quicken.h"
+#include "controllers/path/time_optimal_law.h"
 
 namespace servomill::controllers {
 namespace {
 
 constexpr std::array<double, 3> kCurveShares = {0.25, 0.5, 0.8};  // tried on each chain
-constexpr std::size_t kManyPieces = 1000;  // of which the last share is taken: see quicken.h
+constexpr std::size_t kManyPieces =
+    1000;  // of which the last share is taken: see time_optimal_law.h
 
 // The pieces of one path and the moves that reach into them.
 class ChainTiming {
@@ -34,7 +35,7 @@ class ChainTiming {
         [&](const CubicPiece& piece, double h, const JointLimits& limits, const FeedLimit& feed) {
           v_top.push_back(straight_speed(piece, h, limits, feed));
         });
-    return quicken(std::move(best), path_, v_top, limits_);
+    return refine_time_law(std::move(best), path_, v_top, limits_);
   }
 
  private:

@@ -7,8 +7,8 @@
 
 namespace servomill::controllers {
 
-/// (1) of quicken.h at a point, divided by the limit of jerk: jerk = (j0 b + j1 b' + j2 b'')
-/// sqrt(b). The acceleration follows from j1 and j2.
+/// (1) of time_optimal_law.h at a point, divided by the limit of jerk: jerk = (j0 b + j1 b' + j2
+/// b'') sqrt(b). The acceleration follows from j1 and j2.
 struct LimitForm {
   Joints j0, j1, j2;
 

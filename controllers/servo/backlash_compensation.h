@@ -13,7 +13,7 @@ struct BacklashCompensationParams {
 };
 
 struct BacklashCompensationState {
-  double farthest = 0.0;  // m or rad, set point farthest in the direction of motion
+  double farthest = 0.0;  // m or rad, setpoint farthest in the direction of motion
   int direction = 1;      // flank that carries
   double offset = 0.0;    // m or rad, 0 ... -width
 };
@@ -31,7 +31,7 @@ inline BacklashCompensationState standing_at(const BacklashCompensationParams&, 
 
 /// Advances the ramp by one position period; call it before position_loop.
 ///
-/// The set point reverses when it has come back by more than the hysteresis from its farthest
+/// The setpoint reverses when it has come back by more than the hysteresis from its farthest
 /// point. From that period on the offset moves by width / n per period, n = time / Tp, to the other
 /// end; a reversal on the way turns it round.
 ///

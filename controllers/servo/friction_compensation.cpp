@@ -7,7 +7,7 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr double kSpent = 1e-9;  // of the spike's height; what is left never becomes a denormal
+constexpr double kSpent = 1e-9;  // of the pulse's height; what is left never becomes a denormal
 
 double turned(double direction, double v, double v_switch) {
   if (v == 0.0) return direction;
@@ -19,16 +19,18 @@ double turned(double direction, double v, double v_switch) {
 
 double friction_compensation(const FrictionCompensationParams& p, FrictionCompensationState& s,
                              double v) {
-  assert(p.tau_spike == 0.0 || std::min(p.spike_time, p.spike_distance) < kNoLimit);
+  assert(p.tau_pulse == 0.0 ||
+         std::min(p.reversal_pulse_time, p.reversal_pulse_distance) < kNoLimit);
   const double before = s.direction;
   s.direction = turned(before, v, p.v_switch);
   if (before * s.direction < 0.0 || (before != 0.0 && s.direction == 0.0)) {
-    s.spike = std::copysign(1.0, v) * p.tau_spike;
-  } else if (s.spike != 0.0) {
-    s.spike *= std::exp(-p.Tv / p.spike_time - std::abs(v) * p.Tv / p.spike_distance);
-    if (std::abs(s.spike) < kSpent * std::abs(p.tau_spike)) s.spike = 0.0;
+    s.pulse = std::copysign(1.0, v) * p.tau_pulse;
+  } else if (s.pulse != 0.0) {
+    s.pulse *=
+        std::exp(-p.Tv / p.reversal_pulse_time - std::abs(v) * p.Tv / p.reversal_pulse_distance);
+    if (std::abs(s.pulse) < kSpent * std::abs(p.tau_pulse)) s.pulse = 0.0;
   }
-  return s.direction * (s.direction > 0.0 ? p.tau_plus : p.tau_minus) + s.spike;
+  return s.direction * (s.direction > 0.0 ? p.tau_plus : p.tau_minus) + s.pulse;
 }
 
 }  // namespace servomill::controllers

@@ -19,7 +19,7 @@ struct PositionFeedbackParams {
 };
 
 struct PositionFeedbackState {
-  double difference = 0.0;  // m or rad, y_scale - y_motor as it is believed
+  double difference = 0.0;  // m or rad, y_scale - y_motor as it is identified
 };
 
 /// 1 - exp(-2 pi f Tp): a first-order low-pass at the crossover frequency f (Hz), exact at the
@@ -50,7 +50,7 @@ Number combined_reading(const Number& gain, Number& difference, const Number& y_
 ///
 ///   d_k = d_(k-1) + gain (y_scale - y_motor - d_(k-1)),  y = y_motor + d_k
 ///
-/// An offset injected into the scale signal passes the low-pass, one added to the set point does
+/// An offset injected into the scale signal passes the low-pass, one added to the setpoint does
 /// not: with lag mode gain Kv an injected sine A sin(w t) lags by about
 /// A w (1/Kv + 1/(2 pi f) - Tp/2), the same sine from a table by A w / Kv.
 /// @param y_motor  r phi (m or rad)

@@ -10,7 +10,7 @@ namespace servomill::controllers {
 
 /// Limits of one axis; each is for itself, without one nothing is supervised.
 struct SupervisionParams {
-  double following_error = kNoLimit;     // m or rad, set point less reading
+  double following_error = kNoLimit;     // m or rad, setpoint less reading
   double standstill = kNoLimit;          // m or rad, the same while the axis is to stand
   double standstill_delay = 0.0;         // s, granted for settling before that
   double standstill_speed = 1e-6;        // m/s or rad/s, commanded speed up to which it is to stand
@@ -26,7 +26,7 @@ struct SupervisionState {
 
 /// Reading of one axis by the NC in a position period (m or rad, m/s or rad/s).
 struct AxisReading {
-  double q_cmd = 0.0;    // set point of the position loop
+  double q_cmd = 0.0;    // setpoint of the position loop
   double dq_cmd = 0.0;   // its fed-forward speed
   double y = 0.0;        // position that the loop reads
   double y_motor = 0.0;  // r phi

@@ -10,8 +10,8 @@ namespace {
 
 ToolPose pose_of(const CutterLocation& location) { return {location.P, location.U.normalized()}; }
 
-std::optional<Joints> posted(const InverseKinematics& inverse, const Eigen::Vector3d& p_ST,
-                             const CutterLocation& location, const Joints& Q_near) {
+std::optional<Joints> post_processed(const InverseKinematics& inverse, const Eigen::Vector3d& p_ST,
+                                     const CutterLocation& location, const Joints& Q_near) {
   const JointSolution solution = inverse.nearest(pose_of(location), p_ST, Q_near);
   if (!solution.is_reached()) return {};
   return solution.Q;
@@ -26,22 +26,24 @@ double shape_at(ErrorShape shape, double t) {
   return shape == ErrorShape::harmonic ? std::sin(std::numbers::pi * t) : 4.0 * t * (1.0 - t);
 }
 
-std::optional<PostedSegment> PostedSegment::post(const InverseKinematics& inverse,
-                                                 const Eigen::Vector3d& p_ST,
-                                                 const CutterLocation& from,
-                                                 const CutterLocation& to, const Joints& Q_near) {
-  const auto Q_0 = posted(inverse, p_ST, from, Q_near);
+std::optional<PostProcessedSegment> PostProcessedSegment::post(const InverseKinematics& inverse,
+                                                               const Eigen::Vector3d& p_ST,
+                                                               const CutterLocation& from,
+                                                               const CutterLocation& to,
+                                                               const Joints& Q_near) {
+  const auto Q_0 = post_processed(inverse, p_ST, from, Q_near);
   if (!Q_0) return {};
-  const auto Q_1 = posted(inverse, p_ST, to, *Q_0);
+  const auto Q_1 = post_processed(inverse, p_ST, to, *Q_0);
   if (!Q_1) return {};
-  PostedSegment segment(inverse, p_ST, *Q_0, *Q_1);
+  PostProcessedSegment segment(inverse, p_ST, *Q_0, *Q_1);
   segment.from_ = from;
   segment.to_ = to;
   return segment;
 }
 
-PostedSegment::PostedSegment(const InverseKinematics& inverse, const Eigen::Vector3d& p_ST,
-                             const Joints& Q_0, const Joints& Q_1)
+PostProcessedSegment::PostProcessedSegment(const InverseKinematics& inverse,
+                                           const Eigen::Vector3d& p_ST, const Joints& Q_0,
+                                           const Joints& Q_1)
     : inverse_(&inverse), p_ST_(p_ST), Q_0_(Q_0), Q_1_(Q_1) {
   const auto located = [&](const Joints& Q) {
     const ToolPose P = forward(inverse.chain(), Q, p_ST);
@@ -51,22 +53,22 @@ PostedSegment::PostedSegment(const InverseKinematics& inverse, const Eigen::Vect
   to_ = located(Q_1);
 }
 
-CutterLocation PostedSegment::at(double t) const {
+CutterLocation PostProcessedSegment::at(double t) const {
   return {from_.P + t * (to_.P - from_.P), from_.U + t * (to_.U - from_.U)};
 }
 
-std::optional<Joints> PostedSegment::joints(NonlinearError definition, double t) const {
+std::optional<Joints> PostProcessedSegment::joints(NonlinearError definition, double t) const {
   if (definition == NonlinearError::joint_interpolation) return linear(t);
   const CutterLocation location = at(t);
   if (location.U.norm() == 0.0) return {};
-  return posted(*inverse_, p_ST_, location, linear(t));
+  return post_processed(*inverse_, p_ST_, location, linear(t));
 }
 
-std::optional<Eigen::Vector3d> PostedSegment::error(NonlinearError definition, double t,
-                                                    ErrorFrame frame) const {
+std::optional<Eigen::Vector3d> PostProcessedSegment::error(NonlinearError definition, double t,
+                                                           ErrorFrame frame) const {
   const auto Q = joints(definition, t);
   if (!Q) return {};
-  if (definition == NonlinearError::posted_location) return (*Q - linear(t)).head<3>();
+  if (definition == NonlinearError::post_processed_location) return (*Q - linear(t)).head<3>();
   if (frame == ErrorFrame::workpiece) {
     return forward(inverse_->chain(), *Q, p_ST_).p_WT - at(t).P;
   }
@@ -75,13 +77,13 @@ std::optional<Eigen::Vector3d> PostedSegment::error(NonlinearError definition, d
   return (*Q - *onto_chord).head<3>();
 }
 
-std::optional<Joints> PostedSegment::compensated(NonlinearError definition, ErrorShape shape,
-                                                 const Eigen::Vector3d& amplitude, double t,
-                                                 ErrorFrame frame) const {
+std::optional<Joints> PostProcessedSegment::compensated(NonlinearError definition, ErrorShape shape,
+                                                        const Eigen::Vector3d& amplitude, double t,
+                                                        ErrorFrame frame) const {
   auto Q = joints(definition, t);
   if (!Q) return {};
   const Eigen::Vector3d eps = amplitude * shape_at(shape, t);
-  if (definition == NonlinearError::posted_location || frame == ErrorFrame::machine) {
+  if (definition == NonlinearError::post_processed_location || frame == ErrorFrame::machine) {
     Q->head<3>() -= eps;
     return Q;
   }
@@ -89,11 +91,9 @@ std::optional<Joints> PostedSegment::compensated(NonlinearError definition, Erro
   return inverse_fixed_rotary(inverse_->chain(), tip - eps, *Q, p_ST_);
 }
 
-std::optional<std::vector<PathPoint>> PostedSegment::compensated_points(NonlinearError definition,
-                                                                        ErrorShape shape,
-                                                                        double tolerance,
-                                                                        double spacing,
-                                                                        ErrorFrame frame) const {
+std::optional<std::vector<PathPoint>> PostProcessedSegment::compensated_points(
+    NonlinearError definition, ErrorShape shape, double tolerance, double spacing,
+    ErrorFrame frame) const {
   assert(spacing > 0.0);
   const auto amplitude = error(definition, 0.5, frame);
   if (!amplitude) return {};
@@ -111,7 +111,7 @@ std::optional<std::vector<PathPoint>> PostedSegment::compensated_points(Nonlinea
   return points;
 }
 
-std::optional<NonlinearPeaks> nonlinear_peaks(const PostedSegment& segment,
+std::optional<NonlinearPeaks> nonlinear_peaks(const PostProcessedSegment& segment,
                                               NonlinearError definition, ErrorFrame frame,
                                               int intervals) {
   const auto a = segment.error(definition, 0.5, frame);

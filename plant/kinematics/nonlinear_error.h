@@ -2,13 +2,14 @@
 /// and the compensation with them. Source: X. Li, Simulation of motion nonlinear error compensation
 /// of CNC machine tools with multi-axis linkage (2024), sections 3.2.2 to 3.2.5.
 ///
-/// A location is posted to joints; between two posts S_0 and S_1 the error has two definitions,
-/// which the paper does not keep apart:
+/// A location is post-processed to joints; between two posts S_0 and S_1 the error has two
+/// definitions, which the paper does not keep apart:
 ///
 ///   joint_interpolation   The joints move linearly from S_0 to S_1. Error: the tip minus the point
 ///                         of the chord P_0 P_1 at the same t; or, of the same length, where the
 ///                         linear axes are minus where they would bring the tip onto it.
-///   posted_location       P and U are interpolated linearly and posted. Error: the linear joints
+///   post_processed_location       P and U are interpolated linearly and post-processed. Error: the
+///   linear joints
 ///                         of the post minus the point of the line S_0 S_1 at the same t, in the
 ///                         machine (equation 3.3).
 ///
@@ -22,7 +23,7 @@
 /// joint_interpolation the tip then keeps to the chord. Its amplitude is taken in the machine, as
 /// equation 3.3 does. Of the paper's locations a parabola then leaves half as much as with that in
 /// the workpiece (example 1: 0.53 instead of 1.05 % of the peak); of others it may leave more.
-/// With posted_location, as published, the
+/// With post_processed_location, as published, the
 /// posts come to the line between S_0 and S_1: that is where the machine goes of itself, and the
 /// tip is as far from the chord as without.
 #pragma once
@@ -34,11 +35,12 @@
 
 namespace servomill::plant {
 
-enum class NonlinearError : std::uint8_t { joint_interpolation, posted_location };
+enum class NonlinearError : std::uint8_t { joint_interpolation, post_processed_location };
 enum class ErrorShape : std::uint8_t { harmonic, parabolic };
 
 /// Frame in which the vector e of joint_interpolation is expressed, and with it the amplitude of a
-/// model. |e| is the same in both. An error by posted_location is always in the machine frame.
+/// model. |e| is the same in both. An error by post_processed_location is always in the machine
+/// frame.
 enum class ErrorFrame : std::uint8_t { machine, workpiece };
 
 /// Tip and tool axis as a CAM system gives them. The length of U does not matter for the post; it
@@ -52,25 +54,27 @@ struct CutterLocation {
 double shape_at(ErrorShape shape, double t);
 
 /// Two locations and their posts.
-class PostedSegment {
+class PostProcessedSegment {
  public:
   /// Posts two locations, the second next to the first.
   /// @param inverse  must outlive the segment
   /// @param Q_near   joints before; chooses among solutions
   /// @return nullopt if one cannot be reached
-  static std::optional<PostedSegment> post(const InverseKinematics& inverse,
-                                           const Eigen::Vector3d& p_ST, const CutterLocation& from,
-                                           const CutterLocation& to, const Joints& Q_near);
+  static std::optional<PostProcessedSegment> post(const InverseKinematics& inverse,
+                                                  const Eigen::Vector3d& p_ST,
+                                                  const CutterLocation& from,
+                                                  const CutterLocation& to, const Joints& Q_near);
 
   /// Segment of a program: locations are where the joints put the tool.
-  PostedSegment(const InverseKinematics& inverse, const Eigen::Vector3d& p_ST, const Joints& Q_0,
-                const Joints& Q_1);
+  PostProcessedSegment(const InverseKinematics& inverse, const Eigen::Vector3d& p_ST,
+                       const Joints& Q_0, const Joints& Q_1);
 
   const Joints& Q_0() const { return Q_0_; }
   const Joints& Q_1() const { return Q_1_; }
   double length() const { return (to_.P - from_.P).norm(); }  ///< of the chord (m)
 
-  /// Joints at t: linear (joint_interpolation), or posted; nullopt where the latter is not reached.
+  /// Joints at t: linear (joint_interpolation), or post-processed; nullopt where the latter is not
+  /// reached.
   std::optional<Joints> joints(NonlinearError definition, double t) const;
 
   /// e(t) (3; m).
@@ -110,8 +114,8 @@ struct NonlinearPeaks {
   double parabolic = 0.0;  // m, of |e - 4 a t (1 - t)|
 };
 
-/// @return nullopt if a location between cannot be posted
-std::optional<NonlinearPeaks> nonlinear_peaks(const PostedSegment& segment,
+/// @return nullopt if a location between cannot be post-processed
+std::optional<NonlinearPeaks> nonlinear_peaks(const PostProcessedSegment& segment,
                                               NonlinearError definition,
                                               ErrorFrame frame = ErrorFrame::machine,
                                               int intervals = 1000);

@@ -14,13 +14,13 @@ namespace servomill {
 /// convergence refine one, without knowing the strategy or the parameter.
 enum class Shortcoming : std::uint8_t {
   none,
-  points,           // of tables, and what lies between them
-  delay,            // response, dead time, update
-  saturation,       // limits of what it displaces
-  one_step,         // errors evaluated where displacing changes them
-  identification,   // knows less than the case has
-  chord_tolerance,  // of rewritten programs: the square of the length of blocks
-  block_length,     // of rewritten programs
+  points,             // of tables, and what lies between them
+  delay,              // response, dead time, update
+  saturation,         // limits of what it displaces
+  single_evaluation,  // errors evaluated where displacing changes them
+  identification,     // knows less than the case has
+  chord_tolerance,    // of rewritten programs: the square of the length of blocks
+  block_length,       // of rewritten programs
 };
 
 /// One parameter of a strategy. Numbers are in the unit that the name's suffix tells (as the user

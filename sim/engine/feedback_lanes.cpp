@@ -35,7 +35,7 @@ FeedbackLanes::Together& FeedbackLanes::of(std::size_t run) {
   return *found;
 }
 
-void FeedbackLanes::set_reference(std::size_t run, const AxisSetPoint& set, double s) {
+void FeedbackLanes::set_reference(std::size_t run, const AxisSetpoint& set, double s) {
   strategies::Reading& reading = readings_[run - first_];
   reading.s = s;
   reading.Q_ref = set.Q_ref;

@@ -26,7 +26,7 @@ class FeedbackLanes {
   /// @param model_period  s, of all runs
   void add(std::size_t run, const strategies::Strategy& strategy, double model_period);
   /// Sets the command of the NC of a run from now on, for strategies that observe it.
-  void set_reference(std::size_t run, const AxisSetPoint& set, double s);
+  void set_reference(std::size_t run, const AxisSetpoint& set, double s);
   /// Settles at standstill in Q_meas; d of all joints (5; m, rad).
   Joints settle(std::size_t run, const Joints& Q_meas);
   /// The run goes on no longer; where it has been saturated.

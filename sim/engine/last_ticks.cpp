@@ -5,11 +5,11 @@
 
 namespace servomill::sim {
 
-void LastTicks::keep(double time, const Joints& Q_cmd, const Joints& Q_read, const Joints& Q_true,
+void LastTicks::keep(double time, const Joints& Q_cmd, const Joints& Q_fb, const Joints& Q_true,
                      const Joints& current) {
   double* row = ring_.data() + (count_++ % kLastTicks) * kPerRow;
   *row++ = time;
-  for (const Joints* Q : {&Q_cmd, &Q_read, &Q_true, &current}) {
+  for (const Joints* Q : {&Q_cmd, &Q_fb, &Q_true, &current}) {
     for (int j = 0; j < kJoints; ++j) *row++ = (*Q)[j];
   }
 }
@@ -18,8 +18,8 @@ Series LastTicks::series(const JointLayout& layout) const {
   std::string letters;
   for (const int j : present_) letters += layout.letter_of(j);
   Series out({{"time", "s", "time since the start of the program", "", ""},
-              {"cmd", "m or rad", "set point", letters, "axis"},
-              {"read", "m or rad", "position that the NC reads", letters, "axis"},
+              {"cmd", "m or rad", "setpoint", letters, "axis"},
+              {"fb", "m or rad", "position feedback", letters, "axis"},
               {"true", "m or rad", "position of the slide or table", letters, "axis"},
               {"current", "A", "torque-forming current", letters, "axis"}});
   const std::size_t rows = std::min(count_, kLastTicks);

@@ -18,7 +18,7 @@ class LastTicks {
     ring_.resize(kLastTicks * kPerRow);
   }
   /// One position period (s; m, rad; A).
-  void keep(double time, const Joints& Q_cmd, const Joints& Q_read, const Joints& Q_true,
+  void keep(double time, const Joints& Q_cmd, const Joints& Q_fb, const Joints& Q_true,
             const Joints& current);
   Series series(const JointLayout& layout) const;
 

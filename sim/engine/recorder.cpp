@@ -53,11 +53,11 @@ std::vector<Signal> signals(const std::string& linear, const std::string& rotary
       all.push_back({name + "_rotary", unit_rotary, what + ", rotary axes", rotary, kRotary});
   };
   per_axis("ref", "mm", "deg", "interpolated position");
-  per_axis("cmd", "mm", "deg", "set point after corrections");
-  per_axis("read", "mm", "deg", "position that the NC reads, virtual displacement included");
+  per_axis("cmd", "mm", "deg", "setpoint after corrections");
+  per_axis("fb", "mm", "deg", "position feedback, virtual displacement included");
   per_axis("meas", "mm", "deg", "reading of the scale");
   per_axis("true", "mm", "deg", "position of the slide or table");
-  per_axis("following_error", "um", "deg", "set point minus position that the NC reads");
+  per_axis("following_error", "um", "deg", "setpoint minus position feedback");
   per_axis("velocity", "mm/s", "deg/s", "velocity of the slide or table");
   per_axis("current", "A", "A", "torque-forming current");
   per_axis("torque", "N m", "N m", "motor torque");
@@ -69,11 +69,9 @@ std::vector<Signal> signals(const std::string& linear, const std::string& rotary
   all.insert(all.end(), std::begin(kToolSignals), std::end(kToolSignals));
   if (with_uncorrectable) {
     all.push_back({"uncorrectable_tip", "um",
-                   "distance of the tip that the corrected axes cannot take away, believed", "",
-                   ""});
+                   "TCP deviation that the axes cannot compensate, identified", "", ""});
     all.push_back({"uncorrectable_axis", "urad",
-                   "angle of the tool axis that the corrected axes cannot take away, believed", "",
-                   ""});
+                   "tool axis deviation that the axes cannot compensate, identified", "", ""});
   }
   if (with_cut) {
     all.push_back({"cutting_force", "N",
@@ -166,13 +164,13 @@ class Rounding {
 
 class Recorder::Rows {
  public:
-  Rows(const MachineSettings& machine, const plant::VolumetricModel& truth,
+  Rows(const MachineSettings& machine, const plant::VolumetricModel& machine_errors,
        const plant::VolumetricModel* imposed, const ProgramPath& path,
        const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
        bool rotary_displaced, std::vector<const strategies::Strategy*> correcting, bool cuts,
        RowKeeping keeping)
       : machine_(machine),
-        truth_(truth),
+        machine_errors_(machine_errors),
         imposed_(imposed),
         path_(path),
         tips_(tips),
@@ -202,7 +200,7 @@ class Recorder::Rows {
   }
 
   void add(const std::vector<Snapshot>& block, std::span<const double> directions) {
-    const std::size_t plays = truth_.plays().size();
+    const std::size_t plays = machine_errors_.plays().size();
     if (!keeper_) expect(0);
     rows_.resize(block.size() * width_);
     double* row = rows_.data();
@@ -224,10 +222,10 @@ class Recorder::Rows {
   Joints ideal_joints(const Joints& Q_true, int tool_offset) const;
   void find_poses(std::span<const double> directions);
   void make_row(const Snapshot& now, std::size_t place, double* to);
-  void put_leftover(std::size_t place, RowWriter& row) const;
+  void put_residual(std::size_t place, RowWriter& row) const;
 
   const MachineSettings& machine_;
-  const plant::VolumetricModel& truth_;
+  const plant::VolumetricModel& machine_errors_;
   const plant::VolumetricModel* imposed_;
   const ProgramPath& path_;
   const std::map<int, Eigen::Vector3d>& tips_;
@@ -276,7 +274,7 @@ std::size_t Recorder::Rows::find_places(const std::vector<Snapshot>& block, std:
 Joints Recorder::Rows::ideal_joints(const Joints& Q_true, int tool_offset) const {
   const auto tip = tips_.find(tool_offset);
   const Eigen::Vector3d p_ST = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;
-  return inverse_.nearest(truth_.forward(Q_true, p_ST), p_ST, Q_true).Q;
+  return inverse_.nearest(machine_errors_.forward(Q_true, p_ST), p_ST, Q_true).Q;
 }
 
 // Computes the actual and the nominal pose of the tool.
@@ -287,9 +285,9 @@ void Recorder::Rows::find_poses(std::span<const double> directions) {
   actual_.resize(Q_prog_.size());
   ideal_.poses(Q_prog_, p_ST_, nominal_);
   if (directions.empty()) {
-    truth_.poses(Q_true_, p_ST_, actual_);
+    machine_errors_.poses(Q_true_, p_ST_, actual_);
   } else {
-    truth_.poses(Q_true_, p_ST_, directions, actual_);
+    machine_errors_.poses(Q_true_, p_ST_, directions, actual_);
   }
   if (imposed_ == nullptr) return;
   displacement_.resize(Q_prog_.size());
@@ -323,10 +321,10 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
   };
   per_axis(now.Q_ref, mm, deg);
   per_axis(now.Q_cmd, mm, deg);
-  per_axis(now.Q_read, mm, deg);
+  per_axis(now.Q_fb, mm, deg);
   per_axis(now.Q_meas, mm, deg);
   per_axis(now.Q_true, mm, deg);
-  per_axis(now.Q_cmd - now.Q_read, um, deg);
+  per_axis(now.Q_cmd - now.Q_fb, um, deg);
   per_axis(now.dQ_true, mm, deg);
   per_axis(now.current, 1.0, 1.0);
   per_axis(now.torque, 1.0, 1.0);
@@ -341,7 +339,7 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
   row.put(nominal.k_W, 1.0);
   row.put(actual.k_W, 1.0);
   row.put(contour_error / um);
-  if (!correcting_.empty()) put_leftover(place, row);
+  if (!correcting_.empty()) put_residual(place, row);
   if (cuts_) {
     row.put(now.cutting_force, 1.0);
     for (const int joint : linear_) row.put(now.deflection[joint] / um);
@@ -349,10 +347,10 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
   if (keeping_.thinning) row.put(Q_prog_[place], linear_, mm);
 }
 
-void Recorder::Rows::put_leftover(std::size_t place, RowWriter& row) const {
-  strategies::Leftover sum;
+void Recorder::Rows::put_residual(std::size_t place, RowWriter& row) const {
+  strategies::Residual sum;
   for (const strategies::Strategy* strategy : correcting_) {
-    const auto left = strategy->uncorrectable(Q_prog_[place]).value_or(strategies::Leftover{});
+    const auto left = strategy->uncorrectable(Q_prog_[place]).value_or(strategies::Residual{});
     sum.tip += left.tip;
     sum.axis += left.axis;
   }
@@ -360,15 +358,16 @@ void Recorder::Rows::put_leftover(std::size_t place, RowWriter& row) const {
   row.put(sum.axis / urad);
 }
 
-Recorder::Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
+Recorder::Recorder(const MachineSettings& machine, const plant::VolumetricModel& machine_errors,
                    const plant::VolumetricModel* imposed, const ProgramPath& path,
                    const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
                    bool rotary_displaced, std::vector<const strategies::Strategy*> correcting,
                    bool cuts, RowKeeping keeping)
-    : rows_(std::make_unique<Rows>(machine, truth, imposed, path, tips, format, rotary_displaced,
-                                   std::move(correcting), cuts, std::move(keeping))) {
+    : rows_(std::make_unique<Rows>(machine, machine_errors, imposed, path, tips, format,
+                                   rotary_displaced, std::move(correcting), cuts,
+                                   std::move(keeping))) {
   filling_.snapshots.reserve(kBlockRows);
-  filling_.directions.reserve(kBlockRows * truth.plays().size());
+  filling_.directions.reserve(kBlockRows * machine_errors.plays().size());
 }
 
 Recorder::~Recorder() = default;

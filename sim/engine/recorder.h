@@ -25,7 +25,7 @@ struct Snapshot {
   std::size_t piece = 0;           // of the programmed path
   Joints Q_ref = Joints::Zero();   // interpolated
   Joints Q_cmd = Joints::Zero();   // after set-point corrections
-  Joints Q_read = Joints::Zero();  // what the NC reads (virtual encoder)
+  Joints Q_fb = Joints::Zero();    // what the NC reads (virtual encoder)
   Joints Q_meas = Joints::Zero();  // what the scale says
   Joints Q_true = Joints::Zero();
   Joints dQ_true = Joints::Zero();
@@ -46,7 +46,7 @@ class Recorder {
   /// @param cuts  force of the cut and deflection are recorded; the deflection moves the tip
   /// @param keeping  where rows are kept
   /// @param correcting  strategies of which is recorded what they cannot correct, in all
-  Recorder(const MachineSettings& machine, const plant::VolumetricModel& truth,
+  Recorder(const MachineSettings& machine, const plant::VolumetricModel& machine_errors,
            const plant::VolumetricModel* imposed, const ProgramPath& path,
            const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format = {},
            bool rotary_displaced = false, std::vector<const strategies::Strategy*> correcting = {},
@@ -57,7 +57,7 @@ class Recorder {
 
   /// Says how many rows will come, about; before the first.
   void expect(std::size_t rows);
-  /// @param directions  in which axes have travelled: of each of the truth's plays()
+  /// @param directions  in which axes have travelled: of each of the machine_errors's plays()
   void record(const Snapshot& now, std::span<const double> directions = {});
   /// All rows; once.
   Series take();

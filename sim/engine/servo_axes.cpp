@@ -210,7 +210,7 @@ void ServoAxes::settle(std::size_t l, double Q, double d) {
   const double phi = motor_reading(l), scale = scale_reading(l, state.x, now_);
   const double y_motor = drive.r * phi, y_scale = scale + d;
   auto feedback = controllers::standing_at(functions.position_feedback, y_motor, y_scale);
-  const double Q_read =
+  const double Q_fb =
       controllers::position_feedback(functions.position_feedback, feedback, y_motor, y_scale);
 
   ServoBlock& servo = servos_[block(l)];
@@ -226,8 +226,8 @@ void ServoAxes::settle(std::size_t l, double Q, double d) {
   set(&ServoBlock::y_motor, y_motor);
   set(&ServoBlock::y_scale, y_scale);
   set(&ServoBlock::difference, feedback.difference);
-  set(&ServoBlock::Q_read, Q_read);
-  set(&ServoBlock::Q_cmd, Q_read);
+  set(&ServoBlock::Q_fb, Q_fb);
+  set(&ServoBlock::Q_cmd, Q_fb);
   for (const auto member :
        {&ServoBlock::dQ_ff, &ServoBlock::ddQ_ff, &ServoBlock::v_add, &ServoBlock::tau_add}) {
     set(member, 0.0);
@@ -238,9 +238,9 @@ void ServoAxes::settle(std::size_t l, double Q, double d) {
     own.marks.emplace(plant::ReferenceMarks(marks->params), marks->allowed);
     own.marks->start(state.x, state.x + d);
   }
-  own.backlash = controllers::standing_at(functions.backlash, Q_read);
+  own.backlash = controllers::standing_at(functions.backlash, Q_fb);
   own.supervision =
-      controllers::standing_at(functions.supervision, {Q_read, 0.0, Q_read, y_motor, y_scale});
+      controllers::standing_at(functions.supervision, {Q_fb, 0.0, Q_fb, y_motor, y_scale});
 }
 
 void ServoAxes::displace(const Joints& displacement, std::size_t run) {
@@ -279,7 +279,7 @@ void ServoAxes::get_readings(JointLanes& Q_meas, std::size_t first) const {
   });
 }
 
-void ServoAxes::follow(const AxisSetPoint& set, std::size_t run) {
+void ServoAxes::follow(const AxisSetpoint& set, std::size_t run) {
   if (in_a_row_) {
     row(&ServoBlock::Q_cmd) = set.Q_cmd;
     row(&ServoBlock::dQ_ff) = set.dQ_ff;
@@ -386,7 +386,7 @@ void ServoAxes::run_position_loops() {
     // Only the motor cannot see the gap; the other loops gain the time. It is counted off the
     // motor's reading, so that the gap is no following error.
     if (functions.position_feedback.kind == controllers::PositionFeedback::motor) {
-      at(&ServoBlock::Q_read, l) -= ramp.offset;
+      at(&ServoBlock::Q_fb, l) -= ramp.offset;
     } else {
       at(&ServoBlock::v_add, l) = ramp.rate;
     }
@@ -456,7 +456,7 @@ std::optional<std::string> ServoAxes::fault_of(std::size_t l) {
   Functions& own = functions_[l];
   const auto fault = controllers::supervise(
       machine.nc.functions[j].supervision, own.supervision,
-      {at(&ServoBlock::Q_cmd, l), at(&ServoBlock::dQ_ff, l), at(&ServoBlock::Q_read, l),
+      {at(&ServoBlock::Q_cmd, l), at(&ServoBlock::dQ_ff, l), at(&ServoBlock::Q_fb, l),
        at(&ServoBlock::y_motor, l), at(&ServoBlock::y_scale, l)});
   if (fault) {
     return fmt::format("{} beyond {:g} {}", name_of(fault->fault), fault->limit / unit, unit_name);

@@ -40,7 +40,7 @@ struct DriveWay {
 DriveWay drive_way(const std::vector<Instant>& schedule, std::size_t most_stops = 8);
 
 /// Setpoints of the position loops, for all joints.
-struct AxisSetPoint {
+struct AxisSetpoint {
   Joints Q_ref = Joints::Zero();  // interpolated, filtered
   Joints Q_cmd = Joints::Zero();  // with corrections: what the position loop follows
   Joints dQ_ff = Joints::Zero();  // velocity that is fed forward
@@ -86,7 +86,7 @@ class ServoAxes {
   void displace(const JointLanes& displacement, const LaneFlags& lanes, bool rotary,
                 std::size_t first = 0);
   /// Sets the setpoints that the position loops follow, from now on.
-  void follow(const AxisSetPoint& set, std::size_t run = 0);
+  void follow(const AxisSetpoint& set, std::size_t run = 0);
   /// Sets what is added to a joint, from now on.
   void inject(int joint, const Injection& injection, std::size_t run = 0);
   /// External forces on the slides from now on (5; N, N m), towards +, in place of an injected one.
@@ -135,7 +135,7 @@ class ServoAxes {
   /// not take part and runs beyond the last are left as they are.
   void get_readings(JointLanes& Q_meas, std::size_t first = 0) const;
   /// Positions as the position loops read them last.
-  Joints Q_read(std::size_t run = 0) const { return joints_of(&ServoBlock::Q_read, run); }
+  Joints Q_fb(std::size_t run = 0) const { return joints_of(&ServoBlock::Q_fb, run); }
   Joints Q_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::x, run); }
   Joints dQ_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::v, run); }
   Joints current(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::i, run); }
@@ -328,7 +328,7 @@ void ServoAxes::each_state(int joint, Visit visit) {
   if (functions.position_feedback.kind == controllers::PositionFeedback::crossover) {
     visit(servo.difference[k]);
   }
-  visit(servo.Q_read[k]);
+  visit(servo.Q_fb[k]);
 }
 
 }  // namespace servomill::sim

@@ -45,7 +45,7 @@ void take_readings(ServoBlock* servos, std::size_t count) {
     const Number y =
         controllers::combined_reading(Number(s.feedback_gain), difference, y_motor, y_scale);
     put(s.difference, difference);
-    put(s.Q_read, select(Number(s.reads_scale) > Number(0.0), y_scale, y));
+    put(s.Q_fb, select(Number(s.reads_scale) > Number(0.0), y_scale, y));
   }
 }
 
@@ -53,12 +53,12 @@ bool position_loops(ServoBlock* servos, const DriveBlock* drives, std::size_t co
   bool suspects = false;
   for (std::size_t n = 0; n < count; ++n) {
     ServoBlock& s = servos[n];
-    const auto fine = (abs(Number(s.Q_cmd) - Number(s.Q_read)) <= Number(s.most_following_error)) &
+    const auto fine = (abs(Number(s.Q_cmd) - Number(s.Q_fb)) <= Number(s.most_following_error)) &
                       (abs(Number(drives[n].v)) <= Number(s.most_speed)) &
                       (abs(Number(drives[n].w)) <= Number(s.most_motor_speed));  // false with NaN
     put(s.suspect, select(fine, Number(0.0), Number(1.0)));
     suspects |= !fine.all();
-    controllers::position_loop(s.cascade, s.cascade_state, Number(s.Q_cmd), Number(s.Q_read),
+    controllers::position_loop(s.cascade, s.cascade_state, Number(s.Q_cmd), Number(s.Q_fb),
                                Number(s.dQ_ff), Number(s.ddQ_ff), Number(s.v_add));
   }
   return suspects;

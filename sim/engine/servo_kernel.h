@@ -28,7 +28,7 @@ struct ServoBlock {
   controllers::CurrentLoopLanes current;
 
   // what they are told
-  LaneArray Q_cmd, dQ_ff, ddQ_ff;  // set point
+  LaneArray Q_cmd, dQ_ff, ddQ_ff;  // setpoint
   LaneArray v_add, tau_add;        // m/s, N m: compensation of backlash and friction
   LaneArray displacement;          // m: a virtual encoder adds it to the scale
   LaneArray added_velocity, added_current, added_reading;  // injected from outside
@@ -38,7 +38,7 @@ struct ServoBlock {
   LaneArray scale;             // m or rad, position encoder, read last
   LaneArray y_motor, y_scale;  // m or rad, as the position loop got them
   LaneArray difference;        // state of controllers::position_feedback
-  LaneArray Q_read;            // what the position loop reads
+  LaneArray Q_fb;              // what the position loop reads
   controllers::CascadeLanesState cascade_state;
   controllers::CurrentLoopLanesState current_state;
   LaneArray suspect;  // 1: beyond one of the above
@@ -51,7 +51,7 @@ struct ServoKernel {
   /// scale, likewise; at the positions of drives, or at others, one array for each block.
   void (*read_scales)(ServoBlock* servos, const plant::DriveBlock* drives, std::size_t count);
   void (*read_scales_at)(ServoBlock* servos, const LaneArray* positions, std::size_t count);
-  /// Q_read from phi and scale.
+  /// Q_fb from phi and scale.
   void (*take_readings)(ServoBlock* servos, std::size_t count);
   /// Also marks suspects; whether there are any.
   bool (*position_loops)(ServoBlock* servos, const plant::DriveBlock* drives, std::size_t count);

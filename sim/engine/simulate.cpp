@@ -14,7 +14,7 @@
 #include "sim/engine/last_ticks.h"
 #include "sim/engine/recorder.h"
 #include "sim/engine/servo_axes.h"
-#include "sim/engine/set_point.h"
+#include "sim/engine/setpoint.h"
 #include "sim/model/schedule.h"
 
 namespace servomill::sim {
@@ -82,8 +82,8 @@ class References {
 // The directions in which the axes of the true machine travelled.
 class Travel {
  public:
-  Travel(const plant::VolumetricModel& truth, const Joints& Q)
-      : memory_(truth.plays(), Q), directions_(memory_.size()) {}
+  Travel(const plant::VolumetricModel& machine_errors, const Joints& Q)
+      : memory_(machine_errors.plays(), Q), directions_(memory_.size()) {}
   // Nothing has to be remembered on most machines.
   bool matters() const { return !memory_.empty(); }
   void go_to(const Joints& Q) { memory_.travel(Q); }
@@ -135,13 +135,13 @@ class CaseRun {
         axes_(axes),
         feedback_(feedback),
         run_(run),
-        set_point_(nc_, in.reference, std::move(in.set_points)),
+        setpoint_(nc_, in.reference, std::move(in.setpoints)),
         reference_(references.of(in.reference, 0.0)),
-        recorded_(references.of(in.reference, set_point_.delay())),
-        recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format,
+        recorded_(references.of(in.reference, setpoint_.delay())),
+        recorder_(in.machine, in.machine_errors, in.imposed, in.path, in.tips, in.format,
                   in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
                   in.keeping),
-        travel_(in.truth, Joints::Zero()),
+        travel_(in.machine_errors, Joints::Zero()),
         last_ticks_(in.machine.joints()) {
     end_ =
         static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
@@ -156,13 +156,13 @@ class CaseRun {
   bool interpolate(Tick n) {
     const double t = nc_.periods.seconds(n);
     const auto& reference = reference_.at(t);
-    set_ = set_point_.advance(reference, t, axes_.Q_read(run_));
+    set_ = setpoint_.advance(reference, t, axes_.Q_fb(run_));
     if (in_.feedback) feedback_.set_reference(run_, set_, reference.s);
-    last_ticks_.keep(nc_.periods.seconds(n), set_.Q_cmd, axes_.Q_read(run_), axes_.Q_true(run_),
+    last_ticks_.keep(nc_.periods.seconds(n), set_.Q_cmd, axes_.Q_fb(run_), axes_.Q_true(run_),
                      axes_.current(run_));
     axes_.follow(set_, run_);
     if (cut_) feel_cut(n);
-    std::string_view failure = set_point_.failure();
+    std::string_view failure = setpoint_.failure();
     if (failure.empty() && in_.feedback) failure = feedback_.failure(run_);
     if (!failure.empty())
       result_.outcome = failed(failure, t, in_.path.line(in_.pieces[reference.move]));
@@ -192,7 +192,7 @@ class CaseRun {
     now.piece = in_.pieces[reference.move];
     now.Q_ref = reference.Q_ref;
     now.Q_cmd = set_.Q_cmd;
-    now.Q_read = axes_.Q_read(run_);
+    now.Q_fb = axes_.Q_fb(run_);
     now.Q_meas = axes_.Q_meas(run_);
     now.Q_true = axes_.Q_true(run_);
     now.dQ_true = axes_.dQ_true(run_);
@@ -225,9 +225,9 @@ class CaseRun {
     axes_.load(cut_->load(), run_);
   }
 
-  // The machine has stood at the start for long: readings agree with the set point.
+  // The machine has stood at the start for long: readings agree with the setpoint.
   void settle() {
-    set_ = set_point_.settle();
+    set_ = setpoint_.settle();
     Joints Q = set_.Q_cmd;
     Joints d = Joints::Zero();
     if (in_.feedback) {
@@ -240,7 +240,7 @@ class CaseRun {
     }
     axes_.settle(Q, d, run_);
     if (in_.cutting != nullptr) cut_.emplace(in_).start(recorded_.at(0.0));
-    travel_ = {in_.truth, axes_.Q_true(run_)};
+    travel_ = {in_.machine_errors, axes_.Q_true(run_)};
   }
 
   CaseInputs& in_;
@@ -248,14 +248,14 @@ class CaseRun {
   ServoAxes& axes_;
   FeedbackLanes& feedback_;
   std::size_t run_;
-  SetPoint set_point_;
+  Setpoint setpoint_;
   Reference &reference_, &recorded_;
   Recorder recorder_;
   Travel travel_;
   LastTicks last_ticks_;
   std::optional<Cut> cut_;
   Tick end_ = 0;
-  AxisSetPoint set_;
+  AxisSetpoint set_;
   CaseResult result_;
 };
 
@@ -375,20 +375,20 @@ class IdealRun {
   explicit IdealRun(CaseInputs& in)
       : in_(in),
         periods_(in.machine.nc.periods),
-        set_point_(in.machine.nc, in.reference, std::move(in.set_points)),
+        setpoint_(in.machine.nc, in.reference, std::move(in.setpoints)),
         feedback_(in.feedback ? in.feedback->feedback(model_period_of(in)) : nullptr),
-        recorder_(in.machine, in.truth, in.imposed, in.path, in.tips, in.format,
+        recorder_(in.machine, in.machine_errors, in.imposed, in.path, in.tips, in.format,
                   in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
                   in.keeping),
-        travel_(in.truth, Joints::Zero()) {}
+        travel_(in.machine_errors, Joints::Zero()) {}
 
   CaseResult run(const StopFlag& stop, std::atomic<float>& progress) {
     CaseResult result;
     const double end = in_.reference.duration() + in_.settle_time;
     recorder_.expect(static_cast<std::size_t>(end / periods_.seconds(in_.record_period) + 1.0));
     Tick n = 0;
-    AxisSetPoint set = set_point_.settle();
-    travel_ = {in_.truth, Q_true_of(set)};
+    AxisSetpoint set = setpoint_.settle();
+    travel_ = {in_.machine_errors, Q_true_of(set)};
     if (in_.cutting != nullptr) cut_.emplace(in_).start(reference_at(0));
     for (; periods_.seconds(n) <= end; n += periods_.position) {
       progress.store(static_cast<float>(periods_.seconds(n) / end), std::memory_order_relaxed);
@@ -398,7 +398,7 @@ class IdealRun {
       }
       const double t = periods_.seconds(n);
       const auto sample = in_.reference.at(t, cursor_);
-      set = set_point_.advance(sample, t, set.Q_cmd);
+      set = setpoint_.advance(sample, t, set.Q_cmd);
       now_ = {t, sample.s, set.Q_ref, set.dQ_ff, set.ddQ_ff};
       if (!goes_on(in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
       if (cut_) cut_->advance(reference_at(n));
@@ -416,12 +416,12 @@ class IdealRun {
 
  private:
   controllers::Trajectory::Sample reference_at(Tick n) {
-    return in_.reference.at(periods_.seconds(n) - set_point_.delay(), record_cursor_);
+    return in_.reference.at(periods_.seconds(n) - setpoint_.delay(), record_cursor_);
   }
 
   // False if a strategy cannot go on.
   bool goes_on(int line, Outcome& outcome) const {
-    std::string_view failure = set_point_.failure();
+    std::string_view failure = setpoint_.failure();
     if (failure.empty() && feedback_) failure = feedback_->failure(0);
     if (!failure.empty()) outcome = failed(failure, now_.t, line);
     return failure.empty();
@@ -442,14 +442,14 @@ class IdealRun {
     }
   }
 
-  void record(Tick n, const AxisSetPoint& set, const Joints& Q_true) {
+  void record(Tick n, const AxisSetpoint& set, const Joints& Q_true) {
     Snapshot now;
     now.time = periods_.seconds(n);
     const auto reference = reference_at(n);
     now.s = reference.s;
     now.piece = in_.pieces[reference.move];
     now.Q_ref = set.Q_ref;
-    now.Q_cmd = now.Q_read = set.Q_cmd;
+    now.Q_cmd = now.Q_fb = set.Q_cmd;
     now.Q_meas = now.Q_true = Q_true;
     now.dQ_true = set.dQ_ff;
     if (cut_) cut_->note(now);
@@ -458,7 +458,7 @@ class IdealRun {
   }
 
   // Q_true + d(Q_true) = Q_cmd
-  Joints Q_true_of(const AxisSetPoint& set) {
+  Joints Q_true_of(const AxisSetpoint& set) {
     Joints Q_true = set.Q_cmd;
     for (int k = 0; feedback_ && k < 50; ++k) {
       const Joints before = Q_true;
@@ -474,7 +474,7 @@ class IdealRun {
 
   CaseInputs& in_;
   const LoopPeriods& periods_;
-  SetPoint set_point_;
+  Setpoint setpoint_;
   std::unique_ptr<strategies::FeedbackPart> feedback_;
   strategies::Reading now_;
   Recorder recorder_;

@@ -25,14 +25,14 @@ namespace servomill::sim {
 /// Inputs of one case. References are shared with other cases; parts belong to this run.
 struct CaseInputs {
   const MachineSettings& machine;
-  const plant::VolumetricModel& truth;         // the machine as it is
-  const plant::VolumetricModel* imposed;       // displacement to be recorded, or nullptr
-  const controllers::Trajectory& reference;    // of the program that the NC runs
-  const ProgramPath& path;                     // of the original program
-  const std::map<int, Eigen::Vector3d>& tips;  // p_ST (m) by tool offset number
+  const plant::VolumetricModel& machine_errors;  // the machine as it is
+  const plant::VolumetricModel* imposed;         // displacement to be recorded, or nullptr
+  const controllers::Trajectory& reference;      // of the program that the NC runs
+  const ProgramPath& path;                       // of the original program
+  const std::map<int, Eigen::Vector3d>& tips;    // p_ST (m) by tool offset number
   ServoModel servo = ServoModel::cascade;
   FeedbackHardware hardware;
-  std::vector<std::unique_ptr<strategies::SetPointPart>> set_points;
+  std::vector<std::unique_ptr<strategies::SetpointPart>> setpoints;
   const strategies::Strategy* feedback = nullptr;  // the one that displaces it, if any
   Tick record_period = 100;
   double settle_time = 0.1;  // s, recorded after the program's end

@@ -108,7 +108,7 @@ BallQuantities::Identified BallQuantities::identify(const QuantitySpec& spec) {
     why_not = add(bar_readings(chain, path_of({spec.sections[i]}), bars[i], static_cast<int>(i)));
   }
   if (!why_not.empty()) return {{}, why_not};
-  const BallSetUp set_up{.tip_is_unknown = !spec.ball->tip_is_known,
+  const BallSetUp set_up{.tcp_is_unknown = !spec.ball->tcp_is_known,
                          .length_is_unknown = !bars.empty()};
   return {identify_locations(chain, readings, set_up), ""};
 }
@@ -116,7 +116,7 @@ BallQuantities::Identified BallQuantities::identify(const QuantitySpec& spec) {
 QuantityValue BallQuantities::location(const QuantitySpec& spec) {
   const BallSpec& ball = *spec.ball;
   assert(ball.error);
-  std::string key = fmt::format("{}\n{}", fmt::join(spec.sections, "\n"), ball.tip_is_known);
+  std::string key = fmt::format("{}\n{}", fmt::join(spec.sections, "\n"), ball.tcp_is_known);
   for (const Eigen::Vector3d& centre : ball.bar_centres) {
     key += fmt::format("\n{} {} {}", centre.x(), centre.y(), centre.z());
   }

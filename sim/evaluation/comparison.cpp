@@ -31,7 +31,8 @@ std::string unlike(const CaseData& one, const CaseData& base) {
 // Value of a quantity of one case, with a note on it.
 QuantityValue answer(const QuantitySpec& spec, CaseEvaluation& one, const CaseData* base) {
   const QuantityEntry& entry = quantity_entry(spec.name);
-  if (entry.needs_base && one.data.name == spec.base) return {.note = "is compared with itself"};
+  if (entry.needs_baseline && one.data.name == spec.baseline)
+    return {.note = "is compared with itself"};
   const bool both_finished = one.data.finished && (base == nullptr || base->finished);
   QuantityValue found;
   if (entry.is_of_program || both_finished) found = entry.evaluate(spec, one, base);
@@ -62,7 +63,7 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
   std::vector<ComparisonRow> rows;
   for (const QuantitySpec& spec : specs) {
     throw_if_interrupted();
-    const CaseEvaluation* base = spec.base.empty() ? nullptr : find(compared, spec.base);
+    const CaseEvaluation* base = spec.baseline.empty() ? nullptr : find(compared, spec.baseline);
     for (const std::string& name : spec.cases) {
       CaseEvaluation* one = find(compared, name);
       ComparisonRow row;
@@ -78,8 +79,8 @@ std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
       }
       if (spec.part) row.sections = fmt::format("{}", fmt::join(spec.part->probes, ", "));
       row.reference = spec.reference;
-      row.kind = spec.kind;
-      const bool missing = one == nullptr || (!spec.base.empty() && base == nullptr);
+      row.basis = spec.basis;
+      const bool missing = one == nullptr || (!spec.baseline.empty() && base == nullptr);
       QuantityValue found =
           missing ? QuantityValue{} : answer(spec, *one, base != nullptr ? &base->data : nullptr);
       row.value = found.value;
@@ -94,12 +95,12 @@ std::string format_table(std::span<const ComparisonRow> rows) {
   const bool has_notes =
       std::any_of(rows.begin(), rows.end(), [](const auto& row) { return !row.note.empty(); });
   std::vector<std::vector<std::string>> lines = {{"quantity", "axis", "statistic", "section",
-                                                  "case", "value", "paper", "kind",
+                                                  "case", "value", "reference", "basis",
                                                   has_notes ? "note" : ""}};
   for (const ComparisonRow& row : rows) {
     lines.push_back({row.quantity, row.axis, row.statistic, row.sections, row.case_name,
                      number(row.value) + " " + (row.unit == "1" ? "" : row.unit), row.reference,
-                     row.kind, row.note});
+                     row.basis, row.note});
   }
   return text_table(std::move(lines), 4, {5});
 }
@@ -114,7 +115,7 @@ std::string to_json(const ComparisonRow& row) {
       .number("value", row.value)
       .text_or_null("unit", row.unit)
       .text_or_null("reference", row.reference)
-      .text_or_null("kind", row.kind);
+      .text_or_null("basis", row.basis);
   if (!row.note.empty()) out.text("note", row.note);
   return out.line();
 }

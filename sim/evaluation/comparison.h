@@ -31,7 +31,7 @@ struct CaseData {
 
 /// One line of the printed comparison.
 struct ComparisonRow {
-  std::string case_name, quantity, axis, statistic, unit, reference, kind;
+  std::string case_name, quantity, axis, statistic, unit, reference, basis;
   std::string sections;
   double value = 0.0;     // NaN where the case stopped or the samples are missing
   std::string note = {};  // why there is no value, where that is known, or what is not alike
@@ -49,7 +49,7 @@ std::string format_table(std::span<const ComparisonRow> rows);
 std::string json_escaped(std::string_view text);
 
 /// One JSON object with the keys case, quantity, axis, statistic, sections, value, unit, reference,
-/// kind, null where there is none; and note where there is one.
+/// basis, null where there is none; and note where there is one.
 std::string to_json(const ComparisonRow& row);
 
 }  // namespace servomill::sim

@@ -120,7 +120,7 @@ AtRow trajectory_difference(const QuantitySpec& spec, const CaseData& one, const
   return length_difference(one, *base, "meas_linear", "programmed_linear", spec.axis);
 }
 
-AtRow imposed_curve_residual(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
+AtRow imposed_error_residual(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
   return minus(trajectory_difference(spec, one, base), column_of(one, "imposed_linear", spec.axis));
 }
 
@@ -140,7 +140,7 @@ AtRow tool_difference(const QuantitySpec&, const CaseData& one, const CaseData* 
   };
 }
 
-AtRow tool_tip_deviation(const QuantitySpec&, const CaseData& one, const CaseData*) {
+AtRow tcp_deviation(const QuantitySpec&, const CaseData& one, const CaseData*) {
   return [&servo = *one.servo, first = *one.servo->column("tool_deviation", 'X')](std::size_t row) {
     return vector_at(servo, row, first).norm();
   };
@@ -179,8 +179,8 @@ std::optional<double> statistic_of_samples(const QuantitySpec& spec, std::string
 }
 
 // tau with residual = -tau d(imposed)/dt in the least-squares sense, ms
-double response_time(const CaseData& one, const AtRow& residual, const AtRow& imposed,
-                     const RowRanges& rows) {
+double lag_time(const CaseData& one, const AtRow& residual, const AtRow& imposed,
+                const RowRanges& rows) {
   const std::size_t time = *one.servo->column("time");
   double re = 0.0, ee = 0.0;
   rows.for_each([&](std::size_t row) {
@@ -223,7 +223,7 @@ template <double (*kValue)(const CaseData&, const AtRow&, const AtRow&, const Ro
 QuantityValue of_imposed_curve(const QuantitySpec& spec, CaseEvaluation& compared,
                                const CaseData* base) {
   const CaseData& one = compared.data;
-  const AtRow residual = imposed_curve_residual(spec, one, base);
+  const AtRow residual = imposed_error_residual(spec, one, base);
   const AtRow imposed = column_of(one, "imposed_linear", spec.axis);
   QuantityValue out{.note = note_on_rows(one)};
   if (residual && imposed) {
@@ -241,7 +241,7 @@ QuantityValue blocks(const QuantitySpec&, CaseEvaluation& one, const CaseData*) 
 }
 
 constexpr char kFollowingError[] = "following_error_linear";
-constexpr std::string_view kResidual = "imposed_curve_residual";
+constexpr std::string_view kResidual = "imposed_error_residual";
 
 constexpr QuantityEntry kQuantities[] = {
     {.name = kResidual,
@@ -250,38 +250,38 @@ constexpr QuantityEntry kQuantities[] = {
              "equal s",
      .axes = "XYZ",
      .has_statistic = true,
-     .needs_base = true,
+     .needs_baseline = true,
      .needs_imposed = true,
-     .evaluate = along_path<imposed_curve_residual>,
-     .signal = imposed_curve_residual},
-    {.name = "brought_out",
+     .evaluate = along_path<imposed_error_residual>,
+     .signal = imposed_error_residual},
+    {.name = "realised_ratio",
      .unit = "%",
-     .help = "1 - largest imposed_curve_residual / largest imposed displacement",
+     .help = "1 - largest imposed_error_residual / largest imposed displacement",
      .axes = "XYZ",
-     .needs_base = true,
+     .needs_baseline = true,
      .needs_imposed = true,
      .evaluate = of_imposed_curve<realised_share>,
      .derived_from = kResidual},
-    {.name = "response_time",
+    {.name = "lag_time",
      .unit = "ms",
-     .help = "delay that explains the imposed_curve_residual best, by least squares over its "
+     .help = "delay that explains the imposed_error_residual best, by least squares over its "
              "samples",
      .axes = "XYZ",
-     .needs_base = true,
+     .needs_baseline = true,
      .needs_imposed = true,
-     .evaluate = of_imposed_curve<response_time>,
+     .evaluate = of_imposed_curve<lag_time>,
      .derived_from = kResidual},
     {.name = "trajectory_difference",
      .unit = "um",
      .help = "trajectory (scale) minus that of the base case, at equal s",
      .axes = "XYZ",
      .has_statistic = true,
-     .needs_base = true,
+     .needs_baseline = true,
      .evaluate = along_path<trajectory_difference>,
      .signal = trajectory_difference},
     {.name = "following_error",
      .unit = "um",
-     .help = "set point minus position that the NC reads",
+     .help = "setpoint minus position feedback",
      .axes = "XYZ",
      .has_statistic = true,
      .evaluate = along_path<following_error, kFollowingError>,
@@ -294,11 +294,11 @@ constexpr QuantityEntry kQuantities[] = {
      .has_statistic = true,
      .evaluate = along_path<tool_deviation>,
      .signal = tool_deviation},
-    {.name = "tool_tip_deviation",
+    {.name = "tcp_deviation",
      .unit = "um",
      .help = "distance of the true from the nominal tool centre point at equal s",
      .has_statistic = true,
-     .evaluate = along_path<tool_tip_deviation>},
+     .evaluate = along_path<tcp_deviation>},
     {.name = "tool_axis_deviation",
      .unit = "urad",
      .help = "angle between the true and the nominal tool axis at equal s",
@@ -313,7 +313,7 @@ constexpr QuantityEntry kQuantities[] = {
      .unit = "um",
      .help = "distance of the true tool centre point from that of the base case, at equal s",
      .has_statistic = true,
-     .needs_base = true,
+     .needs_baseline = true,
      .evaluate = along_path<tool_difference>},
     {.name = "cycle_time",
      .unit = "s",

@@ -119,7 +119,7 @@ constexpr QuantityEntry kQuantities[] = {
      .help = "the same minus those of the base case minus the imposed displacement along the "
              "normals",
      .has_statistic = true,
-     .needs_base = true,
+     .needs_baseline = true,
      .needs_imposed = true,
      .probes = 1,
      .kinds = kAll,

@@ -164,12 +164,12 @@ std::string why(Miss miss, const Cmm& cmm) {
       return "the raw part ([[part.stock]]) does not reach there";
     case Miss::blocked:
       return cmm.probe_radius > 0.0
-                 ? fmt::format("the stylus ball does not fit {:g} mm (cmm.clearance_mm) above it",
+                 ? fmt::format("the stylus ball does not fit {:g} mm (cmm.approach_mm) above it",
                                cmm.clearance / mm)
-                 : fmt::format("there is uncut material {:g} mm (cmm.clearance_mm) above it",
+                 : fmt::format("there is uncut material {:g} mm (cmm.approach_mm) above it",
                                cmm.clearance / mm);
     case Miss::through:
-      return fmt::format("the cutter took away all down to {:g} mm (cmm.depth_mm) below it",
+      return fmt::format("the cutter took away all down to {:g} mm (cmm.search_mm) below it",
                          cmm.depth / mm);
   }
   return "";

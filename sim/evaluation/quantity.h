@@ -40,16 +40,16 @@ struct QuantityEntry {
   std::string_view help;
 
   // keys of [[quantity]]
-  std::string_view axes = {};  // letters allowed of `axis`; none: has no such key
-  bool has_statistic = false;  // what `evaluate` returns is that of spec.statistic
-  bool needs_base = false;     // another case to compare with
-  bool needs_imposed = false;  // the scenario's imposed error model, which it subtracts
-  int circles = 0;             // sections evaluated together, each one turn of a circle; 0: any
-  bool is_of_ball = false;     // in the spindle, seen by sensors on the table: ball_quantities.h
+  std::string_view axes = {};   // letters allowed of `axis`; none: has no such key
+  bool has_statistic = false;   // what `evaluate` returns is that of spec.statistic
+  bool needs_baseline = false;  // another case to compare with
+  bool needs_imposed = false;   // the scenario's imposed error model, which it subtracts
+  int circles = 0;              // sections evaluated together, each one turn of a circle; 0: any
+  bool is_of_ball = false;      // in the spindle, seen by sensors on the table: ball_quantities.h
   BallBars bars = BallBars::none;
   bool identifies = false;  // location errors from readings: a line for each of them
   int probes = 0;           // features of the part evaluated together: probe_quantities.h; a
-                            // base case is then optional unless needs_base
+                            // base case is then optional unless needs_baseline
   std::span<const FeatureKind> kinds = {};  // of these features
   bool has_fit = false;                     // minimum zone or least squares
 

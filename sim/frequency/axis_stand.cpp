@@ -16,7 +16,7 @@ std::vector<Rate> stand_rates(const LoopPeriods& periods, Tick reading_delay, Po
   return rates;
 }
 
-// A set point that jumps is no following error.
+// A setpoint that jumps is no following error.
 MachineSettings without_supervision(MachineSettings machine) {
   for (AxisFunctions& functions : machine.nc.functions) functions.supervision = {};
   return machine;
@@ -89,8 +89,8 @@ AxisSignals AxisStand::signals() const {
   set(AxisSignal::velocity, axes_.dQ_true()[joint_]);
   set(AxisSignal::motor_speed, axes_.motor_speed()[joint_]);
   set(AxisSignal::current, axes_.current()[joint_]);
-  set(AxisSignal::reading, axes_.Q_read()[joint_]);
-  set(AxisSignal::position_error, set_.Q_cmd[joint_] - axes_.Q_read()[joint_]);
+  set(AxisSignal::reading, axes_.Q_fb()[joint_]);
+  set(AxisSignal::position_error, set_.Q_cmd[joint_] - axes_.Q_fb()[joint_]);
   set(AxisSignal::measured_speed, axes_.measured_speed()[joint_]);
   set(AxisSignal::speed_error, axes_.speed_error()[joint_]);
   return out;

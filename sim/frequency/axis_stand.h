@@ -19,7 +19,7 @@ enum class AxisSignal : std::uint8_t {
   motor_speed,     // rad/s
   current,         // A
   reading,         // m: what the position loop reads (sampled)
-  position_error,  // m: set point less reading (sampled)
+  position_error,  // m: setpoint less reading (sampled)
   measured_speed,  // rad/s: what the velocity loop reads (sampled)
   speed_error,     // rad/s: command less measured speed (sampled)
 };
@@ -37,7 +37,7 @@ constexpr std::uint8_t sampled_by(AxisSignal signal) {
 
 /// Excitation of one tick.
 struct StandInput {
-  double q = 0.0;              // m, rad: set point
+  double q = 0.0;              // m, rad: setpoint
   double dq = 0.0, ddq = 0.0;  // m/s, m/s^2: fed forward
   Injection added = {};
 };
@@ -97,7 +97,7 @@ class AxisStand {
   int joint_;
   std::vector<Instant> schedule_;
   ServoAxes axes_;
-  AxisSetPoint set_;
+  AxisSetpoint set_;
   std::optional<std::string> fault_;
   double current_limit_;  // A
   int states_ = 0;

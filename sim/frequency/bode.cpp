@@ -26,12 +26,12 @@ struct CurveOf {
 };
 
 constexpr CurveOf kPosition[] = {
-    {"position_open", "open position loop", Entry::set_point, AxisSignal::reading,
+    {"position_open", "open position loop", Entry::setpoint, AxisSignal::reading,
      AxisSignal::position_error},
-    {"position_closed", "closed position loop, without feed-forward", Entry::set_point,
+    {"position_closed", "closed position loop, without feed-forward", Entry::setpoint,
      AxisSignal::position, std::nullopt},
-    {"position_fed_forward", "closed position loop, with feed-forward",
-     Entry::set_point_fed_forward, AxisSignal::position, std::nullopt},
+    {"position_fed_forward", "closed position loop, with feed-forward", Entry::setpoint_fed_forward,
+     AxisSignal::position, std::nullopt},
 };
 constexpr CurveOf kVelocity[] = {
     {"velocity_open", "open velocity loop", Entry::velocity_command, AxisSignal::measured_speed,
@@ -136,7 +136,7 @@ class LoopCurves {
     how_.amplitude = settings_.amplitude.value_or(default_amplitude(machine_, joint_, entry));
     how_.velocity =
         settings_.velocity.value_or(default_velocity(machine_, joint_, entry, how_.amplitude));
-    if (entry == Entry::set_point_fed_forward) {
+    if (entry == Entry::setpoint_fed_forward) {
       how_.max_acceleration = fed_forward_acceleration(machine_, joint_);
     }
     const MeasuredResponse measured =

@@ -33,11 +33,11 @@ Eigen::MatrixXd monodromy_of(AxisStand& stand) {
 StandInput sinusoid(Entry entry, Complex u, double w, double h) {
   StandInput in;
   switch (entry) {
-    case Entry::set_point_fed_forward:
+    case Entry::setpoint_fed_forward:
       in.dq = (kJ * w * u).real();
       in.ddq = (-w * w * u).real();
       [[fallthrough]];
-    case Entry::set_point:
+    case Entry::setpoint:
       in.q = u.real();
       break;
     case Entry::velocity_command:

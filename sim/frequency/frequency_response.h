@@ -7,12 +7,12 @@ namespace servomill::sim {
 
 /// Point at which a sinusoid of amplitude 1 enters.
 enum class Entry : std::uint8_t {
-  set_point,              // m, rad; its derivatives are not fed forward
-  set_point_fed_forward,  // the same with feed-forward as the NC has it
-  velocity_command,       // m/s, rad/s
-  current_command,        // A
-  force,                  // N, N m: on the slide, along +x
-  reading,                // m, rad
+  setpoint,              // m, rad; its derivatives are not fed forward
+  setpoint_fed_forward,  // the same with feed-forward as the NC has it
+  velocity_command,      // m/s, rad/s
+  current_command,       // A
+  force,                 // N, N m: on the slide, along +x
+  reading,               // m, rad
 };
 
 /// Excitation for the complex amplitude u of one tick's sinusoid: its real part. A force
@@ -36,7 +36,7 @@ StandInput sinusoid(Entry entry, Complex u, double w, double h);
 /// L = y / e; where the hyperperiod is the period of that loop it is the sampled open loop exactly.
 class FrequencyResponse {
  public:
-  /// @param loop  open: the velocity loop alone, without set point
+  /// @param loop  open: the velocity loop alone, without setpoint
   FrequencyResponse(const MachineSettings& machine, int joint, Tick reading_delay,
                     PositionLoop loop);
 

@@ -260,8 +260,8 @@ double default_amplitude(const MachineSettings& machine, int joint, Entry entry)
   const controllers::CascadeParams& c = machine.nc.cascade[static_cast<std::size_t>(joint)];
   const double current = kCurrentShare * c.i_max;
   switch (entry) {
-    case Entry::set_point:
-    case Entry::set_point_fed_forward:
+    case Entry::setpoint:
+    case Entry::setpoint_fed_forward:
     case Entry::reading:
       return current * c.Kt * c.r / (c.Kp * c.Kv);
     case Entry::velocity_command:

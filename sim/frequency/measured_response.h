@@ -17,10 +17,10 @@ enum class Method : std::uint8_t {
 };
 
 struct Measurement {
-  Entry entry = Entry::set_point;
+  Entry entry = Entry::setpoint;
   Method method = Method::sine;
   double amplitude = 0.0;  // peak of what is fed in, in the unit of the entry; > 0
-  double max_acceleration = std::numeric_limits<double>::infinity();  // m/s^2: of a set point; it
+  double max_acceleration = std::numeric_limits<double>::infinity();  // m/s^2: of a setpoint; it
                                                                       // lowers the amplitude
   double velocity = 0.0;  // m/s, rad/s: the axis moves on with it, so that friction does not stick
   double position = 0.0;  // m, rad: where it begins

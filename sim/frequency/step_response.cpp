@@ -34,13 +34,13 @@ StandInput input_of(const StepSettings& s) {
   in.q = s.position;
   switch (s.kind) {
     case StepKind::position:
-      in.q += s.height;
+      in.q += s.amplitude;
       break;
     case StepKind::velocity:
-      in.added.velocity = s.height;
+      in.added.velocity = s.amplitude;
       break;
     case StepKind::load:
-      in.added.force = s.height;
+      in.added.force = s.amplitude;
       break;
   }
   return in;
@@ -49,7 +49,7 @@ StandInput input_of(const StepSettings& s) {
 }  // namespace
 
 StepFigures figures_of(StepKind kind, const std::vector<double>& time, const std::vector<double>& y,
-                       double height, double band) {
+                       double amplitude, double band) {
   assert(!y.empty() && time.size() == y.size());
   StepFigures out;
   const auto farthest = std::max_element(
@@ -63,19 +63,19 @@ StepFigures figures_of(StepKind kind, const std::vector<double>& time, const std
     return out;
   }
   const auto highest = std::max_element(
-      y.begin(), y.end(), [&](double a, double b) { return a / height < b / height; });
+      y.begin(), y.end(), [&](double a, double b) { return a / amplitude < b / amplitude; });
   out.peak = *highest;
   out.peak_time = time[static_cast<std::size_t>(highest - y.begin())];
-  out.overshoot = std::max(0.0, out.peak / height - 1.0);
-  out.rise_time = time_of(time, y, 0.9 * height) - time_of(time, y, 0.1 * height);
-  out.settling_time = settled_after(time, y, height, band * std::abs(height));
-  out.steady_error = height - y.back();
+  out.overshoot = std::max(0.0, out.peak / amplitude - 1.0);
+  out.rise_time = time_of(time, y, 0.9 * amplitude) - time_of(time, y, 0.1 * amplitude);
+  out.settling_time = settled_after(time, y, amplitude, band * std::abs(amplitude));
+  out.steady_error = amplitude - y.back();
   return out;
 }
 
 StepResponse step_response(const MachineSettings& machine, int joint, Tick reading_delay,
                            const StepSettings& settings, Tick every) {
-  assert(settings.height != 0.0 && settings.duration > 0.0 && every > 0);
+  assert(settings.amplitude != 0.0 && settings.duration > 0.0 && every > 0);
   const PositionLoop loop =
       settings.kind == StepKind::velocity ? PositionLoop::open : PositionLoop::closed;
   AxisStand stand(machine, joint, reading_delay, loop);
@@ -105,7 +105,7 @@ StepResponse step_response(const MachineSettings& machine, int joint, Tick readi
     y.push_back(settings.kind == StepKind::velocity ? r * row[index_of(AxisSignal::motor_speed)]
                                                     : row[index_of(AxisSignal::position)]);
   }
-  out.figures = figures_of(settings.kind, out.time, y, settings.height, settings.band);
+  out.figures = figures_of(settings.kind, out.time, y, settings.amplitude, settings.band);
   return out;
 }
 

@@ -10,26 +10,26 @@
 namespace servomill::sim {
 
 enum class StepKind : std::uint8_t {
-  position,  // m, rad: of the set point, nothing fed forward
+  position,  // m, rad: of the setpoint, nothing fed forward
   velocity,  // m/s, rad/s: of the velocity command, position loop open
   load,      // N, N m: force on the slide along +x
 };
 
 struct StepSettings {
   StepKind kind = StepKind::position;
-  double height = 0.0;    // != 0
-  double duration = 0.0;  // s, after the step
-  double band = 0.02;     // of the height, of a load step of the peak: settled within it
-  double position = 0.0;  // m, rad: where the axis stands before
+  double amplitude = 0.0;  // != 0
+  double duration = 0.0;   // s, after the step
+  double band = 0.02;      // of the amplitude, of a load step of the peak: settled within it
+  double position = 0.0;   // m, rad: where the axis stands before
 };
 
 /// Figures of merit. Of a position step the slide counts, of a velocity step the motor as slide
 /// velocity; of a load step the deviation of the slide.
 struct StepFigures {
-  double overshoot = 0.0;      // of the height; 0 for a load step
+  double overshoot = 0.0;      // of the amplitude; 0 for a load step
   double rise_time = 0.0;      // s, from 10 % to 90 %; NaN if it does not get there
   double settling_time = 0.0;  // s, after which it stays within the band; NaN if never
-  double steady_error = 0.0;   // m, m/s: height less value at the end, of a load step deviation
+  double steady_error = 0.0;   // m, m/s: amplitude less value at the end, of a load step deviation
   double peak = 0.0;           // m, m/s: farthest from the value before the step
   double peak_time = 0.0;      // s
 };
@@ -49,6 +49,6 @@ StepResponse step_response(const MachineSettings& machine, int joint, Tick readi
 
 /// Figures of merit of a recorded value y(t) that was 0 before.
 StepFigures figures_of(StepKind kind, const std::vector<double>& time, const std::vector<double>& y,
-                       double height, double band);
+                       double amplitude, double band);
 
 }  // namespace servomill::sim

@@ -37,7 +37,7 @@ ResponseAt open_velocity(FrequencyResponse& response) {
 }
 ResponseAt open_position(FrequencyResponse& response) {
   return [&](double f) {
-    return ratio(response.at(Entry::set_point, f), AxisSignal::reading, AxisSignal::position_error);
+    return ratio(response.at(Entry::setpoint, f), AxisSignal::reading, AxisSignal::position_error);
   };
 }
 
@@ -129,7 +129,7 @@ double step_overshoot(const MachineSettings& linear, int joint, Tick reading_del
   const double slowest = slowest_time_constant(linear, joint, reading_delay, PositionLoop::closed);
   if (!std::isfinite(slowest)) return Margins::kNone;
   StepSettings step;
-  step.height = kStepHeight;
+  step.amplitude = kStepHeight;
   step.duration = std::min(kLongestStep, kStepDuration * slowest);
   return step_response(linear, joint, reading_delay, step).figures.overshoot;
 }
@@ -173,7 +173,7 @@ double lowered(double most, double bound, const Of& quantity) {
 double position_bandwidth(const MachineSettings& machine, int joint, Tick reading_delay) {
   FrequencyResponse response(machine, joint, reading_delay, PositionLoop::closed);
   const ResponseAt T = [&](double f) {
-    return response.at(Entry::set_point, f)[index_of(AxisSignal::position)];
+    return response.at(Entry::setpoint, f)[index_of(AxisSignal::position)];
   };
   return closed_loop_of(curve_of(T, position_grid(machine, joint, reading_delay)), T).bandwidth;
 }
@@ -317,7 +317,7 @@ Assessment assess(const MachineSettings& machine, int joint, Tick reading_delay)
   FrequencyResponse response(linear, joint, reading_delay, PositionLoop::closed);
   const ResponseAt L = open_position(response);
   const ResponseAt T = [&](double f) {
-    return response.at(Entry::set_point, f)[index_of(AxisSignal::position)];
+    return response.at(Entry::setpoint, f)[index_of(AxisSignal::position)];
   };
   const auto f = position_grid(linear, joint, reading_delay);
   out.position = margins_of(curve_of(L, f), L);
@@ -328,7 +328,7 @@ Assessment assess(const MachineSettings& machine, int joint, Tick reading_delay)
   out.overshoot = step_overshoot(linear, joint, reading_delay);
   StepSettings load;
   load.kind = StepKind::load;
-  load.height = 1.0;
+  load.amplitude = 1.0;
   load.duration = std::min(
       kLongestStep,
       kStepDuration * slowest_time_constant(linear, joint, reading_delay, PositionLoop::closed));

@@ -23,7 +23,7 @@ MachineSettings with_gains(const MachineSettings& machine, int joint, const Gain
 struct TuneSettings {
   double phase_margin = 60.0 * deg;  // rad, least, of both loops
   double gain_margin = 2.512;        // least, of both loops: 8 dB
-  double overshoot = 0.05;           // most, of a step of the set point
+  double overshoot = 0.05;           // most, of a step of the setpoint
   std::optional<double> bandwidth;   // Hz, wanted of the closed position loop; none: all there is
   std::optional<double> wv_most;     // rad/s, velocity bandwidth; none: all there is
   double reset_ratio = 4.0;          // Tn wv: the reset costs atan(1 / 4) = 14 deg at the crossover
@@ -42,7 +42,7 @@ struct Assessment {
   bool stable = false;  // both loops, by eigenvalues
   Margins velocity, position;
   ClosedLoop closed;       // position, nothing fed forward
-  double overshoot = 0.0;  // of a step of the set point
+  double overshoot = 0.0;  // of a step of the setpoint
   double load_peak = 0.0;  // m/N: peak deviation after a load step
 };
 /// Stable, with all margins and no more overshoot than wanted.

@@ -40,7 +40,7 @@ std::string common_name(std::string name) {
       {std::regex(R"(\bE[ABC]0[XYZABC]\b)"), "EC0Y"},
       {std::regex(R"(\bE[XYZABC][XYZABC]\b)"), "EXX"},
       {std::regex(R"(^errors\.OTHER)"), "errors.NAME"},
-      {std::regex(R"(^sweep\.(?!samples|together).+)"), "sweep.KEY"},
+      {std::regex(R"(^sweep\.(?!samples|zip).+)"), "sweep.KEY"},
   }};
   for (const Renaming& one : kNames) name = std::regex_replace(name, one.pattern, one.to);
   return name;
@@ -48,8 +48,8 @@ std::string common_name(std::string name) {
 
 std::string common_key(const std::string& section, const std::string& key) {
   if (section == "machine.axis") return "X";
-  if (section == "sweep" && key != "samples" && key != "together") return "KEY";
-  if (section == "sweep.together") return "KEY";
+  if (section == "sweep" && key != "samples" && key != "zip") return "KEY";
+  if (section == "sweep.zip") return "KEY";
   if (section == "errors") return "NAME";
   if (section == "program.subroutines") return "NAME";
   if (section == "program.parameters") return "#101";

@@ -5,7 +5,7 @@ namespace {
 
 constexpr std::string_view kFirst = R"(
 title = "first"
-truth = "NAME"
+machine_errors = "NAME"
 imposed = "NAME"
 
 [machine]
@@ -18,7 +18,7 @@ Kv = 50.0
 drive = "two_mass"
 lead_mm = 20.0
 motor_inertia = 9.6e-3
-load = 750.0
+moving_mass = 750.0
 stiffness = 2.2e8
 damping = 4.0e4
 structural_stiffness = 5e7
@@ -72,7 +72,7 @@ lead_error = { um_per_m = 10.0 }
 [machine.axis.Y]
 drive = "direct"
 motor_inertia = 10.0
-load = 300.0
+moving_mass = 300.0
 Kt = 100.0
 i_max_A = 50.0
 velocity_bandwidth = 200.0
@@ -86,7 +86,7 @@ motor = { period = 1e-3 }
 drive = "rigid"
 lead_mm = 10.0
 motor_inertia = 9.6e-3
-load = 300.0
+moving_mass = 300.0
 Kt = 1.6
 i_max_A = 50.0
 velocity_bandwidth = 200.0
@@ -99,7 +99,7 @@ j_max = 100.0
 drive = "two_mass"
 ratio = 0.01
 motor_inertia = 1e-3
-load = 1.0
+moving_inertia = 1.0
 stiffness = 1e6
 damping = 100.0
 Kt = 1.0
@@ -152,7 +152,7 @@ EC0Y = { um_per_m = 1.0 }
 EA0C = { constant_urad = 1.0 }
 EB0Z = "1 urad"
 [errors.OTHER]
-differs_from = "NAME"
+relative_to = "NAME"
 
 [part]
 [[part.stock]]
@@ -188,7 +188,7 @@ points_mm = [[0, 0, 0, 0, 0, 1]]
 [[case]]
 name = "nominal"
 work_offset = { C_deg = 0.0 }
-truth = ""
+machine_errors = ""
 [[case.strategy]]
 type = "none"
 [[case]]
@@ -200,13 +200,13 @@ type = "feedback"
 model = "NAME"
 
 [[quantity]]
-name = "imposed_curve_residual"
+name = "imposed_error_residual"
 axis = "X"
-base = "nominal"
+baseline = "nominal"
 sections = ["SECTION"]
-kind = "predicted"
+basis = "predicted"
 [[quantity]]
-name = "circular_deviation"
+name = "circular_error"
 sections = ["SECTION"]
 [[quantity]]
 name = "straightness"
@@ -214,7 +214,7 @@ probe = "line"
 [[quantity]]
 name = "probed_deviation"
 probe = "line"
-base = "nominal"
+baseline = "nominal"
 [[quantity]]
 name = "squareness"
 probe = "line"
@@ -236,8 +236,8 @@ samples = { design = "sobol", count = 2 }
 "errors.NAME.EXX.constant_um" = { normal = [1.0, 0.1] }
 "errors.NAME.EXX.um_per_m" = { uniform = [1.0, 2.0] }
 "record.period_ms" = { log_uniform = [1.0, 2.0] }
-"machine.nc.preset" = { one_of = ["CC422", "CC424"] }
-[[sweep.together]]
+"machine.nc.preset" = { choice = ["CC422", "CC424"] }
+[[sweep.zip]]
 "machine.axis.X.v_max" = [0.1, 0.2]
 "machine.axis.Y.v_max" = [0.1, 0.2]
 )";
@@ -264,7 +264,7 @@ following_error_limit_deg = 0.4
 [machine.axis.X]
 lead_mm = 20.0
 motor_inertia = 9.6e-3
-load = 750.0
+moving_mass = 750.0
 stiffness = 2.2e8
 damping = 4.0e4
 Kt = 1.6
@@ -284,7 +284,7 @@ friction_compensation = { coulomb = 440.0 }
 drive = "rigid"
 lead_mm = 10.0
 motor_inertia = 9.6e-3
-load = 300.0
+moving_mass = 300.0
 Kt = 1.6
 i_max_A = 50.0
 velocity_bandwidth = 50.0
@@ -297,7 +297,7 @@ friction = { model = "regularised", coulomb = 300.0, regularisation_velocity = 1
 drive = "rigid"
 lead_mm = 10.0
 motor_inertia = 9.6e-3
-load = 300.0
+moving_mass = 300.0
 Kt = 1.6
 i_max_A = 50.0
 velocity_bandwidth = 50.0
@@ -309,7 +309,7 @@ friction = { model = "set_valued", coulomb = 300.0, breakaway = 310.0, stribeck_
 [machine.axis.C]
 drive = "direct"
 motor_inertia = 1.0
-load = 1.0
+moving_inertia = 1.0
 Kt = 10.0
 i_max_A = 20.0
 velocity_bandwidth = 50.0
@@ -365,7 +365,7 @@ Kv = 50.0
 drive = "rigid"
 lead_mm = 10.0
 motor_inertia = 9.6e-3
-load = 300.0
+moving_mass = 300.0
 Kt = 1.6
 i_max_A = 50.0
 velocity_bandwidth = 200.0

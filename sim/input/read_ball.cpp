@@ -48,7 +48,7 @@ void read_ball(Reader& table, const QuantityEntry& entry, const JointLayout& lay
     }
   }
   if (!entry.identifies) return;
-  spec.ball->tip_is_known = table.boolean_or("tip_is_known", false);
+  spec.ball->tcp_is_known = table.boolean_or("tcp_is_known", false);
   if (table.has("error")) spec.ball->error = read_error(table, layout);
 }
 

@@ -9,7 +9,7 @@ namespace servomill::sim {
 struct QuantityEntry;
 struct QuantitySpec;
 
-/// Keys sections or bar, tip_is_known and error of a [[quantity]].
+/// Keys sections or bar, tcp_is_known and error of a [[quantity]].
 /// @param layout  of the machine; empty where that could not be read: no error is then looked up
 void read_ball(Reader& table, const QuantityEntry& entry, const JointLayout& layout,
                QuantitySpec& spec);

@@ -48,10 +48,10 @@ void CaseReader::read(Reader& table) {
   read_case_cutting(table, out_.cutting, spec);
   spec.servo = static_cast<ServoModel>(table.choice_or("servo", 0, kServos));
   check_recording(table, spec);
-  if (table.has("truth")) {
-    spec.truth = table.text("truth");
-    if (!spec.truth->empty()) {
-      must_be_known(table, "truth", *spec.truth, "error model", error_models_);
+  if (table.has("machine_errors")) {
+    spec.machine_errors = table.text("machine_errors");
+    if (!spec.machine_errors->empty()) {
+      must_be_known(table, "machine_errors", *spec.machine_errors, "error model", error_models_);
     }
   }
   for (Reader& strategy : table.tables_or_none("strategy")) {

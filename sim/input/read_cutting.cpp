@@ -19,7 +19,7 @@ Eigen::Vector3d read_point(Reader& table, std::string_view key) {
 plant::StockBox read_box(Reader table) {
   const std::size_t before = table.faults();
   plant::StockBox box{read_point(table, "from_mm"), read_point(table, "to_mm"),
-                      table.real_or("turned_deg", 0.0, kAngle)};
+                      table.real_or("rotation_deg", 0.0, kAngle)};
   if (table.faults() == before && !(box.from.array() < box.to.array()).all()) {
     table.fault("to_mm", "must be above from_mm in X, Y and Z");
   }

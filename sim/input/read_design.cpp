@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<std::string_view, 3> kDesigns = {"random", "latin_hypercube", "sobol"};
 constexpr std::array<std::string_view, 2> kRanges = {"linear", "log"};
 constexpr std::array<std::string_view, 4> kDistributions = {"uniform", "log_uniform", "normal",
-                                                            "one_of"};
+                                                            "choice"};
 // The first names of keys that say what is swept, read or compared: they are the same at all
 // points.
 constexpr std::array<std::string_view, 3> kFixed = {"sweep", "based_on", "quantity"};
@@ -47,10 +47,10 @@ class DesignReader {
       Reader samples = table.table("samples");
       read_samples(samples);
     }
-    const std::vector<Reader> together = table.tables_or_none("together");
+    const std::vector<Reader> together = table.tables_or_none("zip");
     for (const std::string& key : table.keys()) {
       // at the root a key stands as --set takes it: "program.feed_override"
-      if (key != "samples" && key != "together") read_key(table, key, key);
+      if (key != "samples" && key != "zip") read_key(table, key, key);
     }
     for (Reader one : together) read_together(one);
     if (design_.sampled_dimensions > 0 && !has_samples_ && table.faults() == 0) {
@@ -216,7 +216,7 @@ class DesignReader {
       return table.fault(
           key, fmt::format("is one key too many to sample; there may be {}", kMostDimensions));
     }
-    if (word == "one_of") {
+    if (word == "choice") {
       const Value* value = form.raw(word);
       if (value->type != Value::Type::list || value->children.empty()) {
         return form.fault(word, "must be a list of at least one value");

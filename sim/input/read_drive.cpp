@@ -121,16 +121,16 @@ plant::FeedDriveParams read_drive(Reader& axis, bool linear, plant::FrictionKind
   p.r = read_ratio(axis, linear, p.kind);
   const bool linear_motor = linear && p.kind == plant::DriveKind::direct;  // rad reads m
   p.J = axis.real("motor_inertia", linear_motor ? kMass : kInertia, {above(0.0)});
-  p.M = axis.real("load", q.load, {above(0.0)});
+  p.M = axis.real(linear ? "moving_mass" : "moving_inertia", q.load, {above(0.0)});
   const bool elastic = !p.is_rigid();
   p.k = needed_if(axis, elastic, "stiffness", 1.0, q.stiffness, {above(0.0)});
   p.c = needed_if(axis, elastic, "damping", 0.0, q.damping, {at_least(0.0)});
   p.gap = axis.real_or("backlash", 0.0, q.position, {at_least(0.0)});
   if (p.gap > 0.0 && !elastic) axis.fault("backlash", "needs drive = \"two_mass\"");
-  p.b_motor = axis.real_or("motor_friction", 0.0, linear_motor ? kDamping : kTorsionalDamping,
-                           {at_least(0.0)});
-  p.b_load = axis.real_or("slide_friction", 0.0, q.damping, {at_least(0.0)});
-  p.F_load = axis.real_or("constant_load", 0.0, q.force);
+  p.b_motor = axis.real_or("motor_viscous_friction", 0.0,
+                           linear_motor ? kDamping : kTorsionalDamping, {at_least(0.0)});
+  p.b_load = axis.real_or("slide_viscous_friction", 0.0, q.damping, {at_least(0.0)});
+  p.F_load = axis.real_or("gravity_load", 0.0, q.force);
   p.Kt = axis.real("Kt", linear_motor ? kForceConstant : kTorqueConstant, {above(0.0)});
   p.i_max = axis.real("i_max_A", kCurrent, {above(0.0)});
   read_winding(axis, p);

@@ -106,7 +106,7 @@ void read_screw(Reader& axis, int joint, MachineSettings& machine) {
   growth.alpha = table.real_or("expansion", growth.alpha, kExpansion, {at_least(0.0)});
   growth.x_fixed = table.real_or("fixed_at", 0.0, kLength);
   growth.dT_end = table.real_or("temperature_rise", 0.0, kTemperature);
-  growth.tau = table.real_or("warming_time", 0.0, kTime, {at_least(0.0)});
+  growth.tau = table.real_or("thermal_time_constant", 0.0, kTime, {at_least(0.0)});
   if (joint >= kLinearJoints) axis.fault("screw", "belongs to a linear axis");
 }
 

@@ -16,7 +16,7 @@ namespace {
 using plant::ErrorFunction;
 using plant::ErrorName;
 
-constexpr std::string_view kDiffersFrom = "differs_from";
+constexpr std::string_view kDiffersFrom = "relative_to";
 constexpr double kLargestShift = 0.1;  // m, of a location error
 constexpr double kLargestAngle = 0.1;  // rad
 

@@ -133,8 +133,8 @@ void refuse_unbearable_load(Reader& axis, const plant::FeedDriveParams& drive,
                             const controllers::CascadeParams& cascade, bool linear) {
   const double most = std::min(cascade.i_max * drive.Kt, cascade.tau_max) / drive.r;
   if (!(std::abs(drive.F_load) > most)) return;
-  axis.fault("constant_load", fmt::format("must be <= {:g} {}, which the current limit can hold",
-                                          most, linear ? "N" : "Nm"));
+  axis.fault("gravity_load", fmt::format("must be <= {:g} {}, which the current limit can hold",
+                                         most, linear ? "N" : "Nm"));
 }
 
 void read_direction(Reader& axis, plant::ChainAxis& chain_axis) {
@@ -251,7 +251,8 @@ void read_models(Reader& machine, const JointLayout& layout, ErrorModels* errors
 
 // Keys that every drive needs: a file with one of them is that of a machine to simulate.
 bool describes_drives(const Document& machine) {
-  constexpr std::array<std::string_view, 4> kNeeded = {"Kt", "load", "motor_inertia", "i_max_A"};
+  constexpr std::array<std::string_view, 5> kNeeded = {"Kt", "moving_mass", "moving_inertia",
+                                                       "motor_inertia", "i_max_A"};
   const Value* axes = machine.root().find("axis");
   if (axes == nullptr) return false;
   return std::any_of(axes->children.begin(), axes->children.end(), [&](const Value& axis) {
@@ -330,7 +331,7 @@ MachineSettings read_machine(Reader& table, ErrorModels* errors) {
   machine.nc.rotary_tolerance =
       nc.real_or("rotary_tolerance_urad", 100 * urad, kAngle, {above(0.0)});
   machine.nc.block_time =
-      nc.real_or("block_time_ms", 0.0, kTime, {at_least(0.0), at_most(kLongestPeriod)});
+      nc.real_or("block_processing_time_ms", 0.0, kTime, {at_least(0.0), at_most(kLongestPeriod)});
   machine.nc.check_stability = nc.boolean_or("check_stability", true);
   const double delay =
       nc.real_or("scale_delay_us", 0.0, kTime, {at_least(0.0), at_most(kLongestPeriod)});

@@ -254,8 +254,8 @@ Cmm read_cmm(Reader& root) {
       table.integer_or("repetitions", cmm.repetitions, {at_least(1), at_most(kMostRepetitions)}));
   cmm.seed =
       static_cast<std::uint64_t>(table.integer_or("seed", 1, {at_least(0), at_most(kMostSeed)}));
-  cmm.clearance = table.real_or("clearance_mm", cmm.clearance, kLength, {above(0.0)});
-  cmm.depth = table.real_or("depth_mm", cmm.depth, kLength, {above(0.0)});
+  cmm.clearance = table.real_or("approach_mm", cmm.clearance, kLength, {above(0.0)});
+  cmm.depth = table.real_or("search_mm", cmm.depth, kLength, {above(0.0)});
   return cmm;
 }
 

@@ -7,7 +7,7 @@
 
 namespace servomill::sim {
 
-/// The table [cmm]: uncertainty_um, probe_radius_mm, repetitions, seed, clearance_mm, depth_mm.
+/// The table [cmm]: uncertainty_um, probe_radius_mm, repetitions, seed, approach_mm, search_mm.
 Cmm read_cmm(Reader& root);
 
 /// All [[probe]]: a name and one of line, plane, circle, cylinder, notch, points_mm.

@@ -20,7 +20,8 @@ namespace servomill::sim {
 namespace {
 
 constexpr std::array<std::string_view, 4> kStatistics = {"max", "rms", "mean", "range"};
-constexpr std::array<std::string_view, 4> kKinds = {"identified", "predicted", "chosen", "bound"};
+constexpr std::array<std::string_view, 4> kBases = {"fitted", "predicted", "assumed",
+                                                    "upper_bound"};
 constexpr std::array<std::string_view, 2> kFits = {"minimum_zone", "least_squares"};
 
 std::vector<std::string_view> letters_of(std::string_view axes) {
@@ -60,7 +61,7 @@ class QuantityReader {
       spec.sections_place = table.place("sections");
     }
     spec.reference = table.text_or("reference", "");
-    if (table.has("kind")) spec.kind = kKinds[table.choice("kind", kKinds)];
+    if (table.has("basis")) spec.basis = kBases[table.choice("basis", kBases)];
     add(table, info, spec);
   }
 
@@ -78,10 +79,10 @@ class QuantityReader {
   void read_compared_cases(Reader& table, const QuantityEntry& info, QuantitySpec& spec) {
     std::vector<std::string> all;
     for (const CaseSpec& one : out_.cases) all.push_back(one.name);
-    if (info.needs_base || (info.probes > 0 && table.has("base"))) {
-      spec.base = table.text("base");
-      if (table.is("base", Value::Type::text) && checks_cases_)
-        must_be_known(table, "base", spec.base, "case", all);
+    if (info.needs_baseline || (info.probes > 0 && table.has("baseline"))) {
+      spec.baseline = table.text("baseline");
+      if (table.is("baseline", Value::Type::text) && checks_cases_)
+        must_be_known(table, "baseline", spec.baseline, "case", all);
     }
     read_cases_of(table, std::move(all), spec);
   }
@@ -89,7 +90,7 @@ class QuantityReader {
   // Default: all but the one compared with, whose differences would all be 0.
   void read_cases_of(Reader& table, std::vector<std::string> all, QuantitySpec& spec) {
     std::vector<std::string> others = all;
-    if (others.size() > 1) std::erase(others, spec.base);
+    if (others.size() > 1) std::erase(others, spec.baseline);
     spec.cases = table.texts_or("cases", others);
     for (const std::string& name : spec.cases) {
       if (checks_cases_) must_be_known(table, "cases", name, fmt::format("case '{}'", name), all);
@@ -161,12 +162,12 @@ class QuantityReader {
   // The one asked for or every location error of the machine, and what it truly is where no other
   // reference is given.
   void add_location_errors(const QuantitySpec& all) {
-    const auto truth = out_.errors.find(out_.truth);
+    const auto truth = out_.errors.find(out_.machine_errors);
     std::vector<plant::ErrorName> names = location_errors(out_.machine.chain);
     if (all.ball->error) names = {*all.ball->error};
     const bool is_true_of_each =
         std::none_of(out_.cases.begin(), out_.cases.end(),
-                     [](const CaseSpec& one) { return one.truth.has_value(); });
+                     [](const CaseSpec& one) { return one.machine_errors.has_value(); });
     for (const plant::ErrorName& name : names) {
       QuantitySpec one = all;
       one.ball->error = name;

@@ -131,7 +131,8 @@ class ScenarioReader {
     for (const auto& [name, model] : out_.errors) {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
-    for (auto [key, to] : {std::pair{"truth", &out_.truth}, std::pair{"imposed", &out_.imposed}}) {
+    for (auto [key, to] :
+         {std::pair{"machine_errors", &out_.machine_errors}, std::pair{"imposed", &out_.imposed}}) {
       *to = root.text_or(key, "");
       if (!to->empty()) must_be_known(root, key, *to, "error model", names);
     }

@@ -134,13 +134,16 @@ controllers::FrictionCompensationParams read_friction_compensation(
   c.tau_plus = drive.r * plus;
   c.tau_minus = drive.r * minus;
   c.v_switch = table.real_or("switch_velocity", 0.0, q.velocity, {at_least(0.0)});
-  c.tau_spike = drive.r * table.real_or("spike", 0.0, q.force);
-  c.spike_time = table.real_or("spike_time_ms", controllers::kNoLimit, kTime, {above(0.0)});
-  c.spike_distance =
-      table.real_or("spike_distance", controllers::kNoLimit, q.position, {above(0.0)});
+  c.tau_pulse = drive.r * table.real_or("reversal_pulse", 0.0, q.force);
+  c.reversal_pulse_time =
+      table.real_or("reversal_pulse_time_ms", controllers::kNoLimit, kTime, {above(0.0)});
+  c.reversal_pulse_distance =
+      table.real_or("reversal_pulse_distance", controllers::kNoLimit, q.position, {above(0.0)});
   c.Tv = Tv;
-  if (c.tau_spike != 0.0 && !table.has("spike_time_ms") && !table.has("spike_distance")) {
-    table.fault("spike", "needs spike_time_ms or spike_distance, over which it fades");
+  if (c.tau_pulse != 0.0 && !table.has("reversal_pulse_time_ms") &&
+      !table.has("reversal_pulse_distance")) {
+    table.fault("reversal_pulse",
+                "needs reversal_pulse_time_ms or reversal_pulse_distance, over which it fades");
   }
   return c;
 }

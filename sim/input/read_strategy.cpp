@@ -16,11 +16,11 @@ namespace servomill::sim {
 namespace {
 
 constexpr double kNoBound = 1e300;  // of a parameter's specification
-constexpr std::array<std::string_view, 2> kSigns = {"generate", "correct"};
+constexpr std::array<std::string_view, 2> kActions = {"impose", "compensate"};
 
 void read_model(Reader& table, std::span<const std::string> error_models, StrategySpec& strategy) {
-  strategy.sign = table.choice_or("sign", 1, kSigns) == 0 ? strategies::Sign::generate
-                                                          : strategies::Sign::correct;
+  strategy.action = table.choice_or("action", 1, kActions) == 0 ? strategies::Action::impose
+                                                                : strategies::Action::compensate;
   strategy.model = table.text("model");
   if (table.is("model", Value::Type::text)) {
     must_be_known(table, "model", strategy.model, "error model", error_models);
@@ -53,6 +53,13 @@ void read_other_word(Reader& table, const ParameterSpec& spec, Parameters& out) 
   // numbers stand for words, too: iterations = 1
   if (table.has(spec.name) && table.is(spec.name, Value::Type::integer)) {
     const std::string word = std::to_string(table.integer(spec.name));
+    if (is_one_of(word, spec)) {
+      out.set(spec.name, std::string_view(word));
+      return;
+    }
+  }
+  if (table.has(spec.name) && table.is(spec.name, Value::Type::boolean)) {
+    const std::string word = table.boolean(spec.name) ? "true" : "false";
     if (is_one_of(word, spec)) {
       out.set(spec.name, std::string_view(word));
       return;
@@ -135,10 +142,11 @@ void read_strategy(Reader& table, std::span<const std::string> error_models, Cas
     table.fault("type", "a case has one feedback hardware: this is the second");
   }
   if (repeats_start(strategy, spec.strategies)) {
-    table.fault("type",
-                fmt::format("a second {} strategy for this model adds the value at the start once "
-                            "more; use axis = \"all\", or at_reference = \"zero\" for all but one",
-                            strategy.entry->name));
+    table.fault(
+        "type",
+        fmt::format("a second {} strategy for this model adds the value at the start once "
+                    "more; use base_axis = \"all\", or zero_at_reference = true for all but one",
+                    strategy.entry->name));
   }
   spec.strategies.push_back(std::move(strategy));
 }

@@ -45,10 +45,10 @@ Travel travel_of(Points2 points, const Vector2d& centre) {
 }
 
 // (largest, smallest) of the curve
-std::pair<double, double> range_of(const std::vector<RadialDeviation>& curve) {
-  const auto [low, high] = std::minmax_element(
-      curve.begin(), curve.end(),
-      [](const RadialDeviation& a, const RadialDeviation& b) { return a.dr < b.dr; });
+std::pair<double, double> range_of(const std::vector<RadialError>& curve) {
+  const auto [low, high] =
+      std::minmax_element(curve.begin(), curve.end(),
+                          [](const RadialError& a, const RadialError& b) { return a.dr < b.dr; });
   return {high->dr, low->dr};
 }
 
@@ -60,7 +60,7 @@ struct ParallelLines {
   double behind(double phi) const { return before(phi) + step; }
 };
 
-ParallelLines lines_through(const std::vector<RadialDeviation>& arcs) {  // theta: phi
+ParallelLines lines_through(const std::vector<RadialError>& arcs) {  // theta: phi
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Vector3d right = Vector3d::Zero();
   for (const auto& [phi, dr] : arcs) {
@@ -72,11 +72,10 @@ ParallelLines lines_through(const std::vector<RadialDeviation>& arcs) {  // thet
   return {x[0], x[1], x[2]};
 }
 
-Reversal reversal_at(double theta, int axis, Sense sense,
-                     const std::vector<RadialDeviation>& curve) {
+Reversal reversal_at(double theta, int axis, Sense sense, const std::vector<RadialError>& curve) {
   const double direction = sense == Sense::counter_clockwise ? 1.0 : -1.0;
-  std::vector<RadialDeviation> arcs, window;
-  for (const RadialDeviation& one : curve) {
+  std::vector<RadialError> arcs, window;
+  for (const RadialError& one : curve) {
     const double phi = wrapped(direction * (one.theta - theta));
     if ((phi >= kBeforeFrom && phi < kBeforeTo) || (phi > kBehindFrom && phi <= kBehindTo)) {
       arcs.push_back({phi, one.dr});
@@ -98,8 +97,8 @@ Reversal reversal_at(double theta, int axis, Sense sense,
 
 }  // namespace
 
-std::vector<RadialDeviation> radial_deviation(Points2 points, const Circle& circle) {
-  std::vector<RadialDeviation> curve;
+std::vector<RadialError> radial_error(Points2 points, const Circle& circle) {
+  std::vector<RadialError> curve;
   curve.reserve(points.size());
   for (const Vector2d& p : points) {
     const Vector2d d = p - circle.centre;
@@ -109,7 +108,7 @@ std::vector<RadialDeviation> radial_deviation(Points2 points, const Circle& circ
   return curve;
 }
 
-double squareness_of(const std::vector<RadialDeviation>& curve, double radius) {
+double squareness_of(const std::vector<RadialError>& curve, double radius) {
   // by least squares together with the harmonics that a shift, a scale and an ellipse leave
   using Row = Eigen::Matrix<double, 5, 1>;
   Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
@@ -156,10 +155,10 @@ CircularTurn evaluate_turn(Points2 points, const Circle& nominal) {
   turn.least_squares = least_squares_circle(points);
   turn.minimum_zone = minimum_zone(points);
   turn.G = turn.minimum_zone.width();
-  const auto curve = radial_deviation(points, {turn.least_squares.centre, nominal.radius});
+  const auto curve = radial_error(points, {turn.least_squares.centre, nominal.radius});
   std::tie(turn.F_max, turn.F_min) = range_of(curve);
   turn.G_least_squares = turn.F_max - turn.F_min;
-  std::tie(turn.F_max_set_up, turn.F_min_set_up) = range_of(radial_deviation(points, nominal));
+  std::tie(turn.F_max_set_up, turn.F_min_set_up) = range_of(radial_error(points, nominal));
   for (std::size_t quadrant = 0; quadrant < 4; ++quadrant) {
     turn.reversals[quadrant] = reversal_at(static_cast<double>(quadrant) * kTurn / 4.0,
                                            static_cast<int>(quadrant % 2), turn.sense, curve);
@@ -178,7 +177,7 @@ BidirectionalCircle evaluate_both(Points2 one, Points2 other, const Circle& nomi
   out.D = nominal.radius - least_squares.radius;
   for (const Points2 points : {one, other}) {
     const Circle mine{least_squares_circle(points).centre, nominal.radius};
-    out.squareness += 0.5 * squareness_of(radial_deviation(points, mine), nominal.radius);
+    out.squareness += 0.5 * squareness_of(radial_error(points, mine), nominal.radius);
   }
   return out;
 }

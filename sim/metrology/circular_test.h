@@ -24,7 +24,7 @@ namespace servomill::sim {
 enum class Sense { counter_clockwise, clockwise };
 
 /// One point of the curve that a polar diagram magnifies.
-struct RadialDeviation {
+struct RadialError {
   double theta = 0.0;  // about the centre, [0, 2 pi)
   double dr = 0.0;
 };
@@ -50,7 +50,7 @@ struct CircularTurn {
   Sense sense = Sense::counter_clockwise;
   Circle least_squares;
   RingZone minimum_zone;
-  double G = 0.0;                   // circular deviation: width of the minimum zone
+  double G = 0.0;                   // circular error: width of the minimum zone
   double G_least_squares = 0.0;     // range of the radial deviation about the least-squares centre
   double F_max = 0.0, F_min = 0.0;  // radial deviation from the nominal radius, about that centre
   double F_max_set_up = 0.0, F_min_set_up = 0.0;  // the same about the nominal centre
@@ -69,13 +69,13 @@ struct BidirectionalCircle {
 };
 
 /// Deviation from a circle over the angle, in the order of the points.
-std::vector<RadialDeviation> radial_deviation(Points2 points, const Circle& circle);
+std::vector<RadialError> radial_error(Points2 points, const Circle& circle);
 
 /// gamma = (D45 - D135) / (2 R), rad: the diameters at 45 and at 135 deg are those of the second
 /// harmonic of the radial deviation, a sin 2 theta, so that D45 - D135 = 4 a and gamma = 2 a / R.
 /// gamma > 0: the angle between the positive axes is smaller than 90 deg by gamma. Axes that lag by
 /// different times give the same ellipse, the other way round in the other direction.
-double squareness_of(const std::vector<RadialDeviation>& curve, double radius);
+double squareness_of(const std::vector<RadialError>& curve, double radius);
 
 /// Why these points are no turn that can be evaluated; nullopt if they are. They must go once
 /// around the centre (360 deg to within the two degrees at which the points of a turn may lie

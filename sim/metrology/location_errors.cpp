@@ -45,7 +45,7 @@ Effects effects_of(const plant::MachineChain& chain, const std::vector<SensorRea
   const int per_set_up = set_up.length_is_unknown ? 4 : 3;
   const int tip = per_set_up * number_of_set_ups(readings);
   Effects out;
-  out.set_up_unknowns = tip + (set_up.tip_is_unknown ? 3 : 0);
+  out.set_up_unknowns = tip + (set_up.tcp_is_unknown ? 3 : 0);
   out.A = MatrixXd::Zero(static_cast<Eigen::Index>(readings.size()),
                          out.set_up_unknowns + static_cast<int>(names.size()));
   for (Eigen::Index row = 0; row < out.A.rows(); ++row) {
@@ -53,7 +53,7 @@ Effects effects_of(const plant::MachineChain& chain, const std::vector<SensorRea
     const int own = per_set_up * reading.set_up;
     out.A.block<1, 3>(row, own) = -reading.n_W.transpose();
     if (set_up.length_is_unknown) out.A(row, own + 3) = -1.0;
-    if (set_up.tip_is_unknown) {
+    if (set_up.tcp_is_unknown) {
       out.A.block<1, 3>(row, tip) = reading.n_W.transpose() * R_WS(chain, reading.Q);
     }
     for (std::size_t i = 0; i < single.size(); ++i) {
@@ -195,11 +195,11 @@ LocationFit fit(const plant::MachineChain& chain, const std::vector<SensorReadin
   return out;
 }
 
-// " - 0.05 um/urad EX0C"
+// "-0.05 um/urad EX0C"
 std::string term(const ErrorName& of, const Likeness& like) {
   const double size = std::abs(like.factor);
   const bool same_kind = is_turn(of) == is_turn(like.name);
-  std::string out = like.factor < 0.0 ? " - " : " + ";
+  std::string out = like.factor < 0.0 ? "-" : "";
   if (!same_kind || std::abs(size - 1.0) > kOwnShare) out += fmt::format("{:.3g} ", size);
   if (!same_kind) out += is_turn(of) ? "um/urad " : "urad/um ";
   return out + plant::to_string(like.name);
@@ -210,11 +210,13 @@ std::string term(const ErrorName& of, const Likeness& like) {
 std::string LocationEstimate::why_not() const {
   if (value) return "";
   if (like.empty() && !is_like_set_up) return "has no effect";
-  std::string out;
-  for (const Likeness& one : like) out += term(name, one);
-  if (is_like_set_up) out += " + set-up";
-  const std::size_t sign = out.starts_with(" + ") ? 3 : 1;  // of the first: none, or a minus
-  return "acts as " + out.substr(sign);
+  std::vector<std::string> terms;
+  for (const Likeness& one : like) terms.push_back(term(name, one));
+  if (is_like_set_up) terms.emplace_back("set-up");
+  const std::string last = terms.back();
+  terms.pop_back();
+  return fmt::format("confounded with {}{}{}", fmt::join(terms, ", "), terms.empty() ? "" : " and ",
+                     last);
 }
 
 const LocationEstimate* LocationFit::find(const ErrorName& name) const {

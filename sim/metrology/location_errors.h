@@ -44,7 +44,7 @@ struct SensorReading {
 
 /// Unknowns of the set-up beside the place of the nest on the table.
 struct BallSetUp {
-  bool tip_is_unknown = true;      // place of the ball in the spindle
+  bool tcp_is_unknown = true;      // place of the ball in the spindle
   bool length_is_unknown = false;  // of a ball bar
 };
 
@@ -65,7 +65,7 @@ struct LocationEstimate {
   std::vector<Likeness> like;
   bool is_like_set_up = false;
 
-  /// "acts as - EX0C + set-up", "has no effect"; empty where there is a value.
+  /// "confounded with -EX0C and set-up", "has no effect"; empty where there is a value.
   std::string why_not() const;
 };
 

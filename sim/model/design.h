@@ -6,11 +6,11 @@
 /// "program.feed_override" = [0.5, 1.0]                   # a list
 /// "machine.nc.Kv" = { log = ["40 1/s", "160 1/s"], count = 5 }       # a range; or linear
 /// samples = { design = "sobol", count = 256, seed = 1 }  # random, latin_hypercube or sobol
-/// "errors.belief.EYX.harmonic.amplitude_um" = { normal = [150.0, 3.0] }    # mean, deviation
-/// "case.table.strategy.response_time_ms" = { uniform = [30.0, 50.0] }      # or log_uniform
-/// "case.table.strategy.entry" = { one_of = ["position_command", "feed_forward"] }
+/// "errors.identified.EYX.harmonic.amplitude_um" = { normal = [150.0, 3.0] }    # mean, deviation
+/// "case.table.strategy.time_constant_ms" = { uniform = [30.0, 50.0] }      # or log_uniform
+/// "case.table.strategy.injection_point" = { choice = ["position_command", "feed_forward"] }
 ///
-/// [[sweep.together]]                                     # lists that go together, one value each
+/// [[sweep.zip]]                                     # lists that go together, one value each
 /// "machine.axis.X.v_max" = ["20 m/min", "40 m/min"]
 /// "machine.axis.Y.v_max" = ["10 m/min", "20 m/min"]
 /// ```

@@ -50,8 +50,8 @@ struct ProgramSpec {
 struct StrategySpec {
   const strategies::Entry* entry = nullptr;
   Parameters parameters;
-  strategies::Sign sign = strategies::Sign::correct;
-  std::string model;                                     // name of the believed error model
+  strategies::Action action = strategies::Action::compensate;
+  std::string model;                                     // name of the identified error model
   Place place;                                           // for what the strategy itself refuses
   std::map<std::string, Place, std::less<>> key_places;  // of the parameters that are given
 };
@@ -62,10 +62,10 @@ struct CaseSpec {
   std::vector<StrategySpec> strategies;
   bool feedback_hardware = false;
   ServoModel servo = ServoModel::cascade;
-  std::optional<std::string> truth;        // in place of that of the scenario; empty: no errors
-  bool cutting = false;                    // feels forces of the cut
-  CuttingWear wear;                        // then
-  std::optional<MachineSettings> machine;  // where the case overrides keys of the machine
+  std::optional<std::string> machine_errors;  // in place of that of the scenario; empty: no errors
+  bool cutting = false;                       // feels forces of the cut
+  CuttingWear wear;                           // then
+  std::optional<MachineSettings> machine;     // where the case overrides keys of the machine
 
   /// Tells if one of its strategies passes its signals through the feedback hardware.
   bool needs_feedback_hardware() const;
@@ -75,7 +75,7 @@ struct CaseSpec {
 struct BallSpec {
   std::vector<Eigen::Vector3d> bar_centres;    // m, in the workpiece: of a ball bar, for each of
                                                // the sections; none: a nest of three sensors
-  bool tip_is_known = false;                   // the ball lies where the program has the tip
+  bool tcp_is_known = false;                   // the ball lies where the program has the tip
   std::optional<plant::ErrorName> error = {};  // location_error: which
 };
 
@@ -92,11 +92,11 @@ struct QuantitySpec {
   char axis = '\0';       // X, Y, Z, ...; '\0' where the quantity has none
   std::string statistic;  // max, rms, mean, range
   std::vector<std::string> cases;
-  std::string base;                   // case compared with, for differences
+  std::string baseline;               // case compared with, for differences
   std::vector<std::string> sections;  // of the program; empty: all
   Place sections_place;
   std::string reference;  // the paper's number with unit, or empty
-  std::string kind;       // identified, predicted, chosen, bound or empty
+  std::string basis;      // fitted, predicted, assumed, upper_bound or empty
   std::optional<BallSpec> ball = {};
   std::optional<PartSpec> part = {};
 };
@@ -124,7 +124,7 @@ struct Scenario {
   MachineSettings machine;
   ProgramSpec program;
   std::map<std::string, plant::ErrorModel> errors;
-  std::string truth;    // model of the machine's true errors; empty: none
+  std::string machine_errors;  // model of the machine's true errors; empty: none
   std::string imposed;  // model whose displacement at the programmed position is recorded; or empty
   FeedbackHardware hardware;
   plant::Stock stock;                       // in work coordinates of the program

@@ -45,7 +45,7 @@ const plant::ErrorModel& errors_of(const Scenario& scenario, const std::string& 
 
 void add(MemoKey& key, const StrategySpec& spec) {
   key.add(spec.entry->name);
-  key.add(spec.sign);
+  key.add(spec.action);
   for (const ParameterSpec& parameter : spec.entry->parameters) {
     key.add(spec.parameters.is_word(parameter.name));
     if (spec.parameters.is_word(parameter.name)) {
@@ -163,9 +163,9 @@ SharedStrategy CasePreparation::strategy(const StrategySpec& spec,
 
 // A strategy knows the fault, but not the place of the key.
 SharedStrategy CasePreparation::make(const StrategySpec& spec,
-                                     const strategies::Belief& machine) const {
+                                     const strategies::IdentifiedMachine& machine) const {
   try {
-    return spec.entry->make(spec.parameters, spec.sign, machine);
+    return spec.entry->make(spec.parameters, spec.action, machine);
   } catch (const InputError& error) {
     const std::string& why = error.faults().front().message;
     throw InputError(place_in(spec, why),

@@ -56,7 +56,7 @@ class CasePreparation {
   double distance_of_plan() const;
 
  private:
-  SharedStrategy make(const StrategySpec& spec, const strategies::Belief& machine) const;
+  SharedStrategy make(const StrategySpec& spec, const strategies::IdentifiedMachine& machine) const;
   controllers::ProgramSetup setup_of_rewritten() const;
   controllers::TipMotions tip_motions(const MoveList& moves, const InterpretedProgram& program,
                                       const controllers::JointLimits& limits,

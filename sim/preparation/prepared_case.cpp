@@ -23,7 +23,7 @@ struct PreparedCase::Parts {
   std::vector<SharedStrategy> strategies;
   std::shared_ptr<const RewrittenProgram> rewritten;  // nullptr: the original program runs
   SharedMotion motion;
-  SharedModel truth, imposed;
+  SharedModel machine_errors, imposed;
   SharedCutting cutting;
   Joints machine_start;
   std::optional<ThinningLimits> thinning = {};  // of its recording
@@ -78,7 +78,7 @@ PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, Prepa
   // what the machine can do
   parts.motion = prepare.motion(moves, *parts.program);
   refuse_endless(scenario, parts.motion->trajectory.duration());
-  parts.truth = prepare.model(spec.truth.value_or(scenario.truth));
+  parts.machine_errors = prepare.model(spec.machine_errors.value_or(scenario.machine_errors));
   if (!scenario.imposed.empty()) parts.imposed = prepare.model(scenario.imposed);
   parts.cutting = prepare.cutting(parts.program);
 }
@@ -98,7 +98,7 @@ CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const {
   FeedbackHardware hardware = p.scenario.hardware;
   hardware.connected = p.spec.feedback_hardware;
   CaseInputs inputs{p.machine(),
-                    *p.truth,
+                    *p.machine_errors,
                     p.imposed.get(),
                     p.motion->trajectory,
                     p.program->path,
@@ -119,7 +119,7 @@ CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const {
     inputs.wear = p.spec.wear;
   }
   for (const auto& strategy : p.strategies) {
-    if (auto part = strategy->set_point()) inputs.set_points.push_back(std::move(part));
+    if (auto part = strategy->setpoint()) inputs.setpoints.push_back(std::move(part));
     if (strategy->displaces_feedback()) inputs.feedback = strategy.get();
     if (strategy->rewrites()) inputs.program_displaces_rotary |= strategy->displaces_rotary();
     if (p.scenario.record.uncorrectable && strategy->uncorrectable(p.machine_start)) {

@@ -128,7 +128,7 @@ void refuse_unknown_tools(const PostRequest& request, const controllers::ClData&
 // Where rotary axes turn head or workpiece, the axes go with the place of the part: 0 may be given,
 // but is not assumed. Under tip control X and Y are approached without it, where the table turns.
 void refuse_unknown_place(const PostRequest& request, const plant::MachineChain& chain) {
-  if (request.part_zero) return;
+  if (request.work_offset) return;
   const bool is_tip = request.options.mode == controllers::PostMode::tip;
   if (is_tip && request.options.approach == controllers::Approach::direct) return;
   const bool turns =
@@ -138,7 +138,7 @@ void refuse_unknown_place(const PostRequest& request, const plant::MachineChain&
   if (!turns) return;
   throw InputError({request.cl_file},
                    fmt::format("the place of the part is not given, and the rotary axes of this "
-                               "machine turn about points of their own; add --part-zero X,Y,Z "
+                               "machine turn about points of their own; add --work-offset X,Y,Z "
                                "(0,0,0 is a place, too){}",
                                is_tip ? " or --approach direct" : ""));
 }
@@ -181,7 +181,7 @@ std::string header(const PostRequest& request, const controllers::PostOptions& o
       text += fmt::format("\nG43.4: X Y Z are the tip; tool axis within {:g} urad", axis);
       break;
   }
-  const Eigen::Vector3d& zero = options.part_zero;
+  const Eigen::Vector3d& zero = options.work_offset;
   text += fmt::format("\npart zero (G{}): X{:g} Y{:g} Z{:g} in the machine, rotary axes at zero",
                       53 + options.work_system, zero[0] / mm, zero[1] / mm, zero[2] / mm);
   if (options.approach == controllers::Approach::safe) {
@@ -200,7 +200,7 @@ std::string header(const PostRequest& request, const controllers::PostOptions& o
 
 }  // namespace
 
-PostedFile post_file(PostRequest request, std::vector<controllers::Warning>* of_refused) {
+PostProcessedFile post_file(PostRequest request, std::vector<controllers::Warning>* of_refused) {
   const MachineDescription described =
       read_machine_description(request.machine_file, request.changes);
   const MachineSettings& machine = described.machine;
@@ -215,7 +215,7 @@ PostedFile post_file(PostRequest request, std::vector<controllers::Warning>* of_
   for (int j = 0; j < kJoints; ++j) {
     if (machine.nc.v_max[j] > 0.0) options.v_max[j] = machine.nc.v_max[j];
   }
-  options.part_zero = request.part_zero.value_or(Eigen::Vector3d::Zero());
+  options.work_offset = request.work_offset.value_or(Eigen::Vector3d::Zero());
   if (options.approach == controllers::Approach::safe) {
     options.safe.retract_Z = retract_height(request, described);
   }
@@ -226,21 +226,23 @@ PostedFile post_file(PostRequest request, std::vector<controllers::Warning>* of_
   settings.lower = machine.nc.lower;
   settings.upper = machine.nc.upper;
   const plant::InverseKinematics inverse(machine.chain, settings);
-  controllers::Posted posted = controllers::post(data, request.cl_file, inverse, options, &told);
+  controllers::PostProcessed post_processed =
+      controllers::post(data, request.cl_file, inverse, options, &told);
   told.clear();
 
   controllers::PrintOptions print;
   print.axes = names_of(machine.chain.layout);
   print.tip_control = options.mode == controllers::PostMode::tip;
-  PostedFile out;
-  out.program =
-      controllers::print_program(posted.moves, print, header(request, options, data, machine.name))
-          .text;
+  PostProcessedFile out;
+  out.program = controllers::print_program(post_processed.moves, print,
+                                           header(request, options, data, machine.name))
+                    .text;
   out.verified = to_string(verify_post(out.program, data, machine, options, request.cl_file));
   out.warnings = data.warnings;
-  out.warnings.insert(out.warnings.end(), posted.warnings.begin(), posted.warnings.end());
+  out.warnings.insert(out.warnings.end(), post_processed.warnings.begin(),
+                      post_processed.warnings.end());
   out.locations = data.locations();
-  out.inserted = posted.inserted;
+  out.inserted = post_processed.inserted;
   return out;
 }
 

@@ -12,18 +12,18 @@ namespace servomill::sim {
 
 struct PostRequest {
   std::string cl_file, machine_file;
-  std::vector<std::string> changes;          // "KEY=VALUE": of the machine
-  std::string tool_table;                    // of LinuxCNC's format; empty: none
-  std::optional<double> tool_length;         // m, of every tool; without table
-  std::vector<std::string> tool_lengths;     // "1=50": of tool 1, in place of these
-  bool has_no_tool = false;                  // before the first LOADTL, with tool_length 0
-  std::optional<Eigen::Vector3d> part_zero;  // m: options.part_zero
-  std::optional<double> retract_Z;           // m, machine coordinate: options.safe.retract_Z
+  std::vector<std::string> changes;            // "KEY=VALUE": of the machine
+  std::string tool_table;                      // of LinuxCNC's format; empty: none
+  std::optional<double> tool_length;           // m, of every tool; without table
+  std::vector<std::string> tool_lengths;       // "1=50": of tool 1, in place of these
+  bool has_no_tool = false;                    // before the first LOADTL, with tool_length 0
+  std::optional<Eigen::Vector3d> work_offset;  // m: options.work_offset
+  std::optional<double> retract_Z;             // m, machine coordinate: options.safe.retract_Z
   std::string start;  // "A=10,C=90" in mm and deg: options.start; empty: all axes at zero
   controllers::PostOptions options;  // tools, part zero, retract height and start are filled in
 };
 
-struct PostedFile {
+struct PostProcessedFile {
   std::string program;
   std::vector<controllers::Warning> warnings;
   std::size_t locations = 0, inserted = 0;
@@ -35,6 +35,7 @@ struct PostedFile {
 /// @param of_refused  where a fault ends it: receives the warnings until then
 /// @throws InputError as the reader of the machine, of the tool table, of the locations and the
 /// post-processor do
-PostedFile post_file(PostRequest request, std::vector<controllers::Warning>* of_refused = nullptr);
+PostProcessedFile post_file(PostRequest request,
+                            std::vector<controllers::Warning>* of_refused = nullptr);
 
 }  // namespace servomill::sim

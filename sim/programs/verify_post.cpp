@@ -53,7 +53,7 @@ class PostReplay {
     controllers::ProgramSetup setup;
     setup.tools = options.tools;
     setup.work_offset[static_cast<std::size_t>(options.work_system - 1)].head<3>() =
-        options.part_zero;
+        options.work_offset;
     setup.machine = tool_centre_point(machine);
     setup.start = elsewhere();
     now_.Q = chain_.layout.joints(setup.start);
@@ -241,7 +241,7 @@ class PostReplay {
   }
 
   void to_location(const ClRecord& record) {
-    const ToolPose P{record.P.p_WT + options_.part_zero, record.P.k_W};
+    const ToolPose P{record.P.p_WT + options_.work_offset, record.P.k_W};
     if (record.kind == MoveKind::feed && has_location_ && !changes_tool_) {
       feed_to(record, P);
     } else {
@@ -294,7 +294,7 @@ class PostReplay {
                   double share) const {
     const bool is_still = path.length() < kStandingTip;
     const double rate =
-        is_still ? options_.turn_rate : (record.feed > 0.0 ? record.feed : options_.feed);
+        is_still ? options_.rotary_rate : (record.feed > 0.0 ? record.feed : options_.feed);
     const double wanted = share * (is_still ? path.angle() : path.length()) / rate;
     const double time = time_of(block);
     if (std::abs(time - wanted) <= kTime * wanted + kDigits / rate) return;

@@ -64,7 +64,7 @@ RowThinning::RowThinning(const std::vector<Signal>& signals, ThinningLimits limi
 // Distance and angle of the tool, which no column of the rows holds.
 void RowThinning::watch_tool(const Series& coming) {
   Signal tip = *coming.find("tool_deviation"), axis = *coming.find("tool_axis_nominal");
-  tip.name = "tool_tip_deviation";
+  tip.name = "tcp_deviation";
   tip.long_name = "distance of the true from the nominal tool centre point at equal s";
   axis.name = "tool_axis_deviation";
   axis.long_name = "angle between the true and the nominal tool axis at equal s";

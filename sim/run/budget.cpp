@@ -70,7 +70,7 @@ class BudgetRun {
       budget.quantity = quantity;
       for (std::size_t c = 0; c < kCauses; ++c) budget.parts[c].cause = static_cast<Cause>(c);
       budgets_.push_back(std::move(budget));
-      for (const std::string& name : {quantity.cases.front(), quantity.base}) {
+      for (const std::string& name : {quantity.cases.front(), quantity.baseline}) {
         if (name.empty() || present_.contains(name)) continue;
         present_[name] = present(all, scenario, *scenario.find_case(name));
       }
@@ -134,7 +134,7 @@ class BudgetRun {
   static std::optional<PathSignal> residual(Budget& budget, const Runs& runs, const char* stops) {
     const QuantitySpec& quantity = budget.quantity;
     std::vector<CaseData> compared;
-    for (const std::string& name : {quantity.cases.front(), quantity.base}) {
+    for (const std::string& name : {quantity.cases.front(), quantity.baseline}) {
       if (name.empty()) continue;
       const CaseOutput& one = *runs.at(name);
       const Outcome& outcome = one.result.outcome;
@@ -181,7 +181,7 @@ class BudgetRun {
   }
 
   bool has(const Budget& budget, Cause cause) const {
-    const std::string& base = budget.quantity.base;
+    const std::string& base = budget.quantity.baseline;
     return present_.at(budget.quantity.cases.front()).contains(cause) ||
            (!base.empty() && present_.at(base).contains(cause));
   }
@@ -224,7 +224,7 @@ class BudgetRun {
     if (!budget.note.empty()) return;
     const QuantitySpec& quantity = budget.quantity;
     const auto rest = rest_of(quantity, *scenario_.find_case(quantity.cases.front()),
-                              scenario_.find_case(quantity.base));
+                              scenario_.find_case(quantity.baseline));
     if (rest) {
       auto left = at_places(budget, none);
       if (!left) return;
@@ -279,7 +279,7 @@ std::vector<QuantitySpec> asked_for(const Scenario& scenario, std::span<const st
 bool is_of_any_case(std::string_view quantity) {
   if (!has_path_signal(quantity)) return false;
   const QuantityEntry& info = quantity_entry(quantity);
-  return !info.needs_base && !info.needs_imposed;
+  return !info.needs_baseline && !info.needs_imposed;
 }
 
 std::vector<QuantitySpec> budget_quantities(const Scenario& scenario,
@@ -293,12 +293,12 @@ std::vector<QuantitySpec> budget_quantities(const Scenario& scenario,
     if (!has_path_signal(one.name)) continue;
     one.statistic = "max";
     one.reference.clear();
-    one.kind.clear();
+    one.basis.clear();
     if (!sections.empty()) one.sections = sections;
     for (const std::string& name : asked.cases) {
       one.cases = {name};
       const bool known = std::any_of(out.begin(), out.end(), [&](const QuantitySpec& other) {
-        return other.name == one.name && other.axis == one.axis && other.base == one.base &&
+        return other.name == one.name && other.axis == one.axis && other.baseline == one.baseline &&
                other.sections == one.sections && other.cases == one.cases;
       });
       if (!known) out.push_back(one);

@@ -56,7 +56,7 @@ struct BudgetPart : BudgetSignal {
 ///
 /// The rest (1) is `imposed` where a strategy moves the tool on purpose (generates errors, bends
 /// the path) and the quantity does not take that off, else `uncorrectable` where one knows errors,
-/// else `uncorrected`: the imposed displacement that imposed_curve_residual wants and nobody brings
+/// else `uncorrected`: the imposed displacement that imposed_error_residual wants and nobody brings
 /// out.
 ///
 /// Signals are computed sample by sample, from recordings that may lie on the disk, and kept there
@@ -78,8 +78,8 @@ struct Budget {
 /// True if each case has this quantity, asked for or not: tool_deviation, following_error.
 bool is_of_any_case(std::string_view quantity);
 
-/// Quantities of a scenario that have a budget, each case of each once: brought_out and
-/// response_time stand for imposed_curve_residual; statistics do not matter.
+/// Quantities of a scenario that have a budget, each case of each once: realised_ratio and
+/// lag_time stand for imposed_error_residual; statistics do not matter.
 /// @param also      quantities of any case; where the scenario has none of that name, of all cases
 ///                  and linear axes
 /// @param sections  of the program, in place of those of the quantities; none: as they are, and

@@ -17,8 +17,8 @@ constexpr std::array<CauseInfo, kCauses> kInfos = {{
     {"table", "points and form of compensation tables"},
     {"delay", "response and update of tables, signal delay, model period"},
     {"saturation", "limits of virtual displacements"},
-    {"one_step", "errors evaluated at a displaced position"},
-    {"identification", "believed errors, or origin, are not the true ones"},
+    {"single_evaluation", "errors evaluated at a displaced position"},
+    {"identification", "identified errors, or origin, are not the true ones"},
     {"friction", "dry friction, backlash, cogging, and their compensation"},
     {"measurement", "encoders and, where the motor is read, screws"},
     {"cutting", "forces of the cut"},
@@ -108,24 +108,25 @@ bool remove_delay(Scenario& scenario, CaseSpec& one) {
   return any;
 }
 
-const std::string& truth_of(const Scenario& scenario, const CaseSpec& one) {
-  return one.truth ? *one.truth : scenario.truth;
+const std::string& machine_errors_of(const Scenario& scenario, const CaseSpec& one) {
+  return one.machine_errors ? *one.machine_errors : scenario.machine_errors;
 }
 
 // True if strategies of a case know errors, to correct or to generate them.
-bool has_strategy(const CaseSpec& one, strategies::Sign sign) {
+bool has_strategy(const CaseSpec& one, strategies::Action action) {
   return std::any_of(one.strategies.begin(), one.strategies.end(), [&](const StrategySpec& spec) {
-    return spec.entry->reads_errors && spec.sign == sign;
+    return spec.entry->reads_errors && spec.action == action;
   });
 }
 
 bool remove_identification(const Scenario& scenario, CaseSpec& one) {
   bool any = idealise(one, Shortcoming::identification);
-  const std::string& truth = truth_of(scenario, one);
+  const std::string& machine_errors = machine_errors_of(scenario, one);
   for (StrategySpec& strategy : one.strategies) {
     if (!strategy.entry->reads_errors) continue;
-    const bool corrects_truth = strategy.sign == strategies::Sign::correct && !truth.empty();
-    const std::string& right = corrects_truth ? truth : scenario.imposed;
+    const bool removes_machine_errors =
+        strategy.action == strategies::Action::compensate && !machine_errors.empty();
+    const std::string& right = removes_machine_errors ? machine_errors : scenario.imposed;
     if (right.empty() || strategy.model == right) continue;
     strategy.model = right;
     any = true;
@@ -134,8 +135,9 @@ bool remove_identification(const Scenario& scenario, CaseSpec& one) {
 }
 
 bool remove_uncorrected(const Scenario& scenario, CaseSpec& one) {
-  if (truth_of(scenario, one).empty() || has_strategy(one, strategies::Sign::correct)) return false;
-  one.truth = "";
+  if (machine_errors_of(scenario, one).empty() || has_strategy(one, strategies::Action::compensate))
+    return false;
+  one.machine_errors = "";
   return true;
 }
 
@@ -170,8 +172,8 @@ bool remove(Cause cause, Scenario& scenario, CaseSpec& one) {
       return remove_delay(scenario, one);
     case Cause::saturation:
       return idealise(one, Shortcoming::saturation);
-    case Cause::one_step:
-      return idealise(one, Shortcoming::one_step);
+    case Cause::single_evaluation:
+      return idealise(one, Shortcoming::single_evaluation);
     case Cause::identification:
       return remove_identification(scenario, one);
     case Cause::friction:
@@ -193,7 +195,7 @@ bool remove(Cause cause, Scenario& scenario, CaseSpec& one) {
 
 // True if strategies of a case move the tool off the programmed path on purpose.
 bool moves_on_purpose(const CaseSpec& one) {
-  return has_strategy(one, strategies::Sign::generate) ||
+  return has_strategy(one, strategies::Action::impose) ||
          std::any_of(one.strategies.begin(), one.strategies.end(), [](const StrategySpec& spec) {
            return !spec.entry->reads_errors && spec.entry->acts;
          });
@@ -218,8 +220,8 @@ std::optional<Cause> rest_of(const QuantitySpec& quantity, const CaseSpec& one,
   const bool takes_imposed_off = entry.needs_imposed;
   if (any(moves_on_purpose) && !takes_imposed_off) return Cause::imposed;
   const bool knows_errors = any([](const CaseSpec& spec) {
-    return has_strategy(spec, strategies::Sign::generate) ||
-           has_strategy(spec, strategies::Sign::correct);
+    return has_strategy(spec, strategies::Action::impose) ||
+           has_strategy(spec, strategies::Action::compensate);
   });
   if (knows_errors) return Cause::uncorrectable;
   if (takes_imposed_off) return Cause::uncorrected;

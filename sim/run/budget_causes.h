@@ -17,15 +17,15 @@ namespace servomill::sim {
 /// Causes of a residual. Taking a cause away (of the case and of the case that it is
 /// compared with) means:
 enum class Cause : std::uint8_t {
-  lag,             // loops and drives: axes stand where the NC wants them (servo = "ideal")
-  table,           // points of compensation tables, lines for several axes, their ends: the error
-                   // itself (form = "exact")
-  delay,           // response, dead time and update of tables, signal delay and model period of the
-                   // feedback hardware, delay of the scales: 0, and one base tick for the model
-  saturation,      // limits of virtual displacements: out of reach
-  one_step,        // errors evaluated where displacing changes them: iterations = "converged"
+  lag,         // loops and drives: axes stand where the NC wants them (servo = "ideal")
+  table,       // points of compensation tables, lines for several axes, their ends: the error
+               // itself (layout = "continuous")
+  delay,       // response, dead time and update of tables, signal delay and model period of the
+               // feedback hardware, delay of the scales: 0, and one base tick for the model
+  saturation,  // limits of virtual displacements: out of reach
+  single_evaluation,  // errors evaluated where displacing changes them: iterations = "converged"
   identification,  // strategies believe in the truth (or, without one, in the imposed model), and
-                   // in the origin of the case (rewritten_for = "case")
+                   // in the origin of the case (rewrite_origin = "case")
   friction,        // dry friction, backlash, cogging, and what the NC does against them: none
   measurement,     // errors, noise, steps, marks of encoders, errors of screws: none
   cutting,         // the case runs in air
@@ -47,9 +47,9 @@ using Causes = std::set<Cause>;
 /// Causes in the order in which the signal passes them.
 inline constexpr std::array kChain = {Cause::interpolation, Cause::lag, Cause::delay};
 /// Causes that add to the signal, beside measurement.
-inline constexpr std::array kAdding = {Cause::table,          Cause::saturation, Cause::one_step,
-                                       Cause::identification, Cause::friction,   Cause::cutting,
-                                       Cause::uncorrected};
+inline constexpr std::array kAdding = {
+    Cause::table,    Cause::saturation, Cause::single_evaluation, Cause::identification,
+    Cause::friction, Cause::cutting,    Cause::uncorrected};
 
 /// All that can be taken away.
 Causes all_causes();

@@ -42,7 +42,7 @@ void BudgetStore::add(const Budget& budget) {
   group.attribute("quantity", quantity.name);
   group.attribute("axis", std::string(1, quantity.axis));
   group.attribute("sections", fmt::format("{}", fmt::join(quantity.sections, ", ")));
-  group.attribute("base", quantity.base);
+  group.attribute("baseline", quantity.baseline);
   group.attribute("note", budget.note);
   if (!budget.note.empty()) return;
   group.attribute("place", budget.place_s);

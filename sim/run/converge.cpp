@@ -122,7 +122,7 @@ void add_residuals_of_shares(Scenario& scenario) {
     QuantitySpec& residual = scenario.quantities.emplace_back(spec);
     residual.name = share.derived_from;
     residual.statistic = "max";
-    residual.kind = kForShares;
+    residual.basis = kForShares;
   }
 }
 
@@ -131,7 +131,7 @@ double resolution_of_share(const Scenario& scenario, const ComparisonRow& share,
                            std::span<const ComparisonRow> rows) {
   constexpr double kPercent = 100.0;
   for (const ComparisonRow& residual : rows) {
-    if (residual.kind != kForShares || residual.case_name != share.case_name ||
+    if (residual.basis != kForShares || residual.case_name != share.case_name ||
         residual.axis != share.axis || residual.sections != share.sections) {
       continue;
     }
@@ -255,7 +255,7 @@ std::optional<Convergence> find_convergence(const ScenarioSource& source,
       out.stopped.push_back(fmt::format("case {}: {}", one.name, outcome.reason));
   }
   for (const ComparisonRow& row : as_it_is.comparison) {
-    if (row.kind == kForShares) continue;
+    if (row.basis == kForShares) continue;
     const double resolution = row.unit == "%" ? resolution_of_share(base, row, as_it_is.comparison)
                                               : resolution_of(base, row);
     out.rows.push_back({row, {}, resolution});

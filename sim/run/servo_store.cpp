@@ -157,9 +157,9 @@ void StepStore::add(char axis, const StepSettings& settings, const StepResponse&
   }
   const bool load = settings.kind == StepKind::load;
   const StepFigures& f = response.figures;
-  group.attribute("height", settings.height / (load ? 1.0 : unit));
+  group.attribute("amplitude", settings.amplitude / (load ? 1.0 : unit));
   group.attribute(
-      "height_units",
+      "amplitude_units",
       load ? (linear ? "N" : "N m") : length + (settings.kind == StepKind::velocity ? " s-1" : ""));
   group.attribute("band", settings.band);
   group.attribute("overshoot", f.overshoot);

@@ -52,7 +52,7 @@ void write_row(Hdf5Group& group, const ComparisonRow& row) {
   group.attribute("statistic", row.statistic);
   group.attribute("sections", row.sections);
   group.attribute("reference", row.reference);
-  group.attribute("kind", row.kind);
+  group.attribute("basis", row.basis);
   if (!row.note.empty()) group.attribute("note", row.note);
 }
 

@@ -31,10 +31,10 @@ void write_fit(Hdf5Group& group, std::span<const Arrow> arrows) {
     for (int i = 0; i < 3; ++i) places.push_back(arrow.place[i] / mm);
     for (int i = 0; i < 3; ++i) deviations.push_back(arrow.deviation[i] / um);
   }
-  group.table("fit_place", 3, places,
+  group.table("aligned_position", 3, places,
               {"mm", "point of the nominal part nearest to the probed one after best fit"}, "point",
               "xyz");
-  group.table("fit_deviation", 3, deviations,
+  group.table("aligned_deviation", 3, deviations,
               {"um", "probed point minus nominal part after best fit"}, "point", "xyz");
 }
 
@@ -42,9 +42,9 @@ void write_motion(Hdf5Group& group, const BestFit& fit) {
   const Eigen::AngleAxisd turn(fit.motion.linear());
   const Eigen::Vector3d shift = fit.motion.translation() / um;
   const Eigen::Vector3d rotation = turn.angle() / urad * turn.axis();
-  group.attribute("fit_shift_um", std::span<const double>(shift.data(), 3));
-  group.attribute("fit_rotation_urad", std::span<const double>(rotation.data(), 3));
-  group.attribute("fit_rms_um", fit.rms / um);
+  group.attribute("alignment_shift_um", std::span<const double>(shift.data(), 3));
+  group.attribute("alignment_rotation_urad", std::span<const double>(rotation.data(), 3));
+  group.attribute("alignment_rms_um", fit.rms / um);
 }
 
 void write_feature(Hdf5Group& group, const ProbedFeature& found) {

@@ -22,13 +22,14 @@ namespace servomill::sim {
 ///     measured (repetition, point) um   along the normal
 ///     sigma    (point)             um   standard deviation of the repetitions
 ///     imposed  (point)             um   displacement along the normal that is asked for, if any
-///     fit_place (point, xyz)       mm   point of the nominal part nearest to the measured one
-///     after
+///     aligned_position (point, xyz)       mm   point of the nominal part nearest to the measured
+///     one after
 ///                                       best fit, where there is a nominal part
-///     fit_deviation (point, xyz)   um   the measured one minus that
+///     aligned_deviation (point, xyz)   um   the measured one minus that
 ///
 /// and the attribute `kind`. Attributes of the group itself, of the best fit (measured -> nominal):
-/// `fit_shift_um` (of the work zero), `fit_rotation_urad` (rotation vector), `fit_rms_um`.
+/// `alignment_shift_um` (of the work zero), `alignment_rotation_urad` (rotation vector),
+/// `alignment_rms_um`.
 void write_probes(Hdf5Group group, std::span<const ProbedFeature> features,
                   const std::optional<PartFit>& fit);
 

@@ -19,7 +19,7 @@ std::size_t looks_of(const ProgramPath::Piece& piece) {
   return static_cast<std::size_t>(std::clamp(std::ceil(looks), 1.0, kMostOnALine));
 }
 
-bool is_worse(const strategies::Leftover& a, const strategies::Leftover& b) {
+bool is_worse(const strategies::Residual& a, const strategies::Residual& b) {
   const bool by_axis = std::max(a.axis, b.axis) > kUncorrected.axis;
   return by_axis ? a.axis > b.axis : a.tip > b.tip;
 }

@@ -12,18 +12,18 @@ namespace servomill::sim {
 
 struct Uncorrected {
   int line = 0;
-  strategies::Leftover left;
+  strategies::Residual left;
   double singular_angle = 0.0;  // rad, of the tool axis from a singular direction there
 };
 
 /// Limits up to which nothing is reported.
-inline constexpr strategies::Leftover kUncorrected = {.tip = 0.1e-6, .axis = 1e-6};  // m, rad
+inline constexpr strategies::Residual kUncorrected = {.tip = 0.1e-6, .axis = 1e-6};  // m, rad
 
 /// The place of the feed motion where most is left of the tool axis or, where of none much is left,
 /// of the tip: among the ends of lines, places every 5 mm and every degree that a rotary axis turns
 /// on them, or some thousand of these places.
 /// @param inverse  of the ideal machine
-/// @param p_ST     of the tool with which the model is believed (3; m)
+/// @param p_ST     of the tool with which the model is identified (3; m)
 /// @return nothing if the strategy corrects nothing, or all
 std::optional<Uncorrected> uncorrected(const ProgramPath& path,
                                        const strategies::Strategy& strategy,

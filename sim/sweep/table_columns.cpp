@@ -78,7 +78,7 @@ TableColumn quantity_column(const ComparisonRow& row, Names& names) {
   out.attributes = {{"role", "quantity"},         {"case", row.case_name},
                     {"quantity", row.quantity},   {"axis", row.axis},
                     {"statistic", row.statistic}, {"sections", row.sections},
-                    {"reference", row.reference}, {"kind", row.kind}};
+                    {"reference", row.reference}, {"basis", row.basis}};
   return out;
 }
 
@@ -106,7 +106,7 @@ std::vector<TableColumn> columns_of(const InputFile& file) {
     column.meaning = {file.text(path, "units"), file.text(path, "long_name")};
     column.fill = kNoNumber;
     for (const std::string_view about : {"role", "key", "values", "case", "quantity", "axis",
-                                         "statistic", "sections", "reference", "kind"}) {
+                                         "statistic", "sections", "reference", "basis"}) {
       const std::string attribute(about);
       if (!file.has_attribute(path, attribute)) continue;
       column.attributes.emplace_back(attribute, file.text(path, attribute));

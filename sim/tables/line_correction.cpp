@@ -38,8 +38,8 @@ plant::ErrorModel travelling(plant::ErrorModel errors, Axis axis, int direction)
 }  // namespace
 
 LineCorrection::LineCorrection(const TableSource& source)
-    : source_(source), belief_(belief_of(source.errors)) {
-  base_.head<kLinearJoints>() = linear_at(belief_, source.reference);
+    : source_(source), identified_(identified_of(source.errors)) {
+  base_.head<kLinearJoints>() = linear_at(identified_, source.reference);
   for (int j = 0; j < kJoints; ++j) {
     if (!source.chain.layout.has(j)) continue;
     if (j >= kLinearJoints) {
@@ -47,21 +47,21 @@ LineCorrection::LineCorrection(const TableSource& source)
     } else if (depends_on_direction(j)) {
       const Axis axis = *source.chain.layout.axis[static_cast<std::size_t>(j)];
       auto& [down, up] = directed_[static_cast<std::size_t>(j)];
-      down = belief_of(travelling(source.errors, axis, -1));
-      up = belief_of(travelling(source.errors, axis, 1));
+      down = identified_of(travelling(source.errors, axis, -1));
+      up = identified_of(travelling(source.errors, axis, 1));
     }
   }
 }
 
-strategies::Belief LineCorrection::belief_of(const plant::ErrorModel& errors) const {
+strategies::IdentifiedMachine LineCorrection::identified_of(const plant::ErrorModel& errors) const {
   return {.layout = source_.chain.layout,
           .model = {source_.chain, without_rotary_positioning(errors)},
           .p_ST = source_.p_ST,
           .reference = source_.reference};
 }
 
-const strategies::Belief& LineCorrection::belief(int joint, int direction) const {
-  if (direction == 0 || !depends_on_direction(joint)) return belief_;
+const strategies::IdentifiedMachine& LineCorrection::identified(int joint, int direction) const {
+  if (direction == 0 || !depends_on_direction(joint)) return identified_;
   return *directed_[static_cast<std::size_t>(joint)][direction > 0 ? 1 : 0];
 }
 
@@ -71,9 +71,10 @@ bool LineCorrection::depends_on_direction(int joint) const {
   return !source_.errors.component({axis, axis, false}).reversals.empty();
 }
 
-Eigen::Vector3d LineCorrection::linear_at(const strategies::Belief& belief, const Joints& Q) const {
-  return strategies::set_point_displacement(belief, strategies::Sign::correct,
-                                            strategies::Iterations::converged, Q);
+Eigen::Vector3d LineCorrection::linear_at(const strategies::IdentifiedMachine& identified,
+                                          const Joints& Q) const {
+  return strategies::setpoint_displacement(identified, strategies::Action::compensate,
+                                           strategies::Iterations::converged, Q);
 }
 
 double LineCorrection::rotary_at(int joint, double q, int direction) const {
@@ -93,7 +94,8 @@ Joints LineCorrection::over(int joint, double q, int direction) const {
   if (joint < kLinearJoints) {
     Joints Q = source_.reference;
     Q[joint] = q;
-    d.head<kLinearJoints>() = linear_at(belief(joint, direction), Q) - base_.head<kLinearJoints>();
+    d.head<kLinearJoints>() =
+        linear_at(identified(joint, direction), Q) - base_.head<kLinearJoints>();
   } else {
     d[joint] = rotary_at(joint, q, direction) - base_[joint];
   }

@@ -47,16 +47,17 @@ class LineCorrection {
   const Joints& base() const { return base_; }
 
  private:
-  // Belief without the positioning errors of rotary axes. A joint whose errors depend on the
-  // direction of travel has one for each direction.
-  strategies::Belief belief_of(const plant::ErrorModel& errors) const;
-  const strategies::Belief& belief(int joint, int direction) const;
-  Eigen::Vector3d linear_at(const strategies::Belief& belief, const Joints& Q) const;  // m
-  double rotary_at(int joint, double q, int direction) const;                          // rad
+  // IdentifiedMachine without the positioning errors of rotary axes. A joint whose errors depend on
+  // the direction of travel has one for each direction.
+  strategies::IdentifiedMachine identified_of(const plant::ErrorModel& errors) const;
+  const strategies::IdentifiedMachine& identified(int joint, int direction) const;
+  Eigen::Vector3d linear_at(const strategies::IdentifiedMachine& identified,
+                            const Joints& Q) const;            // m
+  double rotary_at(int joint, double q, int direction) const;  // rad
 
   TableSource source_;
-  strategies::Belief belief_;
-  std::array<std::array<std::optional<strategies::Belief>, 2>, kLinearJoints> directed_;
+  strategies::IdentifiedMachine identified_;
+  std::array<std::array<std::optional<strategies::IdentifiedMachine>, 2>, kLinearJoints> directed_;
   Joints base_ = Joints::Zero();
 };
 

@@ -101,7 +101,7 @@ void add_base(const TableExport& e, std::vector<std::string>& out) {
       text));
 }
 
-void add_left_over(const TableExport& e, std::vector<std::string>& out) {
+void add_table_residuals(const TableExport& e, std::vector<std::string>& out) {
   if (e.left.empty()) {
     out.push_back("not in these tables: nothing");
     return;
@@ -109,7 +109,7 @@ void add_left_over(const TableExport& e, std::vector<std::string>& out) {
   out.push_back(
       "not in these tables, or only on their lines (largest size; what it alone leaves within the "
       "travel, beside that of the reference):");
-  for (const LeftOver& one : e.left) {
+  for (const TableResidual& one : e.left) {
     std::string leaves;
     if (one.tip > kNothing) leaves = fmt::format("tip {}", size_of(false, one.tip));
     if (one.tool_axis > kNothing) {
@@ -366,7 +366,7 @@ TableExport export_tables(const MachineSettings& machine, const plant::ErrorMode
   }
   if (csv) return e;
   e.base = LineCorrection(e.source).base();
-  e.left = left_over(e.source, e.lines, e.omitted, e.rules());
+  e.left = table_residuals(e.source, e.lines, e.omitted, e.rules());
   e.volume = volume(e.source, e.lines, e.tables);
   e.coarse = too_coarse(e);
   refuse_harm(e);
@@ -388,7 +388,7 @@ std::vector<std::string> report(const TableExport& e) {
     out.push_back("not in these tables: nothing");
     return out;
   }
-  add_left_over(e, out);
+  add_table_residuals(e, out);
   out.push_back(
       fmt::format("tip at poses all over the travel, beside that of the reference: off by up to {} "
                   "without these "

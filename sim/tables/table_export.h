@@ -7,7 +7,7 @@
 
 #include "sim/model/machine.h"
 #include "sim/tables/compensation_tables.h"
-#include "sim/tables/left_over.h"
+#include "sim/tables/table_residuals.h"
 
 namespace servomill::sim {
 
@@ -35,7 +35,7 @@ struct TableExport {
   std::vector<CompensationTable> tables;  // rounded as written
   std::vector<OmittedTable> omitted;      // of second order in the errors
   Joints base = Joints::Zero();           // m, rad: displacement that the reference would need
-  std::vector<LeftOver> left;
+  std::vector<TableResidual> left;
   Volume volume;
   std::vector<std::string> coarse;  // what points lie too far apart for
 

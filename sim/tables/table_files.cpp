@@ -236,7 +236,7 @@ std::vector<TextFile> siemens_files(const TableExport& e) {
     files.push_back(
         {"NC_CEC.INI",
          "%_N_NC_CEC_INI\nCHANDATA(1)\n" + head +
-             "; sign: correction, added to the set point of the compensation axis; check "
+             "; sign: correction, added to the setpoint of the compensation axis; check "
              "it with one table before you enable all\n; load with MD32710 "
              "$MA_CEC_ENABLE = 0, then enable SD41300 $SN_CEC_TABLE_ENABLE\n" +
              cross + "M17\n"});

@@ -6,7 +6,7 @@
 ///                 command, -e
 ///     heidenhain  e: positive where the axis travels too far
 ///     siemens     $AA_ENC_COMP: e, added to the actual value, so that a positive value moves the
-///                 axis in the negative direction; $AN_CEC: -e, added to the set point
+///                 axis in the negative direction; $AN_CEC: -e, added to the setpoint
 ///     csv         e of each component error by its name
 #pragma once
 

@@ -97,10 +97,10 @@ void BM_Plain(benchmark::State& state, const char* file, bool friction) {
 }
 
 // Forty signals a row, as the plain loop takes them.
-void take_row(std::size_t run, const sim::AxisSetPoint& set, const sim::ServoAxes& axes,
+void take_row(std::size_t run, const sim::AxisSetpoint& set, const sim::ServoAxes& axes,
               double* row) {
   Joints::Map(row) = set.Q_cmd;
-  Joints::Map(row + 5) = axes.Q_read(run);
+  Joints::Map(row + 5) = axes.Q_fb(run);
   Joints::Map(row + 10) = axes.Q_true(run);
   Joints::Map(row + 15) = axes.dQ_true(run);
   Joints::Map(row + 20) = axes.motor_angle(run);
@@ -123,7 +123,7 @@ void BM_Servomill(benchmark::State& state, const char* file, bool friction) {
     Problem run(all);
     state.ResumeTiming();
     double* row = log.data();
-    run.until(kTicks, [&](std::size_t n, const sim::AxisSetPoint& set, const sim::ServoAxes& axes) {
+    run.until(kTicks, [&](std::size_t n, const sim::AxisSetpoint& set, const sim::ServoAxes& axes) {
       take_row(n, set, axes, row);
       row += PLAIN_SIGNALS;
     });

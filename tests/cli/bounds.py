@@ -158,7 +158,7 @@ class Bounds(unittest.TestCase):
 
     def test_no_number_of_points_is_endless(self):
         for command in (["bode", "scenario.toml", "--axis", "X", "--points", "1000000000"],
-                        ["bode", "scenario.toml", "--axis", "X", "--from", "1e-9"],
+                        ["bode", "scenario.toml", "--axis", "X", "--f-min", "1e-9"],
                         ["step", "scenario.toml", "--axis", "X", "--duration", "1e9 s"],
                         ["sweep", "scenario.toml", "--set",
                          'sweep={"program.feed_override"={linear=[0.5,1.0],count=1000000000000}}'],

@@ -29,7 +29,7 @@ class Converge(unittest.TestCase):
                                             "solver", "tick", "digits", "stable", "unit"])
         row = lines[2].split()
         self.assertEqual(row[:5] + row[7:9] + row[-1:],
-                         ["imposed_curve_residual", "Y", "max", "flank", "table", "0", "0", "um"])
+                         ["imposed_error_residual", "Y", "max", "flank", "table", "0", "0", "um"])
         self.assertEqual(done.stderr, "")
 
     def test_says_the_same_in_json(self):

@@ -145,7 +145,7 @@ class Ends(unittest.TestCase):
         why = 'friction too stiff for the exact step; use integrator = "cvode"'
         stepped = servomill("step", MACHINE, "--axis", "X", "--kind", "position", "--set", stiff)
         self.assertEqual((stepped.returncode, stepped.stderr), (1, f"axis X, position step: {why}\n"))
-        measured = servomill("bode", MACHINE, "--axis", "X", "--points", "2", "--to", "20", "--velocity", "0 m/s",
+        measured = servomill("bode", MACHINE, "--axis", "X", "--points", "2", "--f-max", "20", "--velocity", "0 m/s",
                              "--set", stiff)
         self.assertEqual((measured.returncode, measured.stderr),
                          (1, f"axis X, position loop: {why}; nothing is measured\n"))

@@ -19,20 +19,20 @@ TILTING = "GOTO/0,0,10,0.3,0.1,0.9\nGOTO/5,0,10,0.2,0.3,0.9\nGOTO/5,0,10,0.1,0.3
 
 # command without the option, option, bare number, the same with its unit, another value that must matter
 POST = ["post", "part.cls", "-m", MACHINE, "-o", "-", "--tool-length", "0"]
-POST_5 = ["post", "tilt.cls", "-m", "trunnion.toml", "-o", "-", "--part-zero", "0,0,0", "--feed", "500", "--turn-feed", "900"]
+POST_5 = ["post", "tilt.cls", "-m", "trunnion.toml", "-o", "-", "--work-offset", "0,0,0", "--feed", "500", "--rotary-feed", "900"]
 COMPENSATE = ["compensate", "cut.ngc", "-m", MACHINE, "--errors", "errors.toml", "--work-offset", "X=0,Y=0,Z=0", "-o", "-"]
 COMPENSATE_TOOL = ["compensate", "tool.ngc", "-m", MACHINE, "--errors", "angles.toml", "--work-offset", "X=0,Y=0,Z=0",
                    "--tools", "tool.tbl", "-o", "-"]
 TABLE = ["table", SCENARIO, "--format", "siemens", "-f", "-o", "out"]
 TABLE_C = ["table", "--machine", "turning.toml", "--format", "csv", "-f", "-o", "out"]
-BODE = ["bode", SCENARIO, "-a", "Y", "--points", "2", "--from", "20", "--to", "40"]
+BODE = ["bode", SCENARIO, "-a", "Y", "--points", "2", "--f-min", "20", "--f-max", "40"]
 STEP = ["step", SCENARIO, "-a", "Y"]
 OPTIONS = [
     (POST + ["--feed", "500"], "--tolerance", "3", "3 um", "5"),
     (POST_5 + ["--tool-length", "0", "--tolerance", "1 mm"], "--axis-tolerance", "500", "500 urad", "90"),
     (POST_5, "--tool-length", "80", "80 mm", "90"),
     (POST, "--feed", "500", "500 mm/min", "0.6 m/min"),
-    (POST_5[:-2] + ["--tool-length", "0"], "--turn-feed", "1800", "1800 deg/min", "20 deg/s"),
+    (POST_5[:-2] + ["--tool-length", "0"], "--rotary-feed", "1800", "1800 deg/min", "20 deg/s"),
     (POST + ["--feed", "500"], "--clearance", "4", "4 mm", "5"),
     (POST + ["--feed", "500"], "--retract", "Z=120", "Z=120 mm", "Z=130"),
     (COMPENSATE, "--tolerance", "0.5", "0.5 um", "50"),
@@ -42,9 +42,9 @@ OPTIONS = [
     (TABLE_C, "--rotary-spacing", "5", "5 deg", "9"),
     (BODE, "--amplitude", "0.02", "0.02 mm", "0.04"),
     (BODE + ["--amplitude", "0.02 mm"], "--velocity", "300", "300 mm/min", "6 mm/s"),
-    (STEP + ["--kind", "position"], "--height", "0.2", "0.2 mm", "0.3"),
-    (STEP + ["--kind", "velocity"], "--height", "7", "7 mm/s", "9"),
-    (STEP + ["--kind", "load"], "--height", "300", "300 N", "400"),
+    (STEP + ["--kind", "position"], "--amplitude", "0.2", "0.2 mm", "0.3"),
+    (STEP + ["--kind", "velocity"], "--amplitude", "7", "7 mm/s", "9"),
+    (STEP + ["--kind", "load"], "--amplitude", "300", "300 N", "400"),
     (STEP + ["--kind", "position"], "--duration", "0.4", "0.4 s", "0.3"),
     (["tune", SCENARIO, "-a", "Y"], "--velocity-bandwidth", "150", "150 rad/s", "120"),
     (["tune", SCENARIO, "-a", "Y"], "--phase-margin", "50", "50 deg", "55"),
@@ -52,11 +52,11 @@ OPTIONS = [
     (["tune", SCENARIO, "-a", "Y"], "--overshoot", "3", "3 %", "0.1"),
     (["tune", SCENARIO, "-a", "Y"], "--bandwidth", "5", "5 Hz", "6Hz"),
     (STEP + ["--kind", "position"], "--band", "7", "7 %", "1"),
-    (BODE[:-4] + ["--method", "none", "--to", "40"], "--from", "10", "10 Hz", "0.02 kHz"),
-    (BODE[:-4] + ["--method", "none"], "--to", "100", "100 Hz", "0.2 kHz"),
+    (BODE[:-4] + ["--method", "none", "--f-max", "40"], "--f-min", "10", "10 Hz", "0.02 kHz"),
+    (BODE[:-4] + ["--method", "none"], "--f-max", "100", "100 Hz", "0.2 kHz"),
     (COMPENSATE[:-4] + ["-o", "-"], "--work-offset", "X=10,Y=0,Z=0", "X=10 mm,Y=0mm,Z=0", "X=9,Y=0,Z=0"),
     (COMPENSATE_TOOL, "--tool-length", "1=50", "1=50mm", "1=9 mm"),
-    (POST_5[:-6] + ["--feed", "500", "--turn-feed", "900", "--tool-length", "0"], "--part-zero", "1,2,3", "1 mm,2mm,3", "1,2,4"),
+    (POST_5[:-6] + ["--feed", "500", "--rotary-feed", "900", "--tool-length", "0"], "--work-offset", "1,2,3", "1 mm,2mm,3", "1,2,4"),
     (POST_5 + ["--tool-length", "0"], "--start", "C=10", "C=10 deg", "C=200"),
     (TABLE, "--travel", "X=0:100", "X=0:0.1 m", "X=0:90"),
     (TABLE, "--at", "X=50", "X=50 mm", "X=60"),

@@ -31,7 +31,7 @@ QUANTITY = """
 [[quantity]]
 name = "trajectory_difference"
 axis = "Y"
-base = "nominal"
+baseline = "nominal"
 cases = {cases}
 """
 
@@ -84,7 +84,7 @@ class Plugins(unittest.TestCase):
             self.assertRegex(file.attrs["servomill_build"], r"^\S+ with ramp 1\.2 \([0-9a-f]{16}\)$")
 
     def test_an_offset_follows_the_identified_model(self):
-        self.write(scenario_text(("identified", 'model = "imposed"\nsign = "generate"')))
+        self.write(scenario_text(("identified", 'model = "imposed"\naction = "impose"')))
         self.servomill("run", "s.toml", "-o", "out.h5", "--plugin", library("ramp"))
         with self.open("out.h5") as file:
             x, y = file["cases/identified/servo/meas_linear"][-1, :2]

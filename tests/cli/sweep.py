@@ -22,8 +22,8 @@ SERVOMILL = os.path.abspath(sys.argv.pop(1))
 SCENARIO = os.path.join(HERE, "gallery", "scenario.toml")
 PATIENCE = 60  # s, far more than anything here takes
 # 40 points: feed x response time, the third response time is refused
-POINTS = ('sweep={program.feed_override=[1.0,2.0,3.0,4.0,5.0],case.table.strategy.entry=["position_command",'
-          '"feed_forward"],case.table.strategy.response_time_ms=[0.0,10.0,-1.0,20.0]}')
+POINTS = ('sweep={program.feed_override=[1.0,2.0,3.0,4.0,5.0],case.table.strategy.injection_point=["position_command",'
+          '"feed_forward"],case.table.strategy.time_constant_ms=[0.0,10.0,-1.0,20.0]}')
 SLOW = 'program.parameters."#101"=300.0'  # mm/min: some hundredths of a second a point
 
 
@@ -80,15 +80,15 @@ class Table(Sweeps):
             feed = table["program_feed_override"]
             self.assertEqual(feed.attrs["key"], "program.feed_override")
             self.assertEqual(sorted(set(feed[:])), [1.0, 2.0, 3.0, 4.0, 5.0])
-            entry = table["case_table_strategy_entry"]
+            entry = table["case_table_strategy_injection_point"]
             self.assertEqual(entry.attrs["values"], "position_command\nfeed_forward")
             self.assertEqual(sorted(set(entry[:])), [0, 1])
-            residual = table["table_imposed_curve_residual_Y_max_flank"]
+            residual = table["table_imposed_error_residual_Y_max_flank"]
             self.assertEqual(residual.attrs["units"], "um")
             self.assertEqual(residual.attrs["case"], "table")
             np.testing.assert_array_equal(np.isnan(residual[:]), table["status"][:] == 3)
             reason = b"".join(table["reason"][2]).decode()
-            self.assertIn("response_time_ms = -1.0; must be >= 0", reason)
+            self.assertIn("time_constant_ms = -1.0; must be >= 0", reason)
             for name, data in table.items():
                 self.assertIn("units", data.attrs)
                 self.assertIn("long_name", data.attrs)
@@ -101,10 +101,10 @@ class Table(Sweeps):
             rows = list(csv.DictReader(file))
         with h5py.File(self.path("out.h5")) as file:
             table = file["sweep"]
-            residual = [float(row["table_imposed_curve_residual_Y_max_flank [um]"] or "nan") for row in rows]
-            np.testing.assert_array_equal(residual, table["table_imposed_curve_residual_Y_max_flank"][:])
+            residual = [float(row["table_imposed_error_residual_Y_max_flank [um]"] or "nan") for row in rows]
+            np.testing.assert_array_equal(residual, table["table_imposed_error_residual_Y_max_flank"][:])
             self.assertEqual([row["status"] for row in rows[:4]], ["done", "done", "refused", "done"])
-            self.assertEqual({row["case_table_strategy_entry"] for row in rows}, {"position_command", "feed_forward"})
+            self.assertEqual({row["case_table_strategy_injection_point"] for row in rows}, {"position_command", "feed_forward"})
 
     def test_is_the_same_for_any_number_of_threads(self):
         self.sweep("one.h5", "-j1")
@@ -119,19 +119,19 @@ class Table(Sweeps):
         self.sweep("out.h5")
         with xarray.open_dataset(self.path("out.h5"), group="sweep", engine="h5netcdf") as table:
             self.assertEqual(table.sizes["point"], 40)
-            self.assertEqual(table["table_imposed_curve_residual_Y_max_flank"].dims, ("point",))
+            self.assertEqual(table["table_imposed_error_residual_Y_max_flank"].dims, ("point",))
             self.assertEqual(table["reason"].dims, ("point",))
             rows = table.to_dataframe()
             self.assertEqual(len(rows), 40)
-            self.assertIn(b"response_time_ms = -1.0; must be >= 0", rows["reason"].iloc[2])
+            self.assertIn(b"time_constant_ms = -1.0; must be >= 0", rows["reason"].iloc[2])
             self.assertEqual(rows["reason"].iloc[0], b"")
 
     def test_keeps_signals_that_compare_reads(self):
-        self.sweep("out.h5", "--points", "1-3", "--series")
+        self.sweep("out.h5", "--points", "1-3", "--keep-signals")
         self.assertEqual(sorted(os.listdir(self.path("out.series"))), ["1.h5", "2.h5"])   # 3 was refused
         compared = servomill("compare", self.path("out.series/2.h5"), "--json")
         with h5py.File(self.path("out.h5")) as file:
-            value = file["sweep/table_imposed_curve_residual_Y_max_flank"][1]
+            value = file["sweep/table_imposed_error_residual_Y_max_flank"][1]
         self.assertAlmostEqual(json.loads(compared.stdout)["value"], value, delta=1e-7)   # um; nine digits of 100 um
 
     def test_keeps_the_points_that_are_asked_for(self):
@@ -228,8 +228,8 @@ class Resume(Sweeps):
         lines = done.stdout.splitlines()
         begin = next(n for n, line in enumerate(lines) if line.startswith("point "))
         names = lines[begin].split()
-        self.assertEqual(names[:4], ["point", "program.feed_override", "case.table.strategy.entry",
-                                     "case.table.strategy.response_time_ms"])
+        self.assertEqual(names[:4], ["point", "program.feed_override", "case.table.strategy.injection_point",
+                                     "case.table.strategy.time_constant_ms"])
         self.assertEqual(names[4:], [line.split()[0] for line in lines[:begin - 1]])
         self.assertRegex(lines[0], r"^q1   \w+, .*\(\w+\)$")
         rows = [line.split() for line in lines[begin + 1:-1]]
@@ -288,7 +288,7 @@ class Resume(Sweeps):
     def test_adds_the_signals_of_points_that_were_run_without(self):
         self.sweep("out.h5", "--points", "1-3")
         before = columns(self.path("out.h5"))
-        again = ["sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, "--points", "1-3", "--series"]
+        again = ["sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, "--points", "1-3", "--keep-signals"]
         said = servomill(*again, status=1).stdout.replace(self.folder + "/", "")
         self.assertTrue(said.startswith("out.h5: 3 of 3 points are there already\n2 of them lack signals, run again\n"), said)
         self.assertEqual(sorted(os.listdir(self.path("out.series"))), ["1.h5", "2.h5"])  # 3 was refused
@@ -305,7 +305,7 @@ class Resume(Sweeps):
         with h5py.File(self.path("out.h5"), "r+") as file:
             file["sweep/status"][4] = 4
             file["sweep/reason"][4, :17] = np.frombuffer(b"not enough memory", dtype="S1")
-            file["sweep/table_imposed_curve_residual_Y_max_flank"][4] = np.nan
+            file["sweep/table_imposed_error_residual_Y_max_flank"][4] = np.nan
         same = ["sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS]
         self.assertIn("holds all 40 points already", servomill(*same, status=1).stdout)
         said = servomill(*same, "--retry-failed", status=1).stdout.replace(self.folder + "/", "")
@@ -360,7 +360,7 @@ class Merge(Sweeps):
         for one in (first, second):
             self.assertNotIn("instructions", one.stderr)
         # signals that are added to rows of another level
-        done = servomill("sweep", SCENARIO, "-q", "-o", self.path("out.h5"), "--set", POINTS, "--shard", "1/2", "--series",
+        done = servomill("sweep", SCENARIO, "-q", "-o", self.path("out.h5"), "--set", POINTS, "--shard", "1/2", "--keep-signals",
                          status=1)
         self.assertIn(f"out.1-of-2.h5: points were computed with different instructions ({', '.join(used)};", done.stderr)
 

@@ -34,7 +34,7 @@ struct Harmonics {
   double cosine = 0.0;  // um
 };
 
-// Radius over the angle of the second circle, as a Fourier series in the angle of the set point.
+// Radius over the angle of the second circle, as a Fourier series in the angle of the setpoint.
 Harmonics radius_of(const Scenario& scenario, const char* signal = "true_linear") {
   const CaseOutput out = run_case(scenario, "alone");
   const Series& s = out.result.servo;
@@ -58,19 +58,20 @@ Harmonics radius_of(const Scenario& scenario, const char* signal = "true_linear"
 }
 
 // Axes without quantisation, and friction only where `axis` says so.
-std::string loops(const std::string& nc, const std::string& axis = "motor_friction = 0.0\n") {
+std::string loops(const std::string& nc,
+                  const std::string& axis = "motor_viscous_friction = 0.0\n") {
   std::string out = "[machine_override.nc]\nKv = \"5 m/min/mm\"\n" + nc;
   for (const char* letter : {"X", "Y"}) {
     out += fmt::format(
         "[machine_override.axis.{}]\nscale_step = 0.0\nmotor_step = 0.0\n"
-        "slide_friction = 0.0\n{}",
+        "slide_viscous_friction = 0.0\n{}",
         letter, axis);
   }
   return out;
 }
 constexpr const char* kLagMode = "velocity_feed_forward = 0.0\nacceleration_feed_forward = 0.0\n";
 constexpr const char* kVelocityForwardOnly = "acceleration_feed_forward = 0.0\n";
-constexpr const char* kNoIntegral = "motor_friction = 0.0\nvelocity_reset_time_ms = 0.0\n";
+constexpr const char* kNoIntegral = "motor_viscous_friction = 0.0\nvelocity_reset_time_ms = 0.0\n";
 
 double omega(double feed) { return feed / 60.0 * 1000.0 / kRadius; }  // rad/s; feed in mm/min
 
@@ -97,7 +98,8 @@ TEST(Circle, ShrinksLessWithViscousFrictionBehindTheIntegral) {
   const double tau = kViscous / (kKp / kTn) - kLead;
   const double expected = in_lag_mode(4000.0, tau);
   const double radius =
-      radius_of(circle(4000.0, loops(kLagMode, fmt::format("motor_friction = {}\n", kViscous))))
+      radius_of(
+          circle(4000.0, loops(kLagMode, fmt::format("motor_viscous_friction = {}\n", kViscous))))
           .mean;
   EXPECT_NEAR(radius, expected, 3.0 * kFormTol * std::abs(expected));  // Kp of X; Y has 9 % less
 }
@@ -138,7 +140,8 @@ TEST(Circle, OnAMachineOutOfSquareIsAnEllipseAtFortyFiveDegrees) {
   // 1/2 R gamma sin 2 theta: the diagonals differ by 2 R gamma
   constexpr double kGamma = 50e-6;
   const Scenario scenario = circle(
-      2000.0, "truth = \"machine\"\n[errors.machine]\nEC0Y = { um_per_m = 50.0 }\n" + loops(""));
+      2000.0,
+      "machine_errors = \"machine\"\n[errors.machine]\nEC0Y = { um_per_m = 50.0 }\n" + loops(""));
   const Harmonics ideal = radius_of(circle(2000.0, loops("")));
   const Harmonics h = radius_of(scenario, "tool_position_true");
   EXPECT_NEAR(std::abs(h.sine), 0.5 * kRadius * kGamma, 0.01 * 0.5 * kRadius * kGamma);

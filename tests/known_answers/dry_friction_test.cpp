@@ -115,7 +115,8 @@ double compensated(double feed, const std::string& more) {
 TEST(FrictionCompensation, AlongThePreslidingCurveTakesMostOfTheGlitchAtEveryFeed) {
   constexpr double kLeast = 3.5;  // factor; measured 3.9, 3.9, 5.0, 5.9
   for (std::size_t n = 0; n < kFeeds.size(); ++n) {
-    const double left = compensated(kFeeds[n], "spike = \"-900 N\"\nspike_distance = \"9 um\"\n");
+    const double left =
+        compensated(kFeeds[n], "reversal_pulse = \"-900 N\"\nreversal_pulse_distance = \"9 um\"\n");
     RecordProperty(fmt::format("factor_F{:.0f}", kFeeds[n]),
                    fmt::format("{:.3f}", kGlitch[n] / left));
     EXPECT_LT(left, kGlitch[n] / kLeast) << kFeeds[n];

@@ -93,7 +93,7 @@ constexpr const char* kAtMotor = "position_feedback = \"motor\"\n";
 constexpr const char* kLead =
     "screw.lead_error.harmonic = { amplitude_um = 8.0, period_mm = 40.0 }\n";
 
-// um, by which the slide stands beside its set point in the end
+// um, by which the slide stands beside its setpoint in the end
 double offset(const Scenario& scenario, const std::string& name = "alone") {
   const Series series = run(scenario, name);
   return (last(series, "true_linear") - last(series, "cmd_linear")) * 1e3;
@@ -117,7 +117,7 @@ constexpr const char* kDwell = "G1 X0.001 F6000\nG4 P1.5\n";
 // e(t) = alpha dT (1 - exp(-t/tau)) (x - x_fixed): 46 um in the end, with tau = 1 s
 constexpr const char* kGrowth =
     "screw = { expansion = \"11.5 um/m/K\", fixed_at = \"-400 mm\", temperature_rise = \"10 K\", "
-    "warming_time = \"1 s\" }\n";
+    "thermal_time_constant = \"1 s\" }\n";
 constexpr double kGrown = 11.5e-6 * 10.0 * 0.4e6;  // um
 constexpr double kWarmingTol = 0.01;               // um, what the loops leave of a ramp that decays
 
@@ -180,7 +180,7 @@ Scenario displaced(const std::string& amplitude) {
                    "[errors.imposed]\nEXX = { harmonic = { amplitude_um = " + amplitude +
                        ", period_mm = 50.0 } }\n[[case]]\nname = \"alone\"\n"
                        "[[case.strategy]]\ntype = \"feedback\"\nmodel = \"imposed\"\n"
-                       "sign = \"generate\"\nmax_um = 500.0\nmax_rate_mm_per_s = 100.0\n");
+                       "action = \"impose\"\nmax_um = 500.0\nmax_rate_mm_per_s = 100.0\n");
 }
 
 // +-150 um over 50 mm changes by up to 170 um from mark to mark, 8 periods of 20 um.

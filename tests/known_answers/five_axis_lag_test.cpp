@@ -33,11 +33,12 @@ const std::string kAll = "axes = \"all\"\n";
 const Scenario& s_part() {
   static const Scenario kScenario = trunnion_scenario(
       s_shaped_program(kFeed),
-      "[[case]]\nname = \"perfect\"\ntruth = \"\"\n[[case]]\nname = \"uncompensated\"\n"
+      "[[case]]\nname = \"perfect\"\nmachine_errors = \"\"\n[[case]]\nname = \"uncompensated\"\n"
       "servo = \"ideal\"\n" +
           corrected_case("ideal", "ideal", "feedback", kAll) +
           corrected_case("feedback", "cascade", "feedback", kAll) +
-          corrected_case("lead", "cascade", "feedback", kAll + "lead_ms = \"auto\"\n"));
+          corrected_case("lead", "cascade", "feedback",
+                         kAll + "extrapolation_time_ms = \"auto\"\n"));
   return kScenario;
 }
 
@@ -84,7 +85,7 @@ std::vector<Joints> behind_by_closed_form(const Series& series,
                                           const Joints& Kv) {
   const std::size_t time = *series.column("time");
   const auto d = [&](std::size_t row) {
-    return compensation.of_feedback(strategies::Sign::correct, reference(series, row));
+    return compensation.of_feedback(strategies::Action::compensate, reference(series, row));
   };
   std::vector<Joints> out(series.rows(), Joints::Zero());
   Joints e = Joints::Zero(), before = d(0);
@@ -130,17 +131,18 @@ TEST(FiveAxisFeedback, LagsAsTheClosedFormSaysAndIsLed) {
   const CaseOutput perfect = run_case(scenario, "perfect"),
                    feedback = run_case(scenario, "feedback"), lead = run_case(scenario, "lead");
   const MachineSettings& machine = scenario.machine;
-  strategies::Belief belief{machine.chain.layout,
-                            plant::VolumetricModel(machine.chain, scenario.errors.at("machine"))};
-  belief.p_ST = Vector3d(0.0, 0.0, -120.0 * mm);
-  const strategies::PoseCompensation compensation(belief, strategies::Iterations::one, 1.0 * deg);
+  strategies::IdentifiedMachine identified{
+      machine.chain.layout, plant::VolumetricModel(machine.chain, scenario.errors.at("machine"))};
+  identified.p_ST = Vector3d(0.0, 0.0, -120.0 * mm);
+  const strategies::PoseCompensation compensation(identified, strategies::Iterations::one,
+                                                  1.0 * deg);
   Joints Kv;
   for (int j = 0; j < kJoints; ++j) {
     Kv[j] = machine.nc.cascade[static_cast<std::size_t>(j)].Kv;
   }
   const std::vector<Joints> behind = behind_by_closed_form(perfect.result.servo, compensation, Kv);
   const auto closed_form = [&](const Series& series, std::size_t n) {
-    const auto J = plant::jacobian(machine.chain, reference(series, n), belief.p_ST);
+    const auto J = plant::jacobian(machine.chain, reference(series, n), identified.p_ST);
     return std::pair<Vector3d, Vector3d>(J.J_pQ * behind[n], J.J_kQ * behind[n]);
   };
   const auto nothing = [](const Series&, std::size_t) {

@@ -1,6 +1,6 @@
 /// Lags of corrections and of the axes themselves, against their closed forms.
 ///
-/// An axis whose velocity loop has no standing error follows a ramp of its set point without
+/// An axis whose velocity loop has no standing error follows a ramp of its setpoint without
 /// feed-forward 1/Kv behind: e = v / Kv. A correction of slope E' that the feed-forward does not
 /// see is such a ramp with the rate E' v. All lags are given as times: residual / (E' v).
 #include <fmt/format.h>
@@ -27,10 +27,10 @@ double response(double T) {
 
 std::string a_case(const std::string& name, const std::string& type, const std::string& more) {
   return "[[case]]\nname = \"" + name + "\"\n[[case.strategy]]\ntype = \"" + type +
-         "\"\nmodel = \"imposed\"\nsign = \"generate\"\n" + more;
+         "\"\nmodel = \"imposed\"\naction = \"impose\"\n" + more;
 }
 std::string table(const std::string& name, const std::string& more) {
-  return a_case(name, "table", "axis = \"X\"\nfrom_mm = -60.0\nto_mm = 60.0\n" + more);
+  return a_case(name, "table", "base_axis = \"X\"\nfrom_mm = -60.0\nto_mm = 60.0\n" + more);
 }
 
 Scenario ramp(double feed, const std::string& nc = "") {
@@ -38,12 +38,13 @@ Scenario ramp(double feed, const std::string& nc = "") {
       fmt::format("G0 X-30\nG1 X30 F{}\nM30\n", feed),
       "imposed = \"imposed\"\n[machine_override.nc]\nKv = \"60 1/s\"\n" + nc +
           fmt::format("[errors.imposed]\nEYX = {{ polynomial_um = [0.0, {}] }}\n", kSlope) +
-          table("table", "") + table("response", "response_time_ms = 40.0\n") +
+          table("table", "") + table("response", "time_constant_ms = 40.0\n") +
           table("dead", "dead_time_ms = 10.0\n") + table("update", "update_period_ms = 5.0\n") +
-          table("fed_forward", "entry = \"feed_forward\"\n") +
-          table("fed_forward_dead", "entry = \"feed_forward\"\ndead_time_ms = 10.0\n") +
-          table("before_filter", "entry = \"before_filter\"\n") + a_case("gcode", "gcode", "") +
-          a_case("feedback", "feedback", "") + a_case("lead", "feedback", "lead_ms = \"auto\"\n"));
+          table("fed_forward", "injection_point = \"feed_forward\"\n") +
+          table("fed_forward_dead", "injection_point = \"feed_forward\"\ndead_time_ms = 10.0\n") +
+          table("before_filter", "injection_point = \"before_filter\"\n") +
+          a_case("gcode", "gcode", "") + a_case("feedback", "feedback", "") +
+          a_case("lead", "feedback", "extrapolation_time_ms = \"auto\"\n"));
 }
 
 // ms by which Y runs behind the imposed ramp, once everything has settled
@@ -111,7 +112,7 @@ TEST(Lag, OfFeedbackIsTakenAwayByItsLead) {
   EXPECT_NEAR(with, 8.0 * kTick, kNoLag);  // the hardware's share is not led
 }
 
-// Without velocity feed-forward (lag mode) an axis runs v/Kv behind its own set point.
+// Without velocity feed-forward (lag mode) an axis runs v/Kv behind its own setpoint.
 TEST(LagMode, LeavesTheFollowingErrorOfAFirstOrderLoop) {
   const double feed = 3000.0, v = feed / 60.0;  // mm/s
   for (const double ff : {0.0, 1.0}) {
@@ -146,7 +147,7 @@ TEST(SignalDelay, MakesTheTrueAxisLead) {
   EXPECT_NEAR(lead, 10.0 / 60.0 * 10.0, 0.02 * 1.667);  // m/s x us = um; issue: within 2 %
   // the reading, not the axis, is where the program is
   const double read =
-      1e3 * (mean_of(on, "ref_linear", 'X', rows) - mean_of(on, "read_linear", 'X', rows));
+      1e3 * (mean_of(on, "ref_linear", 'X', rows) - mean_of(on, "fb_linear", 'X', rows));
   EXPECT_NEAR(read, 0.0, 0.02 * 1.667);
 }
 

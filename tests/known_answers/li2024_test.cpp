@@ -21,10 +21,10 @@ using plant::ErrorFrame;
 using plant::ErrorShape;
 using plant::NonlinearError;
 using plant::NonlinearPeaks;
-using plant::PostedSegment;
+using plant::PostProcessedSegment;
 
 constexpr NonlinearError kJoint = NonlinearError::joint_interpolation;
-constexpr NonlinearError kPosted = NonlinearError::posted_location;
+constexpr NonlinearError kPosted = NonlinearError::post_processed_location;
 const Vector3d kNoTool = Vector3d::Zero();
 
 // The machine of the paper: tables A and C, counted as the tables turn, both about m.
@@ -61,7 +61,7 @@ const CutterLocation kExample1[2] = {
 NonlinearPeaks peaks_of(const plant::InverseKinematics& inverse, const CutterLocation& from,
                         const CutterLocation& to, NonlinearError definition,
                         ErrorFrame frame = ErrorFrame::machine) {
-  const auto segment = PostedSegment::post(inverse, kNoTool, from, to, Joints::Zero());
+  const auto segment = PostProcessedSegment::post(inverse, kNoTool, from, to, Joints::Zero());
   return *nonlinear_peaks(*segment, definition, frame);
 }
 
@@ -233,7 +233,7 @@ TEST(Li2024, Table31FollowsFromTheIdentifiedAxisAboutTheZeroOfThePart) {
   const ByHand by_hand(from, kCorrectedTo, Vector3d::Zero());
   Joints near = Joints::Zero();  // the solution A >= 0 that the paper takes
   near.tail<2>() << by_hand.A_0, by_hand.C_0;
-  const auto segment = PostedSegment::post(inverse, kNoTool, from, kCorrectedTo, near);
+  const auto segment = PostProcessedSegment::post(inverse, kNoTool, from, kCorrectedTo, near);
   const Table31 table = table_3_1();
   double squares = 0.0;
   for (std::size_t k = 0; k < table.t.size(); ++k) {
@@ -346,7 +346,7 @@ TEST(Li2024, ExactPointsKeepEveryLocationOfTable32WithinTheTolerance) {
 TEST(Li2024, CompensatedTipKeepsToTheChordExceptForWhatTheModelLeaves) {
   const plant::InverseKinematics inverse = machine(Vector3d::Zero());
   const auto one =
-      *PostedSegment::post(inverse, kNoTool, kExample1[0], kExample1[1], Joints::Zero());
+      *PostProcessedSegment::post(inverse, kNoTool, kExample1[0], kExample1[1], Joints::Zero());
   const NonlinearPeaks peaks = *nonlinear_peaks(one, kJoint);
   const auto a = *one.error(kJoint, 0.5);
   for (const ErrorShape shape : {ErrorShape::harmonic, ErrorShape::parabolic}) {
@@ -366,7 +366,7 @@ TEST(Li2024, CompensatedPostsGoWhereTheMachineGoesOfItself) {
   const plant::InverseKinematics inverse = machine({0.0, 0.0, -150.0 * mm});
   const auto locations = table_3_2();
   const auto segment =
-      *PostedSegment::post(inverse, kNoTool, locations[0], locations[1], Joints::Zero());
+      *PostProcessedSegment::post(inverse, kNoTool, locations[0], locations[1], Joints::Zero());
   const auto a = *segment.error(kPosted, 0.5);
   const Joints Q = *segment.compensated(kPosted, ErrorShape::harmonic, a, 0.5);
   const Joints straight = 0.5 * (segment.Q_0() + segment.Q_1());
@@ -380,7 +380,7 @@ TEST(Li2024, CompensatedPostsGoWhereTheMachineGoesOfItself) {
 TEST(Li2024, PointsAreInsertedOnlyWhereTheModelExceedsTheTolerance) {
   const plant::InverseKinematics inverse = machine(Vector3d::Zero());
   const auto segment =
-      *PostedSegment::post(inverse, kNoTool, kExample1[0], kExample1[1], Joints::Zero());
+      *PostProcessedSegment::post(inverse, kNoTool, kExample1[0], kExample1[1], Joints::Zero());
   const double a = segment.error(kJoint, 0.5)->norm();
   const auto points = [&](double tolerance) {
     return *segment.compensated_points(kJoint, ErrorShape::harmonic, tolerance, 0.1 * mm);

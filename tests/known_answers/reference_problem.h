@@ -136,20 +136,20 @@ inline Joints reference_trajectory(double t) {
 
 // The virtual encoder of these errors, the limits of which are never reached.
 inline std::unique_ptr<strategies::Strategy> make_virtual_encoder() {
-  strategies::Belief belief{{}, read_volumetric()};
-  belief.p_ST << 0.0, 0.0, -0.15;
+  strategies::IdentifiedMachine identified{{}, read_volumetric()};
+  identified.p_ST << 0.0, 0.0, -0.15;
   Parameters parameters;
   parameters.set("max_um", 1.0);             // m
   parameters.set("max_rate_mm_per_s", 1e6);  // m/s
-  parameters.set("lead_ms", 0.0);
+  parameters.set("extrapolation_time_ms", 0.0);
   parameters.set("velocity_window_ms", 0.0);
   parameters.set("iterations", "converged");  // one step is exact when errors are corrected
   parameters.set("axes", "linear");
-  return strategies::find("feedback")->make(parameters, strategies::Sign::correct, belief);
+  return strategies::find("feedback")->make(parameters, strategies::Action::compensate, identified);
 }
 
-// Backward differences of the set point over the position period.
-class SetPoint {
+// Backward differences of the setpoint over the position period.
+class Setpoint {
  public:
   void take(const Joints& Q) {
     Q2_ = Q1_;
@@ -184,7 +184,7 @@ class Problem {
     }
   }
 
-  /// @param record  record(run, set point, axes), called each millisecond up to and with `end`
+  /// @param record  record(run, setpoint, axes), called each millisecond up to and with `end`
   template <class Record>
   void until(Tick end, const Record& record) {
     for (Tick n = 0;;) {
@@ -212,10 +212,10 @@ class Problem {
       advance_feedback();
     }
     if (due & sim::kPositionLoop) {
-      set_point_.take(reference_trajectory(static_cast<double>(n) * kTick));
-      set_.Q_ref = set_.Q_cmd = set_point_.Q();
-      set_.dQ_ff = set_point_.dQ();
-      set_.ddQ_ff = set_point_.ddQ();
+      setpoint_.take(reference_trajectory(static_cast<double>(n) * kTick));
+      set_.Q_ref = set_.Q_cmd = setpoint_.Q();
+      set_.dQ_ff = setpoint_.dQ();
+      set_.ddQ_ff = setpoint_.ddQ();
       for (std::size_t run = 0; run < axes_.runs(); ++run) axes_.follow(set_, run);
       for (sim::FeedbackLanes& feedback : feedbacks_) feedback.act();
       axes_.take_readings();
@@ -229,8 +229,8 @@ class Problem {
   sim::ServoAxes axes_;
   std::unique_ptr<strategies::Strategy> virtual_encoder_ = make_virtual_encoder();
   std::vector<sim::FeedbackLanes> feedbacks_;  // of eight runs each
-  SetPoint set_point_;
-  sim::AxisSetPoint set_;
+  Setpoint setpoint_;
+  sim::AxisSetpoint set_;
 };
 
 }  // namespace servomill::reference_problem

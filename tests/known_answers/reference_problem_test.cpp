@@ -19,7 +19,7 @@ double largest_error(const sim::MachineSettings& machine, const std::string& ref
   Problem run({&machine});
   double largest = 0.0;
   std::size_t row = 0;
-  run.until(kEnd, [&](std::size_t, const sim::AxisSetPoint&, const sim::ServoAxes& axes) {
+  run.until(kEnd, [&](std::size_t, const sim::AxisSetpoint&, const sim::ServoAxes& axes) {
     largest = std::max(largest, (axes.Q_true() - x_ref.at(row++)).cwiseAbs().maxCoeff());
   });
   return 1e9 * largest;

@@ -25,7 +25,7 @@ def main():
     names = set()
     for file in (folder / "sim" / "evaluation").glob("*_quantities.cpp"):
         names |= names_in(file.read_text(encoding="utf-8"))
-    assert {"imposed_curve_residual", "blocks", "circular_deviation", "location_error", "distortion"} <= names, names
+    assert {"imposed_error_residual", "blocks", "circular_error", "location_error", "distortion"} <= names, names
     literal = '"(?:' + "|".join(sorted(names)) + ')"'
     compared = re.compile(rf"[!=]=\s*{literal}|{literal}\s*[!=]=|(?:find_quantity|quantity_entry)\({literal}")
     faults, files = [], 0

@@ -2,16 +2,16 @@
 #include <gtest/gtest.h>
 
 #include "tests/counting_new.h"
-#include "tests/strategies/beliefs.h"
+#include "tests/strategies/identified_machines.h"
 
 namespace servomill::strategies::strategy_allocation_test {
 namespace {
 
 TEST(EveryStrategy, DoesNotAllocateInARun) {
   plant::Uniform random(41);
-  const Belief belief = belief_in(plant::random_errors(random, 10e-6));
+  const IdentifiedMachine identified = identified_with(plant::random_errors(random, 10e-6));
   for (const Entry& entry : entries()) {
-    for (const Sign sign : kBothSigns) {
+    for (const Action action : kBothActions) {
       for (const int way : {0, 1, 2, 3}) {
         Parameters parameters = default_parameters(entry);
         if (way % 2 == 1 && parameters.is_word("iterations")) {
@@ -19,7 +19,7 @@ TEST(EveryStrategy, DoesNotAllocateInARun) {
         }
         if (way >= 2 && parameters.is_word("axes")) parameters.set("axes", "all");
         if (way >= 2 && parameters.is_word("form")) {
-          parameters.set("form", "lattice");
+          parameters.set("form", "grid");
           parameters.set("spacing_mm", 52.4288 * mm);
         }
         for (const ParameterSpec& spec : entry.parameters) {  // a lead needs readings of the past
@@ -27,14 +27,14 @@ TEST(EveryStrategy, DoesNotAllocateInARun) {
             parameters.set(spec.name, "auto");
           }
         }
-        const Acting acting = make_acting(entry, parameters, sign, belief);
-        Joints Q = belief.reference;
+        const Acting acting = make_acting(entry, parameters, action, identified);
+        Joints Q = identified.reference;
         double sum = 0.0;
         const std::size_t before = allocations;
         if (acting.feedback) sum += acting.feedback->settle(Q).sum();
         for (int n = 0; n < 100; ++n) {
           for (int j = 0; j < kLinearJoints; ++j) Q[j] += 1e-5;
-          if (acting.set_point) sum += acting.set_point->offset(Q).sum();
+          if (acting.setpoint) sum += acting.setpoint->offset(Q).sum();
           if (acting.feedback) sum += acting.feedback->advance(Q).sum();
         }
         EXPECT_EQ(allocations, before) << entry.name;

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/move_curve.h"
-#include "tests/strategies/beliefs.h"
+#include "tests/strategies/identified_machines.h"
 
 namespace servomill::strategies::strategy_laws_test {
 namespace {
@@ -10,33 +10,34 @@ namespace {
 // A displacement of 10 um is a difference of coordinates of 0.3 m, twice rounded.
 constexpr double kRounding = 1e-15;  // m
 
-const char* name_of(Sign sign) { return sign == Sign::generate ? "generate" : "correct"; }
+const char* name_of(Action action) { return action == Action::impose ? "impose" : "compensate"; }
 
 // The points of a table over one axis with the default spacing, away from the ends.
-Joints with_one_axis_moved(const Belief& belief, int joint, double step) {
-  Joints Q = belief.reference;
+Joints with_one_axis_moved(const IdentifiedMachine& identified, int joint, double step) {
+  Joints Q = identified.reference;
   Q[joint] += step * 1.6384 * mm;
   return Q;
 }
 
-Joints random_position(const Belief& belief, plant::Uniform& random) {
-  Joints Q = belief.reference;
+Joints random_position(const IdentifiedMachine& identified, plant::Uniform& random) {
+  Joints Q = identified.reference;
   for (int j = 0; j < kLinearJoints; ++j) Q[j] = 0.15 * random();
   return Q;
 }
 
-// The believed errors of the random models are up to about 3 x size, their slopes 8 x size per m.
+// The identified errors of the random models are up to about 3 x size, their slopes 8 x size per m.
 constexpr double kErrorSize = 10e-6;  // m, rad
 
-Belief random_belief(double size = kErrorSize) {
+IdentifiedMachine randomly_identified(double size = kErrorSize) {
   plant::Uniform random(11);
-  return belief_in(plant::random_errors(random, size));
+  return identified_with(plant::random_errors(random, size));
 }
 
-Move line_to(const Belief& belief, const Joints& Q, int line, double s_begin, double s_end) {
+Move line_to(const IdentifiedMachine& identified, const Joints& Q, int line, double s_begin,
+             double s_end) {
   Move move;
   move.line = line;
-  move.end = move.end_machine = belief.layout.words(Q);
+  move.end = move.end_machine = identified.layout.words(Q);
   move.s_begin = s_begin;
   move.s_end = s_end;
   move.feed = 0.02;
@@ -44,20 +45,20 @@ Move line_to(const Belief& belief, const Joints& Q, int line, double s_begin, do
 }
 
 // A rapid, a line, an arc in XY and something that is no motion.
-std::vector<Move> some_program(const Belief& belief) {
-  Joints Q = belief.reference;
+std::vector<Move> some_program(const IdentifiedMachine& identified) {
+  Joints Q = identified.reference;
   std::vector<Move> moves;
   Q[0] += 5.0 * mm;
-  moves.push_back(line_to(belief, Q, 1, 0.0, 5.0 * mm));
+  moves.push_back(line_to(identified, Q, 1, 0.0, 5.0 * mm));
   moves.back().kind = MoveKind::rapid;
   Q[1] += 7.3 * mm;
-  moves.push_back(line_to(belief, Q, 2, 5.0 * mm, 12.3 * mm));
+  moves.push_back(line_to(identified, Q, 2, 5.0 * mm, 12.3 * mm));
   Move dwell;
   dwell.kind = MoveKind::dwell;
   dwell.line = 3;
   dwell.value = 0.5;
   moves.push_back(dwell);
-  Move arc = line_to(belief, Q, 4, 12.3 * mm, 12.3 * mm + 5.0 * mm * std::numbers::pi);
+  Move arc = line_to(identified, Q, 4, 12.3 * mm, 12.3 * mm + 5.0 * mm * std::numbers::pi);
   arc.kind = MoveKind::arc;
   arc.arc.centre = arc.centre_machine =
       moves[1].end_machine.head<3>() + Eigen::Vector3d(5e-3, 0, 0);
@@ -101,10 +102,10 @@ TEST(EveryStrategy, HasDefaultsThatKeepItsOwnRules) {
 
 // Hardware and delay follow the entry, the action follows the strategy.
 TEST(EveryStrategy, ThatDisplacesTheFeedbackUsesItsHardware) {
-  const Belief belief = random_belief();
+  const IdentifiedMachine identified = randomly_identified();
   for (const Entry& entry : entries()) {
-    for (const Sign sign : kBothSigns) {
-      const Acting acting = make_acting(entry, sign, belief);
+    for (const Action action : kBothActions) {
+      const Acting acting = make_acting(entry, action, identified);
       EXPECT_EQ(acting.strategy->displaces_feedback(), entry.uses_feedback_hardware) << entry.name;
       EXPECT_EQ(acting.feedback != nullptr, entry.uses_feedback_hardware) << entry.name;
     }
@@ -113,15 +114,15 @@ TEST(EveryStrategy, ThatDisplacesTheFeedbackUsesItsHardware) {
 
 // Law 1: who believes in no errors changes nothing, bit for bit.
 TEST(EveryStrategy, LeavesPositionsAloneWithoutErrors) {
-  const Belief belief = belief_in({});
+  const IdentifiedMachine identified = identified_with({});
   plant::Uniform random(1);
   for (const Entry& entry : entries()) {
-    for (const Sign sign : kBothSigns) {
+    for (const Action action : kBothActions) {
       for (const int way : {0, 1, 2, 3}) {
-        const Acting acting = make_acting(entry, sign, belief, way % 2 == 1, way >= 2);
+        const Acting acting = make_acting(entry, action, identified, way % 2 == 1, way >= 2);
         for (int n = 0; n < 100; ++n) {
-          const Joints Q = random_position(belief, random);
-          EXPECT_EQ(acting.displacement(belief.layout, Q), Joints::Zero()) << entry.name;
+          const Joints Q = random_position(identified, random);
+          EXPECT_EQ(acting.displacement(identified.layout, Q), Joints::Zero()) << entry.name;
           if (!acting.feedback) continue;
           EXPECT_EQ(acting.feedback->advance(Q), Joints::Zero()) << entry.name;
         }
@@ -132,28 +133,28 @@ TEST(EveryStrategy, LeavesPositionsAloneWithoutErrors) {
 
 // Who says that it knows no errors does the same with and without them.
 TEST(EveryStrategy, ThatReadsNoErrorsDisplacesNothing) {
-  const Belief belief = random_belief();
+  const IdentifiedMachine identified = randomly_identified();
   plant::Uniform random(2);
   for (const Entry& entry : entries()) {
     if (entry.reads_errors) continue;
-    const Acting acting = make_acting(entry, Sign::correct, belief);
+    const Acting acting = make_acting(entry, Action::compensate, identified);
     for (int n = 0; n < 20; ++n) {
-      const Joints Q = random_position(belief, random);
-      EXPECT_EQ(acting.displacement(belief.layout, Q), Joints::Zero()) << entry.name;
+      const Joints Q = random_position(identified, random);
+      EXPECT_EQ(acting.displacement(identified.layout, Q), Joints::Zero()) << entry.name;
     }
   }
 }
 
 TEST(EveryStrategy, KeepsEveryProgrammedPointWithoutErrors) {
-  const Belief belief = belief_in({});
-  const std::vector<Move> moves = some_program(belief);
+  const IdentifiedMachine identified = identified_with({});
+  const std::vector<Move> moves = some_program(identified);
   for (const Entry& entry : entries()) {
     for (const int way : {0, 1, 2, 3}) {
-      const Acting acting = make_acting(entry, way % 2 == 1 ? Sign::generate : Sign::correct,
-                                        belief, false, way >= 2);
+      const Acting acting = make_acting(entry, way % 2 == 1 ? Action::impose : Action::compensate,
+                                        identified, false, way >= 2);
       const std::vector<Move> rewritten = acting.strategy->rewrite(moves);
       auto next = rewritten.begin();
-      AxisWords from = belief.layout.words(belief.reference);
+      AxisWords from = identified.layout.words(identified.reference);
       for (const Move& move : moves) {
         if (!is_motion(move.kind)) {
           ASSERT_NE(next, rewritten.end());
@@ -184,25 +185,25 @@ TEST(EveryStrategy, KeepsEveryProgrammedPointWithoutErrors) {
   }
 }
 
-// Law 2: to generate is to displace the axes by the believed error, to correct by its negative, to
-// first order. The points are those where a table interpolates nothing.
-TEST(EveryStrategy, DisplacesByTheBelievedErrorTimesItsSign) {
-  const Belief belief = random_belief();
+// Law 2: to generate is to displace the axes by the identified error, to correct by its negative,
+// to first order. The points are those where a table interpolates nothing.
+TEST(EveryStrategy, DisplacesByTheIdentifiedErrorTimesItsSign) {
+  const IdentifiedMachine identified = randomly_identified();
   constexpr double kSlope = 8.0 * kErrorSize, kSize = 10.0 * kErrorSize;  // 1/m, m with levers
   constexpr double kSecondOrder = 3.0 * kSlope * kSize;                   // m: |E'||E|, three axes
   for (const Entry& entry : entries()) {
-    for (const Sign sign : kBothSigns) {
-      const Acting acting = make_acting(entry, sign, belief, true);
+    for (const Action action : kBothActions) {
+      const Acting acting = make_acting(entry, action, identified, true);
       if (!entry.reads_errors) continue;
       ASSERT_TRUE(acting.acts()) << entry.name;
       for (int joint = 0; joint < kLinearJoints; ++joint) {
         for (const double step : {-50.0, 0.0, 80.0}) {
-          const Joints Q = with_one_axis_moved(belief, joint, step);
-          const Eigen::Vector3d believed = belief.model.joint_offset(Q, belief.p_ST);
-          ASSERT_GT(believed.norm(), 100.0 * kSecondOrder);
-          const Eigen::Vector3d wanted = (sign == Sign::generate ? 1.0 : -1.0) * believed;
-          const double off = (acting.displacement(belief.layout, Q).head<3>() - wanted).norm();
-          EXPECT_LE(off, kSecondOrder) << entry.name << " " << name_of(sign) << " " << joint;
+          const Joints Q = with_one_axis_moved(identified, joint, step);
+          const Eigen::Vector3d error = identified.model.joint_offset(Q, identified.p_ST);
+          ASSERT_GT(error.norm(), 100.0 * kSecondOrder);
+          const Eigen::Vector3d wanted = (action == Action::impose ? 1.0 : -1.0) * error;
+          const double off = (acting.displacement(identified.layout, Q).head<3>() - wanted).norm();
+          EXPECT_LE(off, kSecondOrder) << entry.name << " " << name_of(action) << " " << joint;
         }
       }
     }
@@ -212,14 +213,16 @@ TEST(EveryStrategy, DisplacesByTheBelievedErrorTimesItsSign) {
 // Law 3: what correcting leaves of generating shrinks with the square of the errors.
 TEST(EveryStrategy, CorrectsWhatItGeneratesToFirstOrder) {
   plant::Uniform random(3);
-  const Belief large = random_belief(kErrorSize), small = random_belief(0.5 * kErrorSize);
+  const IdentifiedMachine large = randomly_identified(kErrorSize),
+                          small = randomly_identified(0.5 * kErrorSize);
   for (const Entry& entry : entries()) {
     bool all_axes = false;
-    const auto left = [&](const Belief& belief, const Joints& Q) -> Joints {
-      const auto by = [&](Sign sign) {
-        return make_acting(entry, sign, belief, true, all_axes).displacement(belief.layout, Q);
+    const auto left = [&](const IdentifiedMachine& identified, const Joints& Q) -> Joints {
+      const auto by = [&](Action action) {
+        return make_acting(entry, action, identified, true, all_axes)
+            .displacement(identified.layout, Q);
       };
-      return by(Sign::generate) + by(Sign::correct);
+      return by(Action::impose) + by(Action::compensate);
     };
     for (int n = 0; n < 40; ++n) {
       all_axes = n >= 20;
@@ -238,16 +241,16 @@ TEST(EveryStrategy, CorrectsWhatItGeneratesToFirstOrder) {
 
 // Law 4: with one iteration, correcting is the negative of generating at the same argument.
 TEST(EveryStrategy, CorrectsInOneStepByTheNegative) {
-  const Belief belief = random_belief();
+  const IdentifiedMachine identified = randomly_identified();
   plant::Uniform random(5);
   for (const Entry& entry : entries()) {
     for (const bool all_axes : {false, true}) {
-      const Acting generate = make_acting(entry, Sign::generate, belief, false, all_axes);
-      const Acting correct = make_acting(entry, Sign::correct, belief, false, all_axes);
+      const Acting generate = make_acting(entry, Action::impose, identified, false, all_axes);
+      const Acting correct = make_acting(entry, Action::compensate, identified, false, all_axes);
       for (int n = 0; n < 20; ++n) {
-        const Joints Q = random_position(belief, random);
-        const Joints sum =
-            generate.displacement(belief.layout, Q) + correct.displacement(belief.layout, Q);
+        const Joints Q = random_position(identified, random);
+        const Joints sum = generate.displacement(identified.layout, Q) +
+                           correct.displacement(identified.layout, Q);
         EXPECT_LE(sum.cwiseAbs().maxCoeff(), kRounding) << entry.name;
       }
     }
@@ -256,19 +259,19 @@ TEST(EveryStrategy, CorrectsInOneStepByTheNegative) {
 
 // Law 5: no hidden state, neither between two strategies nor between two runs of one.
 TEST(EveryStrategy, DoesTheSameInEveryRun) {
-  const Belief belief = random_belief();
-  const std::vector<Move> moves = some_program(belief);
+  const IdentifiedMachine identified = randomly_identified();
+  const std::vector<Move> moves = some_program(identified);
   for (const Entry& entry : entries()) {
-    const Acting first = make_acting(entry, Sign::generate, belief);
-    const auto played = [&](SetPointPart* set_point, FeedbackPart* feedback) {
+    const Acting first = make_acting(entry, Action::impose, identified);
+    const auto played = [&](SetpointPart* setpoint, FeedbackPart* feedback) {
       plant::Uniform random(7);
-      Joints Q = belief.reference;
+      Joints Q = identified.reference;
       std::vector<double> out;
       if (feedback) feedback->settle(Q);
       for (int n = 0; n < 200; ++n) {
         for (int j = 0; j < kLinearJoints; ++j) Q[j] += 1e-6 * random();
         for (int i = 0; i < kJoints; ++i) {
-          if (set_point) out.push_back(set_point->offset(Q)[i]);
+          if (setpoint) out.push_back(setpoint->offset(Q)[i]);
         }
         if (!feedback) continue;
         const Joints d = feedback->advance(Q);
@@ -276,13 +279,13 @@ TEST(EveryStrategy, DoesTheSameInEveryRun) {
       }
       return out;
     };
-    const auto reference = played(first.set_point.get(), first.feedback.get());
-    EXPECT_EQ(reference.empty(), !(first.set_point || first.feedback));
-    const Acting second = make_acting(entry, Sign::generate, belief);
-    EXPECT_EQ(played(second.set_point.get(), second.feedback.get()), reference) << entry.name;
-    const auto set_point = first.strategy->set_point();
+    const auto reference = played(first.setpoint.get(), first.feedback.get());
+    EXPECT_EQ(reference.empty(), !(first.setpoint || first.feedback));
+    const Acting second = make_acting(entry, Action::impose, identified);
+    EXPECT_EQ(played(second.setpoint.get(), second.feedback.get()), reference) << entry.name;
+    const auto setpoint = first.strategy->setpoint();
     const auto feedback = first.strategy->feedback(kModelPeriod);
-    EXPECT_EQ(played(set_point.get(), feedback.get()), reference) << entry.name << ", a second run";
+    EXPECT_EQ(played(setpoint.get(), feedback.get()), reference) << entry.name << ", a second run";
 
     const auto once = first.strategy->rewrite(moves), twice = second.strategy->rewrite(moves);
     ASSERT_EQ(once.size(), twice.size());
@@ -292,29 +295,30 @@ TEST(EveryStrategy, DoesTheSameInEveryRun) {
   }
 }
 
-// Law 6: a strategy that displaces all axes, with perfect belief and axes that stand where they are
-// sent, leaves neither tip nor tool axis anything, whatever the machine.
+// Law 6: a strategy that displaces all axes, with perfect identified and axes that stand where they
+// are sent, leaves neither tip nor tool axis anything, whatever the machine.
 TEST(EveryStrategyOfAllAxes, LeavesNothingOfTipAndToolAxis) {
   constexpr double kPoseTol = 2e-12;  // m, rad: ten times that of the iteration and its slopes
   plant::Uniform random(13);
   int tried = 0;
   for (const char* structure : {"[w C' B' X b Y Z t]", "[w B' A' X b Y Z t]", "[w C' b X Y Z A t]",
                                 "[w X b Y Z C B t]", "[w X Y b Z B A t]"}) {
-    const Belief belief = belief_in(plant::random_errors(random, kErrorSize), structure);
-    const plant::MachineChain& chain = belief.model.chain();
+    const IdentifiedMachine identified =
+        identified_with(plant::random_errors(random, kErrorSize), structure);
+    const plant::MachineChain& chain = identified.model.chain();
     for (const Entry& entry : entries()) {
       if (!default_parameters(entry).is_word("axes")) continue;
-      const Acting acting = make_acting(entry, Sign::correct, belief, true, true);
+      const Acting acting = make_acting(entry, Action::compensate, identified, true, true);
       EXPECT_TRUE(acting.strategy->displaces_rotary()) << entry.name;
       ++tried;
       for (int n = 0; n < 20; ++n) {
-        const Joints Q = random_position(belief, random);
-        const Joints d = acting.displacement(belief.layout, Q);
+        const Joints Q = random_position(identified, random);
+        const Joints d = acting.displacement(identified.layout, Q);
         // a reading is taken where the axes are, a program says where they are to be
         const Joints Q_true = acting.feedback ? Q : Joints(Q + d);
         const Joints Q_prog = acting.feedback ? Joints(Q - d) : Q;
-        const ToolPose got = belief.model.forward(Q_true, belief.p_ST);
-        const ToolPose wanted = plant::forward(chain, Q_prog, belief.p_ST);
+        const ToolPose got = identified.model.forward(Q_true, identified.p_ST);
+        const ToolPose wanted = plant::forward(chain, Q_prog, identified.p_ST);
         EXPECT_LT((got.p_WT - wanted.p_WT).norm(), kPoseTol) << structure << entry.name;
         EXPECT_LT((got.k_W - wanted.k_W).norm(), kPoseTol) << structure << entry.name;
         EXPECT_GT(d.tail<2>().norm(), 1e-7) << "there is something to correct";

@@ -28,7 +28,7 @@ QUANTITY = """
 [[quantity]]
 name = "trajectory_difference"
 axis = "X"
-base = "nominal"
+baseline = "nominal"
 cases = ["quadrant"]
 statistic = "{}"
 sections = ["{}"]

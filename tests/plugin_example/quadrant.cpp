@@ -1,4 +1,4 @@
-// Quadrant glitch compensation by the set point: after each reversal of an axis its set point is
+// Quadrant glitch compensation by the setpoint: after each reversal of an axis its setpoint is
 // moved on by a pulse that decays.
 #include <cmath>
 

@@ -52,7 +52,7 @@ inline std::string s_shaped_program(double feed) {
 /// @param toml  cases
 inline Scenario trunnion_scenario(const std::string& program, const std::string& toml) {
   return read_resolved_scenario(
-      "machine = \"machines/generic_trunnion_ac.toml\"\ntruth = \"machine\"\n"
+      "machine = \"machines/generic_trunnion_ac.toml\"\nmachine_errors = \"machine\"\n"
       "[machine_override.nc]\nrotary_tolerance_urad = 0.5\n[feedback_hardware]\nconnected = true\n"
       "[record]\nperiod_ms = 2.0\nresolution_nm = 0.0\n" +
           errors_of_all_axes() + toml +
@@ -66,7 +66,7 @@ inline std::string corrected_case(const std::string& name, const std::string& se
                                   const std::string& type, const std::string& more) {
   return fmt::format(
       "[[case]]\nname = \"{}\"\nservo = \"{}\"\n[[case.strategy]]\ntype = \"{}\"\n"
-      "model = \"machine\"\nsign = \"correct\"\n{}",
+      "model = \"machine\"\naction = \"compensate\"\n{}",
       name, servo, type, more);
 }
 
@@ -87,7 +87,7 @@ inline Deviation deviation_in(const CaseOutput& out, const std::string& section)
                                   fmt::format("{:.6g}", value));
     return value;
   };
-  return {largest("tool_tip_deviation"), largest("tool_axis_deviation")};
+  return {largest("tcp_deviation"), largest("tool_axis_deviation")};
 }
 
 }  // namespace servomill::sim

@@ -24,7 +24,7 @@ struct Smoothed {
 
   Joints found(const Reading& now) const {
     Eigen::Vector3d d;
-    feedback_displacement(identified, sign, Iterations::one, now.Q_fb, d);
+    feedback_displacement(identified, action, Iterations::one, now.Q_fb, d);
     Joints out = Joints::Zero();
     out.head<3>() = d;
     return out;
@@ -32,8 +32,8 @@ struct Smoothed {
   Joints settle(const Reading& now, State& y) const { return y = found(now); }
   Joints displacement(const Reading& now, State& y) const { return y += share * (found(now) - y); }
 
-  Belief identified;
-  Sign sign;
+  IdentifiedMachine identified;
+  Action action;
   double share;  // of the difference that a period closes
 };
 
@@ -53,8 +53,8 @@ struct SmoothedStrategy final : Strategy {
 }  // namespace
 
 Entry smoothed_entry() {
-  const auto make = [](const Parameters& p, Sign sign, const auto& identified) {
-    return std::make_unique<SmoothedStrategy>(Smoothed{identified, sign, 1.0},
+  const auto make = [](const Parameters& p, Action action, const auto& identified) {
+    return std::make_unique<SmoothedStrategy>(Smoothed{identified, action, 1.0},
                                               p.number("time_constant_ms"));
   };
   Entry entry = {"smoothed", "virtual encoder with a low-pass filter", kSpecs, make};

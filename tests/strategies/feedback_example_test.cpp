@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/strategies/beliefs.h"
+#include "tests/strategies/identified_machines.h"
 
 namespace servomill::strategies::feedback_example_test {
 namespace {
@@ -16,12 +16,12 @@ constexpr double kT = 1.2e-3;    // s: twenty model periods
 Acting with_time_constant(double T) {
   plant::ErrorModel errors;
   errors.component({Axis::Y, Axis::X}) = plant::polynomial({0.0, kSlope});
-  auto identified = belief_in(errors);
+  auto identified = identified_with(errors);
   identified.reference.setZero();
   const Entry entry = smoothed_entry();
   Parameters parameters = default_parameters(entry);
   parameters.set("time_constant_ms", T);
-  return make_acting(entry, parameters, Sign::correct, identified);
+  return make_acting(entry, parameters, Action::compensate, identified);
 }
 
 // A jump of x by 1 mm is one of d by 10 um: y(n) = 10 um (1 - exp(-n Tm / T)), a period later.

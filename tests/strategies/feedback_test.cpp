@@ -7,33 +7,33 @@
 
 #include "plant/sensing/encoder.h"
 #include "strategies/approach_kernel.h"
-#include "tests/strategies/beliefs.h"
+#include "tests/strategies/identified_machines.h"
 
 namespace servomill::strategies::feedback_test {
 namespace {
 
 constexpr double kSlope = 0.01;  // m/m: EYX = kSlope x
 
-Belief ramp_of_y_over_x() {
+IdentifiedMachine ramp_of_y_over_x() {
   plant::ErrorModel errors;
   errors.component({Axis::Y, Axis::X}) = plant::polynomial({0.0, kSlope});
-  Belief belief = belief_in(errors);
-  belief.reference.setZero();  // rotary axes, too: d is then along Y alone
-  return belief;
+  IdentifiedMachine identified = identified_with(errors);
+  identified.reference.setZero();  // rotary axes, too: d is then along Y alone
+  return identified;
 }
 
 struct Limits {
-  double max_um = 1e9, max_rate_mm_per_s = 1e9, lead_ms = 0.0, window_ms = 3.0;
+  double max_um = 1e9, max_rate_mm_per_s = 1e9, extrapolation_time_ms = 0.0, window_ms = 3.0;
 };
 
-Acting virtual_encoder(const Belief& belief, const Limits& limits) {
+Acting virtual_encoder(const IdentifiedMachine& identified, const Limits& limits) {
   const Entry entry = feedback_entry();
   Parameters parameters = default_parameters(entry);
   parameters.set("max_um", limits.max_um * um);
   parameters.set("max_rate_mm_per_s", limits.max_rate_mm_per_s * mm);
-  parameters.set("lead_ms", limits.lead_ms * ms);
+  parameters.set("extrapolation_time_ms", limits.extrapolation_time_ms * ms);
   parameters.set("velocity_window_ms", limits.window_ms * ms);
-  return make_acting(entry, parameters, Sign::correct, belief);
+  return make_acting(entry, parameters, Action::compensate, identified);
 }
 
 Joints at_x(double x) {
@@ -44,9 +44,9 @@ Joints at_x(double x) {
 
 // d = 10 um at x = 1 mm: inside +-10.1 um it passes bit for bit, outside it is cut exactly.
 TEST(VirtualEncoder, LimitsTheDisplacement) {
-  const Belief belief = ramp_of_y_over_x();
-  const Acting free = virtual_encoder(belief, {});
-  const Acting limited = virtual_encoder(belief, {.max_um = 10.1});
+  const IdentifiedMachine identified = ramp_of_y_over_x();
+  const Acting free = virtual_encoder(identified, {});
+  const Acting limited = virtual_encoder(identified, {.max_um = 10.1});
   for (const double x : {0.2 * mm, 1.0 * mm, 1.0099 * mm, -1.0099 * mm}) {
     const Joints d = free.feedback->settle(at_x(x));
     EXPECT_NE(d[1], 0.0);
@@ -64,11 +64,11 @@ TEST(VirtualEncoder, LimitsTheDisplacement) {
 
 // 10 mm/s over a model period of 60 us is 0.6 um.
 TEST(VirtualEncoder, LimitsTheRate) {
-  const Belief belief = ramp_of_y_over_x();
+  const IdentifiedMachine identified = ramp_of_y_over_x();
   const double most = 0.6 * um;
   for (const double sign : {1.0, -1.0}) {
-    const Acting free = virtual_encoder(belief, {});
-    const Acting limited = virtual_encoder(belief, {.max_rate_mm_per_s = 10.0});
+    const Acting free = virtual_encoder(identified, {});
+    const Acting limited = virtual_encoder(identified, {.max_rate_mm_per_s = 10.0});
     for (const auto* acting : {&free, &limited}) acting->feedback->settle(at_x(0.0));
     // inside: 0.599 um a period
     for (int n = 1; n <= 20; ++n) {
@@ -92,8 +92,8 @@ TEST(VirtualEncoder, LimitsTheRate) {
 // d = 10 um at x = 1 mm, limit 10.1 um: x runs at 1 mm a period from 0 to 20 mm and back. What is
 // found at x >= 2 mm is limited, in the period after: 37 of them.
 TEST(VirtualEncoder, TellsWhereItsSizeIsSaturated) {
-  const Belief belief = ramp_of_y_over_x();
-  const Acting limited = virtual_encoder(belief, {.max_um = 10.1});
+  const IdentifiedMachine identified = ramp_of_y_over_x();
+  const Acting limited = virtual_encoder(identified, {.max_um = 10.1});
   const auto at = [](int n) { return at_x((n <= 20 ? n : 40 - n) * mm); };
   constexpr double kRounding = 1e-15;  // s
   const auto expect_found = [&](std::size_t lane) {
@@ -135,8 +135,8 @@ TEST(VirtualEncoder, TellsWhereItsSizeIsSaturated) {
 
 // 0.6 um a period: 0.5 um pass, of 0.7 um 0.1 um are left each period.
 TEST(VirtualEncoder, TellsWhereItsRateIsSaturated) {
-  const Belief belief = ramp_of_y_over_x();
-  const Acting limited = virtual_encoder(belief, {.max_rate_mm_per_s = 10.0});
+  const IdentifiedMachine identified = ramp_of_y_over_x();
+  const Acting limited = virtual_encoder(identified, {.max_rate_mm_per_s = 10.0});
   limited.feedback->settle(at_x(0.0));
   for (int n = 1; n <= 100; ++n) limited.feedback->advance(at_x(-n * 50.0 * um));
   EXPECT_TRUE(limited.feedback->saturations(0).empty());
@@ -165,8 +165,8 @@ TEST(VirtualEncoder, CountsASaturatedStandstillAsOnePeriod) {
 
 // The model is looked up where the axis will be: with a steady velocity, exactly.
 TEST(VirtualEncoder, LeadsByItsTime) {
-  const Belief belief = ramp_of_y_over_x();
-  const Acting led = virtual_encoder(belief, {.lead_ms = 12.0, .window_ms = 3.0});
+  const IdentifiedMachine identified = ramp_of_y_over_x();
+  const Acting led = virtual_encoder(identified, {.extrapolation_time_ms = 12.0, .window_ms = 3.0});
   const double v = 20.0 * mm;  // m/s
   led.feedback->settle(at_x(0.0));
   double x = 0.0;
@@ -185,12 +185,13 @@ TEST(VirtualEncoder, LeadsByItsTime) {
 // A reading with steps q gives a velocity with an error of up to q / window, hence a displacement
 // with up to E' (q/2 + lead q / window): a longer window, less noise.
 TEST(VirtualEncoder, KeepsTheStepsOfTheEncoderOutOfItsLead) {
-  const Belief belief = ramp_of_y_over_x();
+  const IdentifiedMachine identified = ramp_of_y_over_x();
   const double lead = 12.0 * ms, q = 19.53125 * nm;
   const double v = 20.0137 * mm;  // no whole number of steps in any window
   const plant::Encoder encoder = plant::Encoder::with_step(q);
   const auto noise = [&](double window_ms) {
-    const Acting led = virtual_encoder(belief, {.lead_ms = lead / ms, .window_ms = window_ms});
+    const Acting led =
+        virtual_encoder(identified, {.extrapolation_time_ms = lead / ms, .window_ms = window_ms});
     led.feedback->settle(at_x(0.0));
     double largest = 0.0;
     for (int n = 1; n < 2000; ++n) {
@@ -213,21 +214,21 @@ TEST(VirtualEncoder, KeepsTheStepsOfTheEncoderOutOfItsLead) {
 // the sign and the lead, one step or many, and whatever lanes of no concern hold.
 TEST(VirtualEncoder, GivesTheSameBitsTogetherAndAlone) {
   plant::Uniform random(23);
-  Belief belief = belief_in(plant::random_errors(random, 50e-6));
-  belief.Kv << 60.0, 40.0, 40.0, 50.0, 50.0;  // leads that differ
+  IdentifiedMachine identified = identified_with(plant::random_errors(random, 50e-6));
+  identified.Kv << 60.0, 40.0, 40.0, 50.0, 50.0;  // leads that differ
   const Entry entry = feedback_entry();
   constexpr LaneFlags kRuns = {true, true, false, true, true, true, false, true};
-  for (const Sign sign : kBothSigns) {
+  for (const Action action : kBothActions) {
     for (const bool lead : {false, true}) {
       for (const int way : {0, 1, 2, 3}) {
         Parameters parameters = default_parameters(entry);
         parameters.set("iterations", way % 2 == 0 ? std::string_view("1") : "converged");
         parameters.set("axes", way < 2 ? std::string_view("linear") : "all");
-        if (lead) parameters.set("lead_ms", std::string_view("auto"));
-        const auto strategy = entry.make(parameters, sign, belief);
+        if (lead) parameters.set("extrapolation_time_ms", std::string_view("auto"));
+        const auto strategy = entry.make(parameters, action, identified);
         const auto together = strategy->feedback(kModelPeriod);
         std::vector<std::unique_ptr<FeedbackPart>> alone;
-        std::vector<Joints> Q(kLaneWidth, belief.reference);
+        std::vector<Joints> Q(kLaneWidth, identified.reference);
         JointLanes Q_lanes;
         for (LaneArray& of_joint : Q_lanes) of_joint.fill(std::numeric_limits<double>::quiet_NaN());
         for (std::size_t run = 0; run < kLaneWidth; ++run) {
@@ -289,8 +290,8 @@ TEST(Approach, GivesInLanesTheBitsOfEachRun) {
 // or not, however many they are.
 TEST(VirtualEncoder, GivesTheSameBitsForPeriodsTogether) {
   plant::Uniform random(29);
-  Belief belief = belief_in(plant::random_errors(random, 50e-6));
-  belief.Kv << 60.0, 40.0, 40.0, 50.0, 50.0;
+  IdentifiedMachine identified = identified_with(plant::random_errors(random, 50e-6));
+  identified.Kv << 60.0, 40.0, 40.0, 50.0, 50.0;
   const Entry entry = feedback_entry();
   for (const std::string_view axes : {"linear", "all"}) {
     for (const double max_rate : {1.0, 1e-5}) {  // m/s, rad/s: never reached, often reached
@@ -299,12 +300,12 @@ TEST(VirtualEncoder, GivesTheSameBitsForPeriodsTogether) {
         parameters.set("axes", axes);
         parameters.set("max_rate_mm_per_s", max_rate);
         parameters.set("max_rate_mrad_per_s", max_rate);
-        if (lead) parameters.set("lead_ms", std::string_view("auto"));
-        const auto strategy = entry.make(parameters, Sign::correct, belief);
+        if (lead) parameters.set("extrapolation_time_ms", std::string_view("auto"));
+        const auto strategy = entry.make(parameters, Action::compensate, identified);
         const auto each = strategy->feedback(kModelPeriod);
         const auto all = strategy->feedback(kModelPeriod);
         constexpr std::size_t kLane = 3;
-        Joints Q = belief.reference;
+        Joints Q = identified.reference;
         EXPECT_EQ(each->settle(Q, kLane), all->settle(Q, kLane));
         std::size_t limited = 0;
         for (int round = 0; round < 40; ++round) {
@@ -331,8 +332,8 @@ TEST(VirtualEncoder, GivesTheSameBitsForPeriodsTogether) {
 TEST(VirtualEncoder, LimitsRotaryAxesOnTheirOwn) {
   plant::ErrorModel errors;
   errors.component({Axis::B, Axis::X}) = plant::polynomial({0.0, kSlope});  // rad/m
-  Belief belief = belief_in(errors);
-  belief.reference << 0.0, 0.0, 0.0, 30.0 * deg, 0.0;
+  IdentifiedMachine identified = identified_with(errors);
+  identified.reference << 0.0, 0.0, 0.0, 30.0 * deg, 0.0;
   const Entry entry = feedback_entry();
   Parameters parameters = default_parameters(entry);
   parameters.set("max_mrad", 0.1e-3);
@@ -340,21 +341,22 @@ TEST(VirtualEncoder, LimitsRotaryAxesOnTheirOwn) {
   parameters.set("max_um", 1.0);
   parameters.set("max_rate_mm_per_s", 1e9);
   const auto at = [&](double x) {
-    Joints Q = belief.reference;
+    Joints Q = identified.reference;
     Q[0] = x;
     return Q;
   };
-  EXPECT_EQ(make_acting(entry, parameters, Sign::correct, belief).feedback->settle(at(0.1))[3],
-            0.0);
+  EXPECT_EQ(
+      make_acting(entry, parameters, Action::compensate, identified).feedback->settle(at(0.1))[3],
+      0.0);
   parameters.set("axes", "all");
-  const Acting all = make_acting(entry, parameters, Sign::correct, belief);
+  const Acting all = make_acting(entry, parameters, Action::compensate, identified);
   constexpr double kThirdOrder = 2.1e-14;  // rad: one step leaves e^3 / 6 of e = 50 urad
   EXPECT_NEAR(all.feedback->settle(at(0.005))[3], 0.05e-3, kThirdOrder);
   EXPECT_EQ(all.feedback->settle(at(0.02))[3], 0.1e-3);
   EXPECT_EQ(all.feedback->settle(at(-0.02))[3], -0.1e-3);
   parameters.set("max_mrad", 10e-3);
   parameters.set("max_rate_mrad_per_s", 100e-3);
-  const Acting slow = make_acting(entry, parameters, Sign::correct, belief);
+  const Acting slow = make_acting(entry, parameters, Action::compensate, identified);
   slow.feedback->settle(at(0.0));
   constexpr double kRounding = 1e-18;  // rad
   slow.feedback->advance(at(0.1));

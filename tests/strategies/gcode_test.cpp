@@ -1,9 +1,9 @@
-// Programs rewritten for believed errors that depend on the direction of travel.
+// Programs rewritten for identified errors that depend on the direction of travel.
 #include "strategies/gcode.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/strategies/beliefs.h"
+#include "tests/strategies/identified_machines.h"
 
 namespace servomill::strategies::gcode_test {
 namespace {
@@ -26,20 +26,20 @@ std::vector<Move> there_and_back() {
   return {out, back};
 }
 
-std::vector<Move> rewritten(Sign sign) {
+std::vector<Move> rewritten(Action action) {
   plant::ErrorModel errors;
   errors.component("EXX"_err) = plant::reversal({kWidth}, kDistance);
-  Belief belief = belief_in(errors, "[w b X Y Z (C1) t]");
-  belief.reference.setZero();
+  IdentifiedMachine identified = identified_with(errors, "[w b X Y Z (C1) t]");
+  identified.reference.setZero();
   const Entry entry = gcode_entry();
-  return entry.make(default_parameters(entry), sign, belief)->rewrite(there_and_back());
+  return entry.make(default_parameters(entry), action, identified)->rewrite(there_and_back());
 }
 
 // Up, the axis goes 5 um too far; down, 5 um too little; in between as long as the change takes.
 TEST(Gcode, CorrectsReversalForTheDirectionOfTravel) {
-  for (const Sign sign : {Sign::correct, Sign::generate}) {
-    const double up = (sign == Sign::correct ? -0.5 : 0.5) * kWidth;
-    const std::vector<Move> moves = rewritten(sign);
+  for (const Action action : {Action::compensate, Action::impose}) {
+    const double up = (action == Action::compensate ? -0.5 : 0.5) * kWidth;
+    const std::vector<Move> moves = rewritten(action);
     ASSERT_EQ(moves.size(), 12U);  // five blocks of 1 mm each way, and two changes
     EXPECT_NEAR(moves[0].end_machine[0], kDistance + up, 1e-12);
     EXPECT_NEAR(moves[1].end_machine[0], 1.0 * mm + up, 1e-12);
@@ -55,8 +55,8 @@ TEST(Gcode, CorrectsReversalForTheDirectionOfTravel) {
 TEST(Gcode, BringsAWaitingAxisToItsPlaceWithTheProgrammedFeed) {
   plant::ErrorModel errors;
   errors.component("EXC"_err) = plant::harmonic(10e-6, 360.0 * deg);
-  Belief belief = belief_in(errors);
-  belief.reference.setZero();
+  IdentifiedMachine identified = identified_with(errors);
+  identified.reference.setZero();
   Move turn;
   turn.kind = MoveKind::feed;
   turn.feed = 500.0 * deg_per_min;
@@ -64,7 +64,7 @@ TEST(Gcode, BringsAWaitingAxisToItsPlaceWithTheProgrammedFeed) {
   turn.end = turn.end_machine;
   const Entry entry = gcode_entry();
   const std::vector<Move> out =
-      entry.make(default_parameters(entry), Sign::correct, belief)->rewrite({turn, turn});
+      entry.make(default_parameters(entry), Action::compensate, identified)->rewrite({turn, turn});
   ASSERT_EQ(out.size(), 2U);
   EXPECT_EQ(out[0].end_machine[0], 0.0);
   EXPECT_NEAR(out[0].feed, 500.0 * deg_per_min, 1e-12);

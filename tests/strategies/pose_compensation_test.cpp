@@ -22,15 +22,15 @@ constexpr const char* kStructures[] = {
     "[w C' X Y b Z B t]",       "[w C' b X Y Z A t]",  "[w B' X b Y Z A t]",
     "[w X b Y Z C A t]",        "[w b X Y Z C B t]",   "[w X Y b Z B A t]"};
 
-Belief belief_of(const plant::MachineChain& chain, const plant::ErrorModel& errors) {
-  Belief belief{chain.layout, plant::VolumetricModel(chain, errors)};
-  belief.p_ST << 3.0 * mm, -2.0 * mm, -110.0 * mm;
-  return belief;
+IdentifiedMachine identified_of(const plant::MachineChain& chain, const plant::ErrorModel& errors) {
+  IdentifiedMachine identified{chain.layout, plant::VolumetricModel(chain, errors)};
+  identified.p_ST << 3.0 * mm, -2.0 * mm, -110.0 * mm;
+  return identified;
 }
 
 struct Case {
   std::string name;
-  Belief belief;
+  IdentifiedMachine identified;
   std::vector<Joints> Q;
 };
 
@@ -45,11 +45,11 @@ std::vector<Case> cases(double error_size, int poses) {
       const plant::MachineChain chain = inclined ? plant::random_inclined_chain(structure, random)
                                                  : plant::random_chain(structure, random);
       const plant::ErrorModel errors = plant::random_errors(random, error_size);
-      Case one{name, belief_of(chain, errors), {}};
+      Case one{name, identified_of(chain, errors), {}};
       for (int tries = 0; static_cast<int>(one.Q.size()) < poses; ++tries) {
         if (tries == 10000) throw std::logic_error(one.name + " is singular everywhere");
         const Joints Q = plant::random_joints(chain, random);
-        const auto J = plant::jacobian(chain, Q, one.belief.p_ST);
+        const auto J = plant::jacobian(chain, Q, one.identified.p_ST);
         const Eigen::Vector3d a = J.J_kQ.col(3), b = J.J_kQ.col(4);
         if (a.cross(b).norm() > 0.06) one.Q.push_back(Q);  // product of the singular values
       }
@@ -74,39 +74,39 @@ Miss between(const ToolPose& a, const ToolPose& b) {
   } while (false)
 
 // All 43 errors, tip and tool axis, on machines of all kinds.
-TEST(PoseCompensation, OfTheSetPointIsTheNonidealInverse) {
-  for (const auto& [name, belief, poses] : cases(kErrorSize, 20)) {
-    const PoseCompensation all(belief, Iterations::converged, kSigma0);
-    const plant::MachineChain& chain = belief.model.chain();
+TEST(PoseCompensation, OfTheSetpointIsTheNonidealInverse) {
+  for (const auto& [name, identified, poses] : cases(kErrorSize, 20)) {
+    const PoseCompensation all(identified, Iterations::converged, kSigma0);
+    const plant::MachineChain& chain = identified.model.chain();
     for (const Joints& Q : poses) {
-      const Joints d = all.of_set_point(Sign::correct, Q);
-      EXPECT_SAME_POSE(belief.model.forward(Q + d, belief.p_ST),
-                       plant::forward(chain, Q, belief.p_ST));
-      const Leftover left = all.leftover(Q, d);
+      const Joints d = all.of_setpoint(Action::compensate, Q);
+      EXPECT_SAME_POSE(identified.model.forward(Q + d, identified.p_ST),
+                       plant::forward(chain, Q, identified.p_ST));
+      const Residual left = all.residual(Q, d);
       EXPECT_LT(left.tip, kPoseTol);
       EXPECT_LT(left.axis, kPoseTol);
-      const Joints g = all.of_set_point(Sign::generate, Q);
-      EXPECT_SAME_POSE(plant::forward(chain, Q + g, belief.p_ST),
-                       belief.model.forward(Q, belief.p_ST));
+      const Joints g = all.of_setpoint(Action::impose, Q);
+      EXPECT_SAME_POSE(plant::forward(chain, Q + g, identified.p_ST),
+                       identified.model.forward(Q, identified.p_ST));
     }
   }
 }
 
 // The NC reads Q + d and holds it at Q_cmd.
-TEST(PoseCompensation, OfTheFeedbackPutsTheAxesWhereTheSetPointDoes) {
-  for (const auto& [name, belief, poses] : cases(kErrorSize, 4)) {
-    const PoseCompensation all(belief, Iterations::converged, kSigma0);
-    const plant::MachineChain& chain = belief.model.chain();
+TEST(PoseCompensation, OfTheFeedbackPutsTheAxesWhereTheSetpointDoes) {
+  for (const auto& [name, identified, poses] : cases(kErrorSize, 4)) {
+    const PoseCompensation all(identified, Iterations::converged, kSigma0);
+    const plant::MachineChain& chain = identified.model.chain();
     for (const Joints& Q_cmd : poses) {
-      for (const Sign sign : {Sign::correct, Sign::generate}) {
+      for (const Action action : {Action::compensate, Action::impose}) {
         Joints Q_true = Q_cmd;
-        for (int n = 0; n < 30; ++n) Q_true = Q_cmd - all.of_feedback(sign, Q_true);
-        if (sign == Sign::correct) {
-          EXPECT_SAME_POSE(belief.model.forward(Q_true, belief.p_ST),
-                           plant::forward(chain, Q_cmd, belief.p_ST));
+        for (int n = 0; n < 30; ++n) Q_true = Q_cmd - all.of_feedback(action, Q_true);
+        if (action == Action::compensate) {
+          EXPECT_SAME_POSE(identified.model.forward(Q_true, identified.p_ST),
+                           plant::forward(chain, Q_cmd, identified.p_ST));
         } else {
-          EXPECT_SAME_POSE(plant::forward(chain, Q_true, belief.p_ST),
-                           belief.model.forward(Q_cmd, belief.p_ST));
+          EXPECT_SAME_POSE(plant::forward(chain, Q_true, identified.p_ST),
+                           identified.model.forward(Q_cmd, identified.p_ST));
         }
       }
     }
@@ -117,14 +117,14 @@ TEST(PoseCompensation, OfTheFeedbackPutsTheAxesWhereTheSetPointDoes) {
 TEST(PoseCompensation, InOneStepLeavesWhatIsOfSecondOrder) {
   const std::vector<Case> large = cases(kErrorSize, 5), small = cases(0.5 * kErrorSize, 5);
   for (std::size_t n = 0; n < large.size(); ++n) {
-    const PoseCompensation at_full(large[n].belief, Iterations::one, kSigma0);
-    const PoseCompensation at_half(small[n].belief, Iterations::one, kSigma0);
+    const PoseCompensation at_full(large[n].identified, Iterations::one, kSigma0);
+    const PoseCompensation at_half(small[n].identified, Iterations::one, kSigma0);
     for (const Joints& Q : large[n].Q) {
-      const Joints d = at_full.of_set_point(Sign::correct, Q);
-      EXPECT_EQ(d, -at_full.of_set_point(Sign::generate, Q));
-      EXPECT_EQ(d, -at_full.of_feedback(Sign::correct, Q));
-      const Leftover full = at_full.leftover(Q, d);
-      const Leftover half = at_half.leftover(Q, at_half.of_set_point(Sign::correct, Q));
+      const Joints d = at_full.of_setpoint(Action::compensate, Q);
+      EXPECT_EQ(d, -at_full.of_setpoint(Action::impose, Q));
+      EXPECT_EQ(d, -at_full.of_feedback(Action::compensate, Q));
+      const Residual full = at_full.residual(Q, d);
+      const Residual half = at_half.residual(Q, at_half.of_setpoint(Action::compensate, Q));
       constexpr double kThirdOrder = 0.1;  // of the ratio 4: 20 errors of 20e-6 and slopes of 8
       EXPECT_NEAR(full.tip / half.tip, 4.0, kThirdOrder) << large[n].name << full.tip;
       EXPECT_NEAR(full.axis / half.axis, 4.0, kThirdOrder) << large[n].name << full.axis;
@@ -148,13 +148,13 @@ TEST(PoseCompensation, IsThatOfTheLinearAxesWhereTheToolAxisHasNoError) {
         }
       }
     }
-    const Belief belief = belief_of(chain, errors);
-    const PoseCompensation all(belief, Iterations::one, kSigma0);
+    const IdentifiedMachine identified = identified_of(chain, errors);
+    const PoseCompensation all(identified, Iterations::one, kSigma0);
     for (int n = 0; n < 20; ++n) {
       const Joints Q = plant::random_joints(chain, random);
-      const Joints d = all.of_set_point(Sign::correct, Q);
+      const Joints d = all.of_setpoint(Action::compensate, Q);
       const Eigen::Vector3d linear =
-          set_point_displacement(belief, Sign::correct, Iterations::one, Q);
+          setpoint_displacement(identified, Action::compensate, Iterations::one, Q);
       EXPECT_LT((d.head<3>() - linear).norm(), kRounding) << name;
       EXPECT_LT(d.tail<2>().norm(), kRounding) << name;
     }
@@ -162,25 +162,25 @@ TEST(PoseCompensation, IsThatOfTheLinearAxesWhereTheToolAxisHasNoError) {
 }
 
 // A tool axis that errs about X, across what B can turn: only C could correct it.
-Belief tilted(double EAB) {
+IdentifiedMachine tilted(double EAB) {
   plant::ErrorModel errors;
   errors.component({Axis::A, Axis::B, false}) = plant::constant(EAB);
-  return belief_of(plant::make_chain(plant::parse_structure("[w C' B' X b Y Z t]")), errors);
+  return identified_of(plant::make_chain(plant::parse_structure("[w C' B' X b Y Z t]")), errors);
 }
 
 // At x sigma_0 from the singular direction, the share ((1 - x^2)/(1 + x^2))^2 of what C would have
 // to correct is left, and C turns by 4 x / (1 + x^2)^2 / sigma_0 of it: 1.3 / sigma_0 at most.
 TEST(PoseCompensation, LetsTheFreeAxisGiveWayNearASingularDirection) {
   const double error = 10.0 * urad;
-  const Belief belief = tilted(error);
-  const PoseCompensation all(belief, Iterations::converged, kSigma0);
+  const IdentifiedMachine identified = tilted(error);
+  const PoseCompensation all(identified, Iterations::converged, kSigma0);
   constexpr double kSecondOrder = 2e-3;  // error / sigma_0
   double before = 0.0, largest = 0.0;
   for (double x = -1.5; x <= 1.5; x += 0.01) {
     Joints Q = Joints::Zero();
     Q << 0.1, -0.05, 0.02, std::asin(x * kSigma0), 0.3;
-    const Joints d = all.of_set_point(Sign::correct, Q);
-    const Leftover left = all.leftover(Q, d);
+    const Joints d = all.of_setpoint(Action::compensate, Q);
+    const Residual left = all.residual(Q, d);
     const double xx = std::min(x * x, 1.0);
     const double share = std::pow((1.0 - xx) / (1.0 + xx), 2);
     const double turn = std::abs(x) < 1.0 ? 4.0 * x / std::pow(1.0 + xx, 2) : 1.0 / x;
@@ -202,13 +202,13 @@ TEST(PoseCompensation, LeavesWhatAMissingAxisWouldHaveToCorrect) {
   plant::ErrorModel errors;
   errors.location({Axis::A, Axis::B, true}) = 30.0 * urad;  // about X: out of reach for B
   errors.component({Axis::B, Axis::X, false}) = plant::polynomial({0.0, 200.0 * urad});
-  const Belief belief =
-      belief_of(plant::make_chain(plant::parse_structure("[w B' X b Y Z t]")), errors);
-  const PoseCompensation all(belief, Iterations::converged, kSigma0);
+  const IdentifiedMachine identified =
+      identified_of(plant::make_chain(plant::parse_structure("[w B' X b Y Z t]")), errors);
+  const PoseCompensation all(identified, Iterations::converged, kSigma0);
   Joints Q = Joints::Zero();
   Q << 0.2, 0.1, -0.1, 0.5, 0.0;
-  const Joints d = all.of_set_point(Sign::correct, Q);
-  const Leftover left = all.leftover(Q, d);
+  const Joints d = all.of_setpoint(Action::compensate, Q);
+  const Residual left = all.residual(Q, d);
   const double out_of_reach = 30.0 * urad * (1.0 - std::cos(0.5));
   constexpr double kSecondOrder = 0.01 * urad;
   EXPECT_LT(left.tip, kPoseTol);
@@ -220,10 +220,11 @@ TEST(PoseCompensation, LeavesWhatAMissingAxisWouldHaveToCorrect) {
 TEST(Uncorrectable, IsTheTiltOfTheToolOnLinearAxes) {
   for (const Case& one : cases(kErrorSize, 20)) {
     for (const Joints& Q : one.Q) {
-      const Leftover left = uncorrectable(one.belief, DisplacedAxes::linear, kSigma0, Q);
+      const Residual left = uncorrectable(one.identified, DisplacedAxes::linear, kSigma0, Q);
       Joints at = Q;
-      at.head<3>() += set_point_displacement(one.belief, Sign::correct, Iterations::converged, Q);
-      const Eigen::Vector3d dk = one.belief.model.error(at, one.belief.p_ST).dk_W;
+      at.head<3>() +=
+          setpoint_displacement(one.identified, Action::compensate, Iterations::converged, Q);
+      const Eigen::Vector3d dk = one.identified.model.error(at, one.identified.p_ST).dk_W;
       EXPECT_LE(left.tip, kPoseTol) << one.name;
       EXPECT_NEAR(left.axis, dk.norm(), 1e-3 * dk.norm()) << one.name;
     }
@@ -233,7 +234,7 @@ TEST(Uncorrectable, IsTheTiltOfTheToolOnLinearAxes) {
 TEST(Uncorrectable, IsNothingOnAllAxesFarFromASingularDirection) {
   for (const Case& one : cases(kErrorSize, 20)) {
     for (const Joints& Q : one.Q) {
-      const Leftover left = uncorrectable(one.belief, DisplacedAxes::all, kSigma0, Q);
+      const Residual left = uncorrectable(one.identified, DisplacedAxes::all, kSigma0, Q);
       EXPECT_LE(left.tip, kPoseTol) << one.name;
       EXPECT_LE(left.axis, kPoseTol) << one.name;
     }
@@ -250,9 +251,9 @@ TEST(Uncorrectable, IsWhatTheAxesGiveWayToNearASingularDirection) {
   const auto left_at = [&](const char* name, double sigma) {
     plant::ErrorModel errors;
     errors.component(*plant::error_name_of(name)) = plant::constant(kTilt);
-    const Belief belief = belief_of(chain, errors);
+    const IdentifiedMachine identified = identified_of(chain, errors);
     Joints Q(0.02, -0.03, 0.01, std::asin(sigma), 0.0);
-    return uncorrectable(belief, DisplacedAxes::all, kSigma0, Q);
+    return uncorrectable(identified, DisplacedAxes::all, kSigma0, Q);
   };
   for (const double x : {0.0, 0.3, 0.7, 1.0, 3.0}) {
     const double share = x < 1.0 ? std::pow((1.0 - x * x) / (1.0 + x * x), 2) : 0.0;
@@ -265,8 +266,10 @@ TEST(Uncorrectable, IsWhatTheAxesGiveWayToNearASingularDirection) {
 
 TEST(Uncorrectable, IsNotAskedOfWhatGeneratesErrors) {
   const Case one = cases(kErrorSize, 4).front();
-  EXPECT_FALSE(uncorrectable(one.belief, Sign::generate, DisplacedAxes::all, kSigma0, one.Q[0]));
-  EXPECT_TRUE(uncorrectable(one.belief, Sign::correct, DisplacedAxes::all, kSigma0, one.Q[0]));
+  EXPECT_FALSE(
+      uncorrectable(one.identified, Action::impose, DisplacedAxes::all, kSigma0, one.Q[0]));
+  EXPECT_TRUE(
+      uncorrectable(one.identified, Action::compensate, DisplacedAxes::all, kSigma0, one.Q[0]));
 }
 
 }  // namespace

@@ -22,23 +22,24 @@ const std::array<ParameterSpec, 2>& specs() {
 }
 
 // State of one run: none. The offset depends on the setpoint alone.
-class LimitedOffset final : public SetPointPart {
+class LimitedOffset final : public SetpointPart {
  public:
-  LimitedOffset(const Belief& identified, Sign sign, Iterations iterations, double max)
-      : identified_(identified), sign_(sign), iterations_(iterations), max_(max) {}
+  LimitedOffset(const IdentifiedMachine& identified, Action action, Iterations iterations,
+                double max)
+      : identified_(identified), action_(action), iterations_(iterations), max_(max) {}
 
-  SetPointEntry entry() const override { return {}; }  // after the feed-forward tap, no lag
+  SetpointEntry entry() const override { return {}; }  // after the feed-forward tap, no lag
 
   Joints offset(const Joints& Q_ref) const override {
-    const Eigen::Vector3d d = set_point_displacement(identified_, sign_, iterations_, Q_ref);
+    const Eigen::Vector3d d = setpoint_displacement(identified_, action_, iterations_, Q_ref);
     Joints out = Joints::Zero();
     out.head<3>() = d.cwiseMax(-max_).cwiseMin(max_);
     return out;
   }
 
  private:
-  Belief identified_;
-  Sign sign_;
+  IdentifiedMachine identified_;
+  Action action_;
   Iterations iterations_;
   double max_;  // m
 };
@@ -46,23 +47,24 @@ class LimitedOffset final : public SetPointPart {
 // Constant parameters, shared by all runs of the case.
 class Setpoint final : public Strategy {
  public:
-  Setpoint(const Belief& identified, Sign sign, Iterations iterations, double max)
-      : identified_(identified), sign_(sign), iterations_(iterations), max_(max) {}
+  Setpoint(const IdentifiedMachine& identified, Action action, Iterations iterations, double max)
+      : identified_(identified), action_(action), iterations_(iterations), max_(max) {}
 
-  std::unique_ptr<SetPointPart> set_point() const override {
-    return std::make_unique<LimitedOffset>(identified_, sign_, iterations_, max_);
+  std::unique_ptr<SetpointPart> setpoint() const override {
+    return std::make_unique<LimitedOffset>(identified_, action_, iterations_, max_);
   }
 
  private:
-  Belief identified_;
-  Sign sign_;
+  IdentifiedMachine identified_;
+  Action action_;
   Iterations iterations_;
   double max_;  // m
 };
 
 // Numbers arrive in SI, checked against the table above.
-std::unique_ptr<Strategy> make(const Parameters& p, Sign sign, const Belief& identified) {
-  return std::make_unique<Setpoint>(identified, sign, iterations_of(p), p.number("max_um"));
+std::unique_ptr<Strategy> make(const Parameters& p, Action action,
+                               const IdentifiedMachine& identified) {
+  return std::make_unique<Setpoint>(identified, action, iterations_of(p), p.number("max_um"));
 }
 
 }  // namespace

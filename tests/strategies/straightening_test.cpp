@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "strategies/straightening.h"
-#include "tests/strategies/beliefs.h"
+#include "tests/strategies/identified_machines.h"
 
 namespace servomill::strategies::straightening_test {
 namespace {
@@ -11,17 +11,17 @@ constexpr double kRounding = 1e-12;  // m, rad; some products at 1 m
 
 // A line on which both rotary axes turn, 20 deg away from the vertical and more.
 struct Line {
-  Belief belief = belief_in({});
-  Joints Q_0 = belief.reference, Q_1 = belief.reference;
+  IdentifiedMachine identified = identified_with({});
+  Joints Q_0 = identified.reference, Q_1 = identified.reference;
   Move move;
 
   explicit Line(double h = 1.0) {
-    belief.lower.head<3>().setConstant(-0.5);
-    belief.upper.head<3>().setConstant(0.5);
+    identified.lower.head<3>().setConstant(-0.5);
+    identified.upper.head<3>().setConstant(0.5);
     Q_1 += h * (Joints() << 4.0 * mm, -3.0 * mm, 2.0 * mm, 2.0 * deg, 3.0 * deg).finished();
     move.line = 7;
-    move.end_machine = belief.layout.words(Q_1);
-    move.end = move.end_machine - belief.layout.words(Joints::Constant(1e-3));
+    move.end_machine = identified.layout.words(Q_1);
+    move.end = move.end_machine - identified.layout.words(Joints::Constant(1e-3));
     move.s_begin = 0.1;
     move.s_end = 0.1 + (Q_1 - Q_0).head<3>().norm();
     move.feed = 0.02;
@@ -29,7 +29,7 @@ struct Line {
   }
 
   ToolPose pose(const Joints& Q) const {
-    return plant::forward(belief.model.chain(), Q, belief.p_ST);
+    return plant::forward(identified.model.chain(), Q, identified.p_ST);
   }
 
   // Largest distance of the tip from the chord at equal t, over all blocks (m).
@@ -38,7 +38,7 @@ struct Line {
     double worst = 0.0, t = 0.0;
     Joints Q = Q_0;
     for (const Move& block : blocks) {
-      const Joints next = belief.layout.joints(block.end_machine);
+      const Joints next = identified.layout.joints(block.end_machine);
       const double t_end = (block.s_end - move.s_begin) / (move.s_end - move.s_begin);
       for (double f = 0.0; f <= 1.0; f += 0.05) {
         const Eigen::Vector3d tip = pose(Q + f * (next - Q)).p_WT;
@@ -61,7 +61,7 @@ std::vector<Move> rewritten(const Line& line, const char* strategy, const char* 
   if (std::string_view(strategy) != "exact") {
     parameters.set("amplitude", std::string_view(amplitude));
   }
-  return entry.make(parameters, Sign::correct, line.belief)->rewrite({line.move});
+  return entry.make(parameters, Action::compensate, line.identified)->rewrite({line.move});
 }
 
 TEST(Straightening, HarmonicLeavesASeventeenthParabolicMuchLess) {
@@ -77,7 +77,7 @@ TEST(Straightening, HarmonicLeavesASeventeenthParabolicMuchLess) {
 // Deviation of a block's linear axes from the line, over 4 t (1 - t): the amplitude at its end.
 Eigen::Vector3d amplitude_at(const Line& line, const Move& block) {
   const double t = (block.s_end - line.move.s_begin) / (line.move.s_end - line.move.s_begin);
-  const Joints Q = line.belief.layout.joints(block.end_machine);
+  const Joints Q = line.identified.layout.joints(block.end_machine);
   const Joints straight = line.Q_0 + t * (line.Q_1 - line.Q_0);
   return (straight - Q).head<3>() / (4.0 * t * (1.0 - t));
 }
@@ -106,13 +106,13 @@ TEST(Straightening, WhichFrameLeavesLessDependsOnTheLine) {
 
 TEST(Straightening, RefusesAnAmplitudeOfTheWorkpieceForPostedLocations) {
   try {
-    rewritten(Line(), "harmonic", "", 0.0, "posted_location", "workpiece");
+    rewritten(Line(), "harmonic", "", 0.0, "post_processed_location", "workpiece");
     FAIL() << "was not refused";
   } catch (const InputError& error) {
     EXPECT_STREQ(
         error.what(),
         "<input>: error: amplitude = \"workpiece\" needs definition = \"joint_interpolation\": "
-        "posted locations are compared in the machine");
+        "post-processed locations are compared in the machine");
   }
 }
 
@@ -127,15 +127,15 @@ TEST(Straightening, ExactKeepsItsTolerance) {
 
 TEST(Straightening, PostedLocationAsPublishedLeavesTheTipWhereItWas) {
   const Line line;
-  const auto blocks = rewritten(line, "harmonic", "", 0.0, "posted_location");
+  const auto blocks = rewritten(line, "harmonic", "", 0.0, "post_processed_location");
   EXPECT_GT(blocks.size(), 30u);
   EXPECT_GT(line.bend(blocks) / line.bend({line.move}), 0.9);
 }
 
 TEST(Straightening, ToleranceOnBothSidesOfTheErrorOfTheModel) {
   const Line line;
-  const plant::InverseKinematics inverse = nominal_inverse(line.belief);
-  const plant::PostedSegment segment(inverse, line.belief.p_ST, line.Q_0, line.Q_1);
+  const plant::InverseKinematics inverse = nominal_inverse(line.identified);
+  const plant::PostProcessedSegment segment(inverse, line.identified.p_ST, line.Q_0, line.Q_1);
   const double a = segment.error(plant::NonlinearError::joint_interpolation, 0.5)->norm();
   for (const char* strategy : {"harmonic", "parabolic"}) {
     EXPECT_EQ(rewritten(line, strategy, "tolerance_um", 1.0001 * a).size(), 1u);
@@ -167,7 +167,7 @@ TEST(Straightening, BlocksShareLineLengthAndTimeOfTheMove) {
 TEST(Straightening, MovesOfLinearOrOfRotaryAxesAloneAndRapidsStay) {
   for (const char* strategy : {"exact", "harmonic", "parabolic"}) {
     Line linear;
-    linear.move.end_machine.tail<3>() = linear.belief.layout.words(linear.Q_0).tail<3>();
+    linear.move.end_machine.tail<3>() = linear.identified.layout.words(linear.Q_0).tail<3>();
     Line rotary;
     rotary.move.end_machine.head<3>() = rotary.Q_0.head<3>();
     Line rapid;
@@ -200,7 +200,7 @@ TEST(Straightening, RefusesArcsOnWhichRotaryAxesTurn) {
 TEST(Straightening, RefusesLinesWithoutAStraightWay) {
   Line line;  // one turn of the table more than the way needs
   line.Q_1[4] += 360.0 * deg;
-  line.move.end_machine = line.belief.layout.words(line.Q_1);
+  line.move.end_machine = line.identified.layout.words(line.Q_1);
   EXPECT_EQ(fault_of(line, "exact"),
             "<input>:7: error: no straight way of the tool goes from these positions of the axes "
             "to those; "

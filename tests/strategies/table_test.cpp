@@ -8,7 +8,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "strategies/compensation.h"
-#include "tests/strategies/beliefs.h"
+#include "tests/strategies/identified_machines.h"
 
 namespace servomill::strategies::table_test {
 namespace {
@@ -19,24 +19,25 @@ using plant::operator""_err;
 constexpr double kRounding = 1e-15;  // m, of values of some 100 um
 
 struct Options {
-  std::string form = "lattice", axis = "all", output = "all", at_reference = "error";
+  std::string layout = "grid", base_axis = "all", compensated_axis = "all",
+              zero_at_reference = "false";
   double spacing = 50.0 * mm, max_step_ratio = 1.0;
 };
 
 Parameters parameters(const Options& o) {
   Parameters p;
-  p.set("form", o.form);
-  p.set("axis", o.axis);
-  p.set("output", o.output);
-  p.set("at_reference", o.at_reference);
+  p.set("layout", o.layout);
+  p.set("base_axis", o.base_axis);
+  p.set("compensated_axis", o.compensated_axis);
+  p.set("zero_at_reference", o.zero_at_reference);
   p.set("spacing_mm", o.spacing);
-  p.set("grid", "free");
+  p.set("spacing_rule", "free");
   p.set("from_mm", "travel");
   p.set("to_mm", "travel");
   p.set("max_points", "auto");
   p.set("max_step_ratio", o.max_step_ratio);
-  p.set("entry", "position_command");
-  p.set("response_time_ms", 40.0 * ms);
+  p.set("injection_point", "position_command");
+  p.set("time_constant_ms", 40.0 * ms);
   p.set("dead_time_ms", 0.0);
   p.set("update_period_ms", 0.0);
   p.set("iterations", "1");
@@ -45,31 +46,33 @@ Parameters parameters(const Options& o) {
 
 class Made {
  public:
-  Made(const Belief& belief, const Options& options)
-      : strategy_(table_entry().make(parameters(options), Sign::generate, belief)),
-        part_(strategy_->set_point()),
-        belief_(belief) {}
+  Made(const IdentifiedMachine& identified, const Options& options)
+      : strategy_(table_entry().make(parameters(options), Action::impose, identified)),
+        part_(strategy_->setpoint()),
+        identified_(identified) {}
   Vector3d at(double x, double y, double z) const {
-    Joints Q = belief_.reference;
+    Joints Q = identified_.reference;
     Q.head<3>() << x, y, z;
     return part_->offset(Q).head<3>();
   }
-  const SetPointPart& part() const { return *part_; }
+  const SetpointPart& part() const { return *part_; }
 
  private:
   std::unique_ptr<Strategy> strategy_;
-  std::unique_ptr<SetPointPart> part_;
-  const Belief& belief_;
+  std::unique_ptr<SetpointPart> part_;
+  const IdentifiedMachine& identified_;
 };
 
-Vector3d wanted(const Belief& belief, double x, double y, double z) {
-  Joints Q = belief.reference;
+Vector3d wanted(const IdentifiedMachine& identified, double x, double y, double z) {
+  Joints Q = identified.reference;
   Q.head<3>() << x, y, z;
-  return set_point_displacement(belief, Sign::generate, Iterations::one, Q);
+  return setpoint_displacement(identified, Action::impose, Iterations::one, Q);
 }
 
 // Three axes of +-200 mm, which is a multiple of the spacings used here.
-Belief three_axes(const plant::ErrorModel& errors) { return belief_in(errors, "[w b X Y Z t]"); }
+IdentifiedMachine three_axes(const plant::ErrorModel& errors) {
+  return identified_with(errors, "[w b X Y Z t]");
+}
 
 // Linear functions of x, y, z, and their products by the lever of angles.
 plant::ErrorModel trilinear_errors() {
@@ -86,27 +89,27 @@ plant::ErrorModel trilinear_errors() {
 constexpr double kSquaredAngles = 1e-12;  // m: (3e-6 x 0.2 m)^2 0.3 m and the like
 
 TEST(Lattice, IsExactForTrilinearErrors) {
-  const Belief belief = three_axes(trilinear_errors());
-  const Made lattice(belief, {.spacing = 100 * mm}), lines(belief, {.form = "lines"});
+  const IdentifiedMachine identified = three_axes(trilinear_errors());
+  const Made grid(identified, {.spacing = 100 * mm}), lines(identified, {.layout = "axis_tables"});
   plant::Uniform random(3);
   double lines_miss = 0.0;
   for (int n = 0; n < 500; ++n) {
     const double x = 0.2 * random(), y = 0.2 * random(), z = 0.2 * random();
-    EXPECT_LE((lattice.at(x, y, z) - wanted(belief, x, y, z)).norm(), kSquaredAngles);
-    lines_miss = std::max(lines_miss, (lines.at(x, y, z) - wanted(belief, x, y, z)).norm());
+    EXPECT_LE((grid.at(x, y, z) - wanted(identified, x, y, z)).norm(), kSquaredAngles);
+    lines_miss = std::max(lines_miss, (lines.at(x, y, z) - wanted(identified, x, y, z)).norm());
   }
   EXPECT_GT(lines_miss, 50 * nm);  // the products stand on no line
 }
 
 TEST(Lattice, HoldsTheErrorsAtItsPointsAndTheirConstantBeyond) {
-  const Belief belief = three_axes(trilinear_errors());
-  const Made lattice(belief, {});
+  const IdentifiedMachine identified = three_axes(trilinear_errors());
+  const Made grid(identified, {});
   for (const double x : {-0.2, -0.05, 0.2}) {
     for (const double y : {-0.2, 0.1, 0.2}) {
-      EXPECT_LE((lattice.at(x, y, 0.15) - wanted(belief, x, y, 0.15)).norm(), kRounding);
+      EXPECT_LE((grid.at(x, y, 0.15) - wanted(identified, x, y, 0.15)).norm(), kRounding);
     }
   }
-  EXPECT_EQ(lattice.at(0.3, -0.9, 0.0), lattice.at(0.2, -0.2, 0.0));
+  EXPECT_EQ(grid.at(0.3, -0.9, 0.0), grid.at(0.2, -0.2, 0.0));
 }
 
 // A sine is missed most at a crest in the middle of a cell: A (1 - cos(w h / 2)), of second order.
@@ -120,13 +123,13 @@ TEST(Lattice, ConvergesWithTheSquareOfItsSpacing) {
     const double phase = 0.5 * std::numbers::pi - kOmega * 0.5 * h;
     errors.component("EXX"_err) = plant::harmonic(kAmplitude, kPeriod, phase);
     errors.component("EXY"_err) = plant::harmonic(kAmplitude, kPeriod, phase);
-    const Belief belief = three_axes(errors);
-    const Made plane(belief, {.axis = "XY", .spacing = h});
+    const IdentifiedMachine identified = three_axes(errors);
+    const Made plane(identified, {.base_axis = "XY", .spacing = h});
     double most = 0.0;
     for (int i = 0; i <= 10; ++i) {
       for (int k = 0; k <= 10; ++k) {
         const double x = 0.1 * i * h, y = 0.1 * k * h;
-        most = std::max(most, (plane.at(x, y, 0.0) - wanted(belief, x, y, 0.0)).norm());
+        most = std::max(most, (plane.at(x, y, 0.0) - wanted(identified, x, y, 0.0)).norm());
       }
     }
     EXPECT_NEAR(most, 2.0 * kAmplitude * (1.0 - std::cos(0.5 * kOmega * h)), 1e-13) << h;
@@ -139,33 +142,34 @@ TEST(Lattice, ConvergesWithTheSquareOfItsSpacing) {
 
 // EYX, EZX: straightness of X, the sag table of X over Y and Z.
 TEST(Table, MovesTheAxesThatItIsAskedToMove) {
-  const Belief belief = three_axes(trilinear_errors());
+  const IdentifiedMachine identified = three_axes(trilinear_errors());
   plant::Uniform random(5);
-  const auto made = [&](const char* axis, const char* output, const char* at_reference = "error") {
-    return Made(belief, {.form = "lines",
-                         .axis = axis,
-                         .output = output,
-                         .at_reference = at_reference,
-                         .spacing = 100 * mm});
+  const auto made = [&](const char* axis, const char* output,
+                        const char* zero_at_reference = "false") {
+    return Made(identified, {.layout = "axis_tables",
+                             .base_axis = axis,
+                             .compensated_axis = output,
+                             .zero_at_reference = zero_at_reference,
+                             .spacing = 100 * mm});
   };
   const Made all = made("all", "all"), own = made("all", "own"), others = made("all", "others");
-  const Made Y_over_X = made("X", "Y"), Y_over_Z = made("Z", "Y", "zero"), Y = made("XZ", "Y");
-  const Joints& from = belief.reference;
+  const Made Y_over_X = made("X", "Y"), Y_over_Z = made("Z", "Y", "true"), Y = made("XZ", "Y");
+  const Joints& from = identified.reference;
   for (int n = 0; n < 100; ++n) {
     const double x = 0.2 * random(), y = 0.2 * random(), z = 0.2 * random();
     // each axis over itself
-    EXPECT_NEAR(own.at(x, y, z).x(), wanted(belief, x, from[1], from[2]).x(), kSquaredAngles);
-    EXPECT_NEAR(own.at(x, y, z).y(), wanted(belief, from[0], y, from[2]).y(), kSquaredAngles);
+    EXPECT_NEAR(own.at(x, y, z).x(), wanted(identified, x, from[1], from[2]).x(), kSquaredAngles);
+    EXPECT_NEAR(own.at(x, y, z).y(), wanted(identified, from[0], y, from[2]).y(), kSquaredAngles);
     // one axis over another
     const Vector3d sag = Y_over_X.at(x, y, z);
-    EXPECT_NEAR(sag.y(), wanted(belief, x, from[1], from[2]).y(), kSquaredAngles);
+    EXPECT_NEAR(sag.y(), wanted(identified, x, from[1], from[2]).y(), kSquaredAngles);
     EXPECT_EQ(sag.x(), 0.0);
     EXPECT_EQ(sag.z(), 0.0);
     // tables of one axis sum up
     EXPECT_LE((sag + Y_over_Z.at(x, y, z) - Y.at(x, y, z)).norm(), kRounding);
   }
   // what stands at the reference is held once, however the work is divided
-  const Vector3d there = wanted(belief, from[0], from[1], from[2]);
+  const Vector3d there = wanted(identified, from[0], from[1], from[2]);
   for (const Made* made_of_all : {&all, &own, &others}) {
     EXPECT_LE((made_of_all->at(from[0], from[1], from[2]) - there).norm(), kSquaredAngles);
   }
@@ -173,15 +177,15 @@ TEST(Table, MovesTheAxesThatItIsAskedToMove) {
 }
 
 TEST(Lattice, EntersTheNcAsOtherTablesDo) {
-  const Belief belief = three_axes(trilinear_errors());
-  const Made lattice(belief, {});
-  EXPECT_EQ(lattice.part().entry().entry, EntryPoint::position_command);
-  EXPECT_EQ(lattice.part().entry().response_time, 40.0 * ms);
+  const IdentifiedMachine identified = three_axes(trilinear_errors());
+  const Made grid(identified, {});
+  EXPECT_EQ(grid.part().entry().entry, EntryPoint::position_command);
+  EXPECT_EQ(grid.part().entry().time_constant, 40.0 * ms);
 }
 
-std::string fault_of(const Belief& belief, const Options& options) {
+std::string fault_of(const IdentifiedMachine& identified, const Options& options) {
   try {
-    const Made made(belief, options);
+    const Made made(identified, options);
   } catch (const InputError& error) {
     return error.faults().front().message;
   }
@@ -189,30 +193,33 @@ std::string fault_of(const Belief& belief, const Options& options) {
 }
 
 TEST(Table, RefusesWhatTheNcWouldRefuse) {
-  const Belief belief = three_axes(trilinear_errors());
-  EXPECT_EQ(fault_of(belief, {.spacing = 10 * mm}),
-            "lattice over X, Y, Z: 41 x 41 x 41 = 68921 points; the NC accepts at most 15625 "
+  const IdentifiedMachine identified = three_axes(trilinear_errors());
+  EXPECT_EQ(fault_of(identified, {.spacing = 10 * mm}),
+            "grid over X, Y, Z: 41 x 41 x 41 = 68921 points; the NC accepts at most 15625 "
             "(max_points); use a larger spacing_mm or from_mm and to_mm");
-  EXPECT_EQ(fault_of(belief, {.form = "lines", .spacing = 1 * mm}),
+  EXPECT_EQ(fault_of(identified, {.layout = "axis_tables", .spacing = 1 * mm}),
             "table over X: 401 points; the NC accepts at most 256 (max_points); use a larger "
             "spacing_mm or from_mm and to_mm");
-  EXPECT_EQ(fault_of(belief, {.output = "own"}),
-            "output = \"own\" belongs to form = \"lines\"; a lattice runs over several axes");
-  EXPECT_EQ(fault_of(belief, {.max_step_ratio = 20e-6}),
-            "lattice over X, Y, Z: slope 0.03 um/mm at X = -200.000 mm; the NC accepts at most "
+  EXPECT_EQ(fault_of(identified, {.compensated_axis = "own"}),
+            "compensated_axis = \"own\" belongs to layout = \"axis_tables\"; a grid runs over "
+            "several axes");
+  EXPECT_EQ(fault_of(identified, {.max_step_ratio = 20e-6}),
+            "grid over X, Y, Z: slope 0.03 um/mm at X = -200.000 mm; the NC accepts at most "
             "0.02 um/mm (max_step_ratio)");
-  const Belief plane = belief_in({}, "[w X' b Z t]");
-  EXPECT_EQ(fault_of(plane, {.axis = "XY"}), "axis = \"XY\"; the machine has no such axis");
-  EXPECT_EQ(fault_of(plane, {.output = "Y"}), "output = \"Y\"; the machine has no such axis");
+  const IdentifiedMachine plane = identified_with({}, "[w X' b Z t]");
+  EXPECT_EQ(fault_of(plane, {.base_axis = "XY"}),
+            "base_axis = \"XY\"; the machine has no such axis");
+  EXPECT_EQ(fault_of(plane, {.compensated_axis = "Y"}),
+            "compensated_axis = \"Y\"; the machine has no such axis");
 }
 
 TEST(Table, KnowsWhereItEnds) {
-  const Belief belief = three_axes(trilinear_errors());
-  const auto strategy =
-      table_entry().make(parameters({.form = "lines", .axis = "XZ", .spacing = 150.0 * mm}),
-                         Sign::generate, belief);  // travel of +-200 mm: three intervals
+  const IdentifiedMachine identified = three_axes(trilinear_errors());
+  const auto strategy = table_entry().make(
+      parameters({.layout = "axis_tables", .base_axis = "XZ", .spacing = 150.0 * mm}),
+      Action::impose, identified);  // travel of +-200 mm: three intervals
   const auto ends = [&](double x, double y, double z) {
-    Joints Q = belief.reference;
+    Joints Q = identified.reference;
     Q.head<3>() << x * mm, y * mm, z * mm;
     std::vector<std::pair<int, double>> out;
     for (const BeyondTable& end : strategy->beyond_tables(Q)) out.emplace_back(end.joint, end.end);
@@ -220,7 +227,7 @@ TEST(Table, KnowsWhereItEnds) {
   };
   using Ends = std::vector<std::pair<int, double>>;
   EXPECT_EQ(ends(-200.0, 300.0, 250.0), Ends{});  // no table runs over Y
-  const double first = belief.lower[0], last = belief.lower[2] + 3 * (150.0 * mm);
+  const double first = identified.lower[0], last = identified.lower[2] + 3 * (150.0 * mm);
   EXPECT_EQ(ends(-200.001, 0.0, 250.001), (Ends{{0, first}, {2, last}}));
 }
 

@@ -25,8 +25,8 @@ PROBES = """
 max_size_GB = 100
 
 [cmm]
-clearance_mm = 40.0
-depth_mm = 40.0
+approach_mm = 40.0
+search_mm = 40.0
 
 [[probe]]
 name = "first_pass"

@@ -105,7 +105,7 @@ SCENARIO = """\
 # A long program in four cases; written by tests/tools/mould_program.py.
 title   = "A long finishing program"
 machine = "{machine}"
-truth   = "measured"
+machine_errors = "measured"
 
 [program]
 file = "mould.ngc"
@@ -148,13 +148,13 @@ name = "feedback_lead"
 [[case.strategy]]
 type = "feedback"
 model = "measured"
-lead_ms = "auto"
+extrapolation_time_ms = "auto"
 
 [[quantity]]
-name = "tool_tip_deviation"
+name = "tcp_deviation"
 
 [[quantity]]
-name = "tool_tip_deviation"
+name = "tcp_deviation"
 statistic = "rms"
 
 [[quantity]]
@@ -166,7 +166,7 @@ axis = "X"
 
 [[quantity]]
 name = "tool_difference"
-base = "as_it_is"
+baseline = "as_it_is"
 cases = ["table", "feedback", "feedback_lead"]
 
 [[quantity]]

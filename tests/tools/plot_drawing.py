@@ -108,7 +108,7 @@ class Drawing(WithFiles):
         done = plot(path, "-o", self.out, "--format", "svg", "--figures", "maps")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         drawn = (self.out / "two-maps.svg").read_text()
-        for text in ("feed_forward", "program.feed_override", "imposed curve residual"):
+        for text in ("feed_forward", "program.feed_override", "imposed-error residual"):
             self.assertIn(text, drawn)
 
     def test_one_number_and_texts_give_curves(self):
@@ -126,7 +126,7 @@ class Drawing(WithFiles):
                                          'machine.axis.Y.v_max=["10 m/min","20 m/min","30 m/min"]}]')
         with results.open_result(path) as sweep:
             self.assertEqual([(one.key, one.others) for one in sweep.varied(sampled=False)],
-                             [("program.feed_override", 0), ("case.table.strategy.entry", 0), ("machine.axis.X.v_max", 1)])
+                             [("program.feed_override", 0), ("case.table.strategy.injection_point", 0), ("machine.axis.X.v_max", 1)])
         done = plot(path, "-o", self.out, "--format", "svg", "--figures", "maps,curves")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         maps, curves = ((self.out / f"three-{name}.svg").read_text() for name in ("maps", "curves"))
@@ -137,7 +137,7 @@ class Drawing(WithFiles):
     def test_samples_give_clouds_and_histograms_and_say_what_failed(self):
         path = self.sweep_of("random.h5", 'samples={design="random",count=20},'
                                           'errors.imposed.EYX.harmonic.amplitude_um={normal=[100.0,10.0]},'
-                                          'case.table.strategy.response_time_ms={normal=[10.0,10.0]}')
+                                          'case.table.strategy.time_constant_ms={normal=[10.0,10.0]}')
         with results.open_result(path) as sweep:
             self.assertEqual([one.sampled for one in sweep.parameters], [True, True])
             lost = np.count_nonzero(~sweep.done)

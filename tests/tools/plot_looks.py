@@ -14,7 +14,7 @@ class Looks(WithFiles):
         class File:
             scenario = {"case": [
                 {"name": "north", "strategy": [{"type": "gcode"}, {"type": "feedback"}]},
-                {"name": "east", "strategy": [{"type": "feedback", "lead_ms": "auto"}]},
+                {"name": "east", "strategy": [{"type": "feedback", "extrapolation_time_ms": "auto"}]},
                 {"name": "plain", "strategy": [{"type": "none"}]},
                 {"name": "table", "strategy": [{"type": "gcode"}]}]}
             strategies = results.ResultFile.strategies

@@ -15,7 +15,7 @@ class Servo(WithFiles):
 
     def test_draws_what_the_file_holds(self):
         bode, step = self.out / "y.h5", self.out / "z.h5"
-        few = ["--points", 5, "--from", 10, "-q"]
+        few = ["--points", 5, "--f-min", 10, "-q"]
         servomill("bode", HERE / "side_and_contour.toml", "--axis", "Y,B", "--loop", "all", *few, "-o", bode)
         servomill("step", HERE / "side_and_contour.toml", "--axis", "Z", "-q", "-o", step)
         done = plot(bode, step, "-o", self.out / "figures")
@@ -50,7 +50,7 @@ class Servo(WithFiles):
 
     def test_measured_is_exact_where_the_encoder_resolves_it(self):
         path = self.out / "y.h5"
-        servomill("bode", HERE / "side_and_contour.toml", "--axis", "Y", "--points", 4, "--from", 5, "--to", 100, "-q",
+        servomill("bode", HERE / "side_and_contour.toml", "--axis", "Y", "--points", 4, "--f-min", 5, "--f-max", 100, "-q",
                   "-o", path)
         with results.open_result(path) as responses:
             curve = responses.axes["Y"]["position_closed"]
@@ -80,7 +80,7 @@ class Agreement(WithFiles):
                     mine[one.case.name, axis] = one.largest()
             for case, one in zip(run.others(), notches.notches(run)):
                 mine[case.name, "X"] = one.largest()
-        rows = self.rows(self.side, "imposed_curve_residual")
+        rows = self.rows(self.side, "imposed_error_residual")
         self.assertEqual(len(rows), 9)
         for row in rows:
             self.assertAlmostEqual(mine[row["case"], row["axis"]], row["value"], delta=AGREE)
@@ -99,10 +99,10 @@ class Agreement(WithFiles):
                 self.assertAlmostEqual(np.nanmax(np.abs(found[row["case"]][2][:, 2])),
                                        row["value"], delta=AGREE)
 
-    def test_radial_deviations_of_the_circle(self):
+    def test_radial_errors_of_the_circle(self):
         with results.Run(self.side) as run:
             turns = circular.turns_of(run)
-        for quantity, extreme in (("radial_deviation_max", np.max), ("radial_deviation_min", np.min)):
+        for quantity, extreme in (("radial_error_max", np.max), ("radial_error_min", np.min)):
             rows = self.rows(self.side, quantity)
             self.assertEqual(len(rows), 4)
             for row in rows:

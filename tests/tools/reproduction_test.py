@@ -54,7 +54,7 @@ def promised(scenario):
 
 def row(**changes):
     return dataclasses.replace(
-        rows.Row(id="x", paper="G", group="g", quantity="q", printed="p", unit="um", why="w", kind="predicted", here={"run": "r"},
+        rows.Row(id="x", paper="G", group="g", quantity="q", printed="p", unit="um", why="w", basis="predicted", here={"run": "r"},
                  value=2.0, tolerance=0.5, tolerance_reason="t"), **changes)
 
 
@@ -116,21 +116,21 @@ class Verdicts(unittest.TestCase):
         for one, value, wanted in (
                 (row(), 2.5, verdicts.REPRODUCED),
                 (row(), 2.51, verdicts.NOT_REPRODUCED),
-                (row(kind="chosen"), 2.0, verdicts.WITHIN),
-                (row(kind="chosen"), 2.51, verdicts.NOT_REPRODUCED),
-                (row(kind="identified"), 2.0, verdicts.IDENTIFIED),
-                (row(kind="identified"), 2.51, verdicts.NOT_REPRODUCED),
-                (row(kind="identified", meaning="below", tolerance=0.0), 1.0, verdicts.IDENTIFIED),
-                (row(kind="built in"), 2.0, verdicts.BUILT_IN),
-                (row(kind="built in"), 1.49, verdicts.NOT_REPRODUCED),
+                (row(basis="assumed"), 2.0, verdicts.WITHIN),
+                (row(basis="assumed"), 2.51, verdicts.NOT_REPRODUCED),
+                (row(basis="fitted"), 2.0, verdicts.IDENTIFIED),
+                (row(basis="fitted"), 2.51, verdicts.NOT_REPRODUCED),
+                (row(basis="fitted", meaning="below", tolerance=0.0), 1.0, verdicts.IDENTIFIED),
+                (row(basis="built_in"), 2.0, verdicts.BUILT_IN),
+                (row(basis="built_in"), 1.49, verdicts.NOT_REPRODUCED),
                 (row(meaning="below", tolerance=0.0), 2.0, verdicts.WITHIN),
                 (row(meaning="below", tolerance=0.0), 2.01, verdicts.NOT_REPRODUCED),
                 (row(meaning="below", tolerance=0.0), -2.0, verdicts.WITHIN),
                 (row(meaning="below", tolerance=0.0), -2.01, verdicts.NOT_REPRODUCED),
                 (row(meaning="above", tolerance=0.0), 1.99, verdicts.NOT_REPRODUCED),
                 (row(meaning="between", value=None, limits=(1.0, 3.0), tolerance=0.0), 3.0, verdicts.WITHIN),
-                (row(kind="given", tolerance=0.0), 2.0, verdicts.GIVEN),
-                (row(kind="given", tolerance=0.0), 2.1, verdicts.NOT_REPRODUCED),
+                (row(basis="given", tolerance=0.0), 2.0, verdicts.GIVEN),
+                (row(basis="given", tolerance=0.0), 2.1, verdicts.NOT_REPRODUCED),
                 (row(open=True), 0.0, verdicts.NOT_EXPLAINED),
                 (row(open=True), 2.0, verdicts.REPRODUCED),
                 (row(lacks="its unit"), 2.0, verdicts.NOT_COMPARED),
@@ -142,7 +142,7 @@ class Verdicts(unittest.TestCase):
 
     def test_only_predictions_are_reproduced(self):
         for one in rows.read():
-            if one.kind != "predicted" and not one.lacks:
+            if one.basis != "predicted" and not one.lacks:
                 self.assertNotEqual(verdicts.verdict(one, sum(_inside(one)) / 2), verdicts.REPRODUCED, one.id)
 
     def test_no_row_accepts_a_factor_of_three(self):
@@ -397,8 +397,8 @@ class Parts(unittest.TestCase):
             group["deviation"] = (moved * normals).sum(axis=1)
             group["measured"] = np.tile(group["deviation"][:], (3, 1))
             group["sigma"] = np.zeros(len(points))
-            group["fit_place"] = points
-            group["fit_deviation"] = (form * normals).sum(axis=1)[:, None] * normals
+            group["aligned_position"] = points
+            group["aligned_deviation"] = (form * normals).sum(axis=1)[:, None] * normals
 
     def test_plane_is_turned_as_it_was_cut(self):
         feature = parts.probed(self.run_)["top"]["generated"]
@@ -427,7 +427,7 @@ class Parts(unittest.TestCase):
     def test_without_a_nominal_part_there_is_no_best_fit(self):
         def forget(_, features):
             for feature in features.values():
-                del feature["fit_place"], feature["fit_deviation"]
+                del feature["aligned_position"], feature["aligned_deviation"]
 
         def forget_with_stl(file, features):
             forget(file, features)
@@ -450,7 +450,7 @@ class Parts(unittest.TestCase):
             for point in points:
                 for name in ("deviation", "measured", "sigma"):
                     features["circle"][name][..., point] = np.nan
-                for name in ("fit_place", "fit_deviation"):
+                for name in ("aligned_position", "aligned_deviation"):
                     features["circle"][name][point] = np.nan
         return self.changed(change)
 
@@ -521,12 +521,12 @@ class Faults(unittest.TestCase):
                 rows.read(path)
         self.assertEqual(str(fault.exception).replace(str(path), "rows.toml"), message)
 
-    GOOD = ('[[row]]\nid = "a"\npaper = "G"\ngroup = "g"\nquantity = "q"\nprinted = "p"\nunit = "um"\nwhy = "w"\nkind = "predicted"\n'
+    GOOD = ('[[row]]\nid = "a"\npaper = "G"\ngroup = "g"\nquantity = "q"\nprinted = "p"\nunit = "um"\nwhy = "w"\nbasis = "predicted"\n'
             'here = {}\nvalue = 1.0\ntolerance_reason = "t"\n')
 
     def test_say_which_row(self):
-        self.fails(self.GOOD.replace('"predicted"', '"guessed"'), "rows.toml: row a: error: kind = 'guessed'; must be one of identified, "
-                   "predicted, chosen, built in, given")
+        self.fails(self.GOOD.replace('"predicted"', '"guessed"'), "rows.toml: row a: error: basis = 'guessed'; must be one of fitted, "
+                   "predicted, assumed, built_in, given")
         self.fails(self.GOOD.replace("value = 1.0\n", ""), "rows.toml: row a: error: value is missing; where the paper gives none, "
                    "lacks must say what it lacks")
         self.fails(self.GOOD.replace("value = 1.0\n", 'meaning = "below"\nvalue = -1.0\n'),

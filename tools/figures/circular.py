@@ -133,7 +133,7 @@ def draw(run):
                        for name, of_case in turns.items()})
     rows = -(-len(turns) // columns)
     both, mean = (numbers(run, quantity) for quantity in (
-        "bidirectional_circular_deviation", "mean_bidirectional_radial_deviation"))
+        "bidirectional_circular_error", "mean_bidirectional_radial_error"))
     listed = colours if both or mean else {}     # below each picture
     height = WIDTH * (top() - bottom(listed)) / (2.0 * SIDE) + 0.3     # with the title
     figure, strip, grid = style.panels([1.0] * rows, (WIDTH * columns + 0.1, height * rows + 0.75),

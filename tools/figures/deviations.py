@@ -25,7 +25,7 @@ def rows_of(run):
         for letter in holders[0].labels(name) if holders else "":
             if all(_holds_still(case, name, letter, HELD[unit]) for case in holders):
                 continue
-            panels.append((f"Following error of {letter} (set point minus what the NC reads)",
+            panels.append((f"Following error of {letter} (setpoint minus what the NC reads)",
                            unit, lambda case, n=name, a=letter: case.column(n, a)))
     if cases[0].has("tool_deviation"):
         panels.append(("Tool deviation (true minus nominal tool centre point, magnitude)", "µm",

@@ -196,14 +196,14 @@ def best_fit(run, case):
     features = {name: cases[case] for name, cases in parts.probed(run).items() if case in cases and cases[case].is_level()}
     if not features:
         raise NotInFile(f"no probed feature of case {case} has normals in XY")
-    if any(one.fit_place is None for one in features.values()):
+    if any(one.aligned_position is None for one in features.values()):
         stl = run.scenario.get("part", {}).get("stl")
         raise NotInFile(f"the part of case {case} could not be laid on {stl}" if stl else
                         f"the part of case {case} was laid on no nominal one: the scenario names none (part.stl)")
     if all(one.missed().all() for one in features.values()):
         raise NotInFile(f"no point of the contours of case {case} was met")
     nominal, place, deviation, normal, sigma = (np.concatenate([getattr(one, name) for one in features.values()])
-                                                for name in ("nominal", "fit_place", "fit_deviation", "normal", "sigma"))
+                                                for name in ("nominal", "aligned_position", "aligned_deviation", "normal", "sigma"))
     ends = np.cumsum([len(one.mean) for one in features.values()])
     slices = {name: np.s_[end - len(one.mean):end] for end, (name, one) in zip(ends, features.items())}
     return FittedPart(nominal[:, :2], place[:, :2], deviation[:, :2], (deviation * normal).sum(axis=1), sigma, slices,

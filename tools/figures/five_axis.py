@@ -15,7 +15,7 @@ URAD = 1e-6
 def sections_of(run):
     """Sections that the comparison of the deviations is about; None: all."""
     for quantity in run.scenario.get("quantity", []):
-        if quantity.get("name") in ("tool_tip_deviation", "tool_axis_deviation") and "sections" in quantity:
+        if quantity.get("name") in ("tcp_deviation", "tool_axis_deviation") and "sections" in quantity:
             return quantity["sections"]
     return None
 

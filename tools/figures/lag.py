@@ -35,10 +35,10 @@ def curves(sweep, quantity):
 
 def draw(sweep):
     feed, label = feeds(sweep)
-    residual, delay = curves(sweep, "imposed_curve_residual"), curves(sweep, "response_time")
+    residual, delay = curves(sweep, "imposed_error_residual"), curves(sweep, "lag_time")
     if not residual and not delay:
-        raise NotInFile("the sweep holds neither imposed_curve_residual nor response_time")
-    shown = [q for q in ("imposed_curve_residual", "response_time")
+        raise NotInFile("the sweep holds neither imposed_error_residual nor lag_time")
+    shown = [q for q in ("imposed_error_residual", "lag_time")
              if curves(sweep, q)]
     cases = dict.fromkeys(case for case, _ in [*residual, *delay])
     looks = [style.look_of(sweep, case) for case in cases]
@@ -52,13 +52,13 @@ def draw(sweep):
             hollow = style.face(look) == "white"
             style.line(ax, feed[order], q["value"][order], look, marker=look.marker, markersize=6,
                        markerfacecolor=style.face(look), clip_on=False, zorder=4 if hollow else 3)
-            if quantity == "imposed_curve_residual":
+            if quantity == "imposed_error_residual":
                 _proportional(ax, feed[order], q["value"][order])
         ax.set_xlim(0.0, feed.max() * 1.03)
         ax.set_xlabel(label)
         ax.axhline(0.0, color=style.BLACK, linewidth=0.8)
     for ax, quantity in zip(grid[0], shown):
-        if quantity == "imposed_curve_residual":
+        if quantity == "imposed_error_residual":
             axis = ", ".join(sorted({axis for _, axis in residual}))
             ax.set_ylabel(f"residual in {axis}, µm")
             ax.set_title("Largest residual (grey: proportional to the feed)")

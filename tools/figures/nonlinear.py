@@ -2,7 +2,7 @@
 
 Two errors, both at equal arc length s of the program (equal t between two posts):
 - of the tip: case minus the case that goes straight (strategy `exact`), in the workpiece;
-- of the posts: interpolated and posted locations minus the line between the posts, in the machine.
+- of the posts: interpolated and post-processed locations minus the line between the posts, in the machine.
 """
 import numpy as np
 
@@ -139,18 +139,18 @@ def _case_looks(segments):
     looks = {segments.plain.name: style.Look("tip, " + segments.plain.name, style.BLACK, "-", "o")}
     for case in segments.others + [segments.exact]:
         one = segments.run.strategies(case.name)[-1]
-        posted = one.get("definition") == "posted_location"
-        label = "tip, harmonic as printed" if posted and one["type"] == "harmonic" else "tip, " + case.name.replace("_", " ")
-        looks[case.name] = style.Look(label, style.LIGHT_PURPLE if posted else colours.get(one["type"], style.GREY),
-                                      style.DASH if posted else "-" if one["type"] == "exact" else style.DASH_DOT, "s")
+        post_processed = one.get("definition") == "post_processed_location"
+        label = "tip, harmonic as printed" if post_processed and one["type"] == "harmonic" else "tip, " + case.name.replace("_", " ")
+        looks[case.name] = style.Look(label, style.LIGHT_PURPLE if post_processed else colours.get(one["type"], style.GREY),
+                                      style.DASH if post_processed else "-" if one["type"] == "exact" else style.DASH_DOT, "s")
     return looks
 
 
-def _posted_case(segments):
+def _post_processed_case(segments):
     for case in segments.others:
-        if segments.run.strategies(case.name)[-1].get("definition") == "posted_location":
+        if segments.run.strategies(case.name)[-1].get("definition") == "post_processed_location":
             return case
-    raise NotInFile("no case with definition = \"posted_location\"")
+    raise NotInFile("no case with definition = \"post_processed_location\"")
 
 
 def draw_segment(run):
@@ -158,8 +158,8 @@ def draw_segment(run):
     segments = Segments(run)
     places = segments.longest_error()
     way = segments.chord(places)
-    posted = _posted_case(segments)
-    compensated = segments.at(posted, "ref_linear")
+    post_processed = _post_processed_case(segments)
+    compensated = segments.at(post_processed, "ref_linear")
     error = segments.post_error(segments.post_exact)[places]
     i, j = np.argsort(np.ptp(segments.straight[places], axis=0))[::-1][:2]
     figure, strip, grid = style.panels([1.0], (12.6, 4.8), columns=3, legend_lines=2)
@@ -167,9 +167,9 @@ def draw_segment(run):
     after = style.Look("the same, compensated as printed", style.BLUE, "-", "")
     ideal = style.Look("line between the posts", style.GREY, style.DOT, "", 2.6)
     looks = _case_looks(segments)
-    tips = [case for case in [segments.plain, *segments.others] if case is not posted]
+    tips = [case for case in [segments.plain, *segments.others] if case is not post_processed]
     style.legend(strip, [before, looks[segments.plain.name], after, *(looks[case.name] for case in tips[1:2]), ideal,
-                         *(looks[case.name] for case in [*tips[2:], posted])], columns=4)
+                         *(looks[case.name] for case in [*tips[2:], post_processed])], columns=4)
     left, middle, right = grid[0]
     for look, positions in ((ideal, segments.straight), (before, segments.post_exact), (after, compensated)):
         style.line(left, positions[places][:, i], positions[places][:, j], look)
@@ -182,8 +182,8 @@ def draw_segment(run):
     share = 100.0 * np.linalg.norm(rest, axis=1).max() / np.linalg.norm(error, axis=1).max()
     middle.set_title(f"Posts off the line: {share:.1f} % left")
     middle.set_ylabel("distance from the line, µm")
-    peak = max(np.linalg.norm(segments.tip_error(case)[places], axis=1).max() for case in [*tips, posted])
-    for case in [*tips, posted]:
+    peak = max(np.linalg.norm(segments.tip_error(case)[places], axis=1).max() for case in [*tips, post_processed])
+    for case in [*tips, post_processed]:
         error = np.linalg.norm(segments.tip_error(case)[places], axis=1)
         style.line(right, way, np.maximum(error, LEAST_SHOWN * peak), looks[case.name])
     right.set_yscale("log")
@@ -192,7 +192,7 @@ def draw_segment(run):
     for ax in (middle, right):
         ax.set_xlabel("distance along the chord, mm")
     tip_before, tip_after = (np.linalg.norm(segments.tip_error(case)[places], axis=1).max()
-                             for case in (segments.plain, posted))
+                             for case in (segments.plain, post_processed))
     style.headline(figure, f"As published the posts come to the line; the tip stays off the chord: "
                            f"{style.number(tip_before)} µm before, {style.number(tip_after)} µm after")
     return figure

@@ -40,7 +40,7 @@ def notches(run, section="notch"):
             case.name, style.look_of(run, case.name),
             np.array([results.programmed(base, "X", case.column("s")[p]).mean() for p in parts]),
             np.array([_summary(results.trajectory_difference(case, base, "X", p)) for p in parts]),
-            np.array([_summary(results.imposed_curve_residual(case, base, "X", p))
+            np.array([_summary(results.imposed_error_residual(case, base, "X", p))
                       for p in parts])))
     return found
 
@@ -115,7 +115,7 @@ def _points(ax, x, summary, look):
 def _bound(run):
     # the largest residual that the scenario quotes for X, "< 2 um"
     for one in run.scenario.get("quantity", []):
-        if one.get("name") == "imposed_curve_residual" and one.get("axis") == "X":
+        if one.get("name") == "imposed_error_residual" and one.get("axis") == "X":
             found = re.fullmatch(r"<=?\s*([\d.]+)\s*um", one.get("reference", ""))
             if found:
                 return float(found[1])

@@ -26,8 +26,8 @@ class Feature:
     mean: np.ndarray         # (point) of the repetitions
     sigma: np.ndarray        # (point) standard deviation of a repetition
     imposed: np.ndarray      # (point) asked for along the normal; NaN: nothing
-    fit_place: np.ndarray | None = None      # (point, xyz) on the nominal part, nearest after best fit; None: no nominal part
-    fit_deviation: np.ndarray | None = None  # (point, xyz) from there, um
+    aligned_position: np.ndarray | None = None      # (point, xyz) on the nominal part, nearest after best fit; None: no nominal part
+    aligned_deviation: np.ndarray | None = None  # (point, xyz) from there, um
 
     def minus(self, base):
         """The same relative to a base case; both sides repeat, so their variances add."""
@@ -53,7 +53,7 @@ def probed(run):
             found.setdefault(name, {})[case.name] = Feature(
                 str(group.attrs["kind"]), group["nominal"][:], group["normal"][:], deviation,
                 group["measured"][:].mean(axis=0), group["sigma"][:], imposed,
-                *(group[name][:] if name in group else None for name in ("fit_place", "fit_deviation")))
+                *(group[name][:] if name in group else None for name in ("aligned_position", "aligned_deviation")))
     if not found:
         raise NotInFile("no part was probed ([[probe]] of the scenario)")
     order = [one.get("name") for one in run.scenario.get("probe", [])]
@@ -62,7 +62,7 @@ def probed(run):
 
 def base_of(run):
     """Name of the case that probed points are compared with: that of a quantity on probes, or nominal; None."""
-    named = [q["base"] for q in run.scenario.get("quantity", []) if "probe" in q and "base" in q]
+    named = [q["baseline"] for q in run.scenario.get("quantity", []) if "probe" in q and "baseline" in q]
     known = [name for name in [*named, "nominal"] if name in run.cases and run.cases[name].finished]
     return known[0] if known and len(run.finished_cases()) > 1 else None
 

@@ -135,8 +135,8 @@ class Run(ResultFile):
 
     def base(self):
         """The case that the others are compared with: the scenario's, or the one named nominal."""
-        named = [q["base"] for q in self.scenario.get("quantity", [])
-                 if q.get("name") == "imposed_curve_residual" and "base" in q]
+        named = [q["baseline"] for q in self.scenario.get("quantity", [])
+                 if q.get("name") == "imposed_error_residual" and "baseline" in q]
         own = [self.names.cases["nominal"]] if "nominal" in self.names.cases else []
         for name in own or named + ["nominal"]:
             if name in self.cases:
@@ -241,7 +241,7 @@ class Sweep(ResultFile):
         self.keys = {one.key: one.values for one in self.parameters}
         self.quantities = [
             {**{name: str(data.attrs[name]) for name in ("case", "quantity", "axis", "statistic", "sections",
-                                                         "reference", "kind")},
+                                                         "reference", "basis")},
              "value": data[:][self.run], "unit": str(data.attrs["units"])}
             for data in columns if data.attrs["role"] == "quantity"]
 
@@ -266,7 +266,7 @@ class Sweep(ResultFile):
         return found
 
 
-DISTRIBUTIONS = {"uniform", "log_uniform", "normal", "one_of"}
+DISTRIBUTIONS = {"uniform", "log_uniform", "normal", "choice"}
 
 
 def _is_sampled(table, key):
@@ -381,7 +381,7 @@ def trajectory_difference(case, base, axis, rows):
     return (case.column("meas_linear", axis)[rows] - nominal) * UM_PER_MM
 
 
-def imposed_curve_residual(case, base, axis, rows):
+def imposed_error_residual(case, base, axis, rows):
     """trajectory_difference minus the imposed displacement at the programmed position (um)."""
     return trajectory_difference(case, base, axis, rows) - case.column("imposed_linear", axis)[rows]
 

@@ -1,4 +1,4 @@
-"""Step responses of axes: set point, velocity command, load."""
+"""Step responses of axes: setpoint, velocity command, load."""
 import numpy as np
 
 from figures import style
@@ -35,7 +35,7 @@ def _panel(ax, letter, kind, step, transmission):
     found = step.attrs
     t = step["time"][:] * 1e3
     length = str(step["position"].attrs["units"])
-    height, band = float(found["height"]), float(found["band"])
+    height, band = float(found["amplitude"]), float(found["band"])
     if kind == "velocity":
         y, unit = step["velocity"][:], f"{length}/s"
         if transmission is not None:
@@ -57,7 +57,7 @@ def _panel(ax, letter, kind, step, transmission):
         if over > 0.05:
             _note(ax, float(found["peak_time_s"]) * 1e3, target * (1.0 + over / 100.0),
                   f"{over:.1f} % over")
-        units = str(found["height_units"]).replace(" s-1", "/s")
+        units = str(found["amplitude_units"]).replace(" s-1", "/s")
         ax.set_title(f"{letter}: {kind} step of {height:g} {units}")
     settled = float(found["settling_time_s"]) * 1e3
     if np.isfinite(settled) and settled > 0.0:

@@ -36,7 +36,7 @@ def tracks(run, axis, section):
         for part in results.passes(rows):
             x = results.programmed(base, "X", case.column("s")[part])
             one.passes.append((x, results.trajectory_difference(case, base, axis, part),
-                               results.imposed_curve_residual(case, base, axis, part)))
+                               results.imposed_error_residual(case, base, axis, part)))
         found.append(one)
     return found
 

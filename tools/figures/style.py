@@ -62,7 +62,7 @@ def _strategy_look(result, case):
         return LOOKS[case]
     acting = [one for one in result.strategies(case) if one.get("type") != "none"]
     kind = acting[-1].get("type", "") if acting else "none"
-    if kind == "feedback" and acting[-1].get("lead_ms", 0) not in (0, 0.0):
+    if kind == "feedback" and acting[-1].get("extrapolation_time_ms", 0) not in (0, 0.0):
         kind = "feedback_lead"
     label = spoken(case)
     if kind in LOOKS:

@@ -102,7 +102,7 @@ def effectiveness(results, run, case, generated, base, axis):
     def largest(one):
         found = [row["value"] for row in results.compared(run)
                  if (row["case"], row["quantity"], row.get("axis"), row.get("sections")) ==
-                 (one, "trajectory_difference", axis, PATHS) and row.get("base", base) == base]
+                 (one, "trajectory_difference", axis, PATHS) and row.get("baseline", base) == base]
         if len(found) != 1 or not math.isfinite(found[0]):
             raise NotInFile(f"{run} holds no trajectory_difference of {one}, {axis}")
         return found[0]

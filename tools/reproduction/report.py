@@ -53,19 +53,19 @@ def accepted(row):
 
 
 def summary(lines):
-    """{verdict: {kind: count}} of the verdicts that occur, in their order; a series counts once a verdict and kind."""
+    """{verdict: {basis: count}} of the verdicts that occur, in their order; a series counts once a verdict and basis."""
     counts = {}
     for verdict in verdicts.ALL:
-        having = {(line.row.part_of or line.row.id, line.row.kind) for line in lines if line.verdict == verdict}
-        kinds = [kind for _, kind in having]
-        if kinds:
-            counts[verdict] = {kind: kinds.count(kind) for kind in vocabulary.KINDS if kind in kinds}
+        having = {(line.row.part_of or line.row.id, line.row.basis) for line in lines if line.verdict == verdict}
+        bases = [basis for _, basis in having]
+        if bases:
+            counts[verdict] = {basis: bases.count(basis) for basis in vocabulary.BASES if basis in bases}
     return counts
 
 
 def summary_lines(lines):
-    return [f"{verdict}: {sum(kinds.values())} (" + ", ".join(f"{n} {kind}" for kind, n in kinds.items()) + ")"
-            for verdict, kinds in summary(lines).items()]
+    return [f"{verdict}: {sum(bases.values())} (" + ", ".join(f"{n} {basis}" for basis, n in bases.items()) + ")"
+            for verdict, bases in summary(lines).items()]
 
 
 def _groups(lines):
@@ -79,7 +79,7 @@ INTRODUCTION = (
     "Kinds: identified numbers fixed a parameter and prove nothing by themselves; predicted ones followed; chosen ones follow "
     "from an input that the paper does not give; what is built in the model contains, so that it could not say otherwise; "
     "given ones are the paper's own inputs and what follows from its numbers alone. Only predictions are called reproduced; "
-    "within bound are predictions that the paper gives a limit for, and chosen ones. A table of values counts once a kind in "
+    "within bound are predictions that the paper gives a limit for, and assumed ones. A table of values counts once a basis in "
     "the summary.")
 
 
@@ -88,7 +88,7 @@ def markdown(lines, drawn, begun):
     out = ["# Both papers, reproduced", "", f"servomill {begun}", "", *(f"{text}\n" for text in INTRODUCTION), "## Summary", ""]
     out += [f"- {one}" for one in summary_lines(lines)]
     for name, group in _groups(lines).items():
-        out += ["", f"## {name}", "", "| quantity | paper | here | accepted | kind | verdict | why they differ |",
+        out += ["", f"## {name}", "", "| quantity | paper | here | accepted | basis | verdict | why they differ |",
                 "|---|---|---|---|---|---|---|"]
         out += ["| " + " | ".join(_cell(text) for text in _columns(line)) + " |" for line in group]
     out += ["", "## Figures", ""]
@@ -106,7 +106,7 @@ def _cell(text):
 def _columns(line):
     row = line.row
     why = row.why if not row.lacks else f"{row.lacks}; {row.why}"
-    return [row.quantity, row.printed, line.here(), accepted(row), row.kind, line.verdict, why]
+    return [row.quantity, row.printed, line.here(), accepted(row), row.basis, line.verdict, why]
 
 
 def _title(picture):
@@ -146,22 +146,22 @@ def page(lines, drawn, begun):
     out += [f"<p>{html.escape(text)}</p>" for text in INTRODUCTION]
     out += ["<nav>" + "".join(f'<a href="#g{n}">{html.escape(name)}</a>' for n, name in enumerate(_groups(lines))) +
             '<a href="#figures">Figures</a></nav>', "<h2>Summary</h2>", "<table><tr><th>verdict</th>" +
-            "".join(f"<th>{kind}</th>" for kind in vocabulary.KINDS) + "</tr>"]
-    for verdict, kinds in summary(lines).items():
+            "".join(f"<th>{basis}</th>" for basis in vocabulary.BASES) + "</tr>"]
+    for verdict, bases in summary(lines).items():
         out.append(f"<tr><td>{_marked(verdict)}</td>" +
-                   "".join(f"<td>{kinds.get(kind, '')}</td>" for kind in vocabulary.KINDS) + "</tr>")
+                   "".join(f"<td>{bases.get(basis, '')}</td>" for basis in vocabulary.BASES) + "</tr>")
     out.append("</table>")
     for number, (name, group) in enumerate(_groups(lines).items()):
         out += [f'<h2 id="g{number}">{html.escape(name)}</h2>',
-                "<table><tr><th>quantity</th><th>paper</th><th>here</th><th>accepted</th><th>kind</th><th>verdict</th>"
+                "<table><tr><th>quantity</th><th>paper</th><th>here</th><th>accepted</th><th>basis</th><th>verdict</th>"
                 "<th>why they differ</th></tr>"]
         for line in group:
-            what, printed, here, limits, kind, verdict, why = _columns(line)
+            what, printed, here, limits, basis, verdict, why = _columns(line)
             missing = line.value.number is None
             out.append(f'<tr id="{html.escape(line.row.id)}"><td>{html.escape(what)}</td><td>{html.escape(printed)}</td>'
                        f'<td{"" if missing else " class=number"}>{html.escape(here)}</td>'
                        f'<td><span class="number">{html.escape(limits)}</span>{_reason(line.row)}</td>'
-                       f'<td>{kind}</td><td>{_marked(verdict)}</td><td class="why">{html.escape(why)}</td></tr>')
+                       f'<td>{basis}</td><td>{_marked(verdict)}</td><td class="why">{html.escape(why)}</td></tr>')
         out.append("</table>")
     out.append('<h2 id="figures">Figures</h2>')
     for one in drawn:

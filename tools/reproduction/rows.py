@@ -14,10 +14,10 @@ PAPERS = {"G": "Guevel et al. 2025", "L": "Li 2024"}
 # What a paper's number means: the value itself, an upper limit of the magnitude, a lower limit, or limits within which it
 # lies.
 MEANINGS = ("equal", "below", "above", "between")
-# What our number is worth. identified: a parameter was fixed with the paper's number; predicted: it followed;
-# chosen: it follows from an input that the paper does not give; built in: the model contains it and could not say
+# What our number is worth. fitted: a parameter was fixed with the paper's number; predicted: it followed;
+# assumed: it follows from an input that the paper does not give; built_in: the model contains it and could not say
 # otherwise; given: an input that is the paper's, or what follows from its numbers alone.
-KINDS = ("identified", "predicted", "chosen", "built in", "given")
+BASES = ("fitted", "predicted", "assumed", "built_in", "given")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Row:
     printed: str            # as the paper has it, with its place
     unit: str
     why: str                # why the two differ, or what the agreement is worth
-    kind: str               # of KINDS
+    basis: str               # of BASES
     here: dict              # where our number comes from; see values.find
     meaning: str = "equal"  # of MEANINGS
     value: float | None = None       # None: the paper gives no number
@@ -50,7 +50,7 @@ def _row(table, where):
         if field.default is dataclasses.MISSING and name not in table:
             raise InputError(f"{where}: error: {name} is missing")
     row = Row(**{key: tuple(value) if key == "limits" else value for key, value in table.items()})
-    for key, value, allowed in (("paper", row.paper, PAPERS), ("meaning", row.meaning, MEANINGS), ("kind", row.kind, KINDS)):
+    for key, value, allowed in (("paper", row.paper, PAPERS), ("meaning", row.meaning, MEANINGS), ("basis", row.basis, BASES)):
         if value not in allowed:
             raise InputError(f"{where}: error: {key} = {value!r}; must be one of {', '.join(allowed)}")
     compared = not row.lacks
@@ -70,7 +70,7 @@ def _expanded(table):
     if "series" not in table:
         return [table]
     series, scale = table["series"], table.get("scale", 1.0)
-    kinds = {k: kind for key, kind in (("identified", "identified"), ("built_in", "built in")) for k in table.get(key, [])}
+    bases = {k: basis for key, basis in (("identified", "fitted"), ("built_in", "built_in")) for k in table.get(key, [])}
     rest = {key: value for key, value in table.items() if key not in ("series", "scale", "identified", "built_in")}
     found = []
     for k, value in enumerate(series, 1):
@@ -79,7 +79,7 @@ def _expanded(table):
         one["here"] = {**rest["here"], "k": k}
         one["part_of"] = rest["id"]
         one["value"] = scale * value
-        one["kind"] = kinds.get(k, rest["kind"])
+        one["basis"] = bases.get(k, rest["basis"])
         found.append(one)
     return found
 

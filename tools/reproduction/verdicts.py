@@ -41,7 +41,7 @@ def verdict(row, value):
     low, high = limits(row)
     if not low <= value <= high:
         return NOT_EXPLAINED if row.open else NOT_REPRODUCED
-    by_themselves = {"given": GIVEN, "identified": IDENTIFIED, "built in": BUILT_IN}
-    if row.kind in by_themselves:
-        return by_themselves[row.kind]
-    return REPRODUCED if row.meaning == "equal" and row.kind == "predicted" else WITHIN
+    by_themselves = {"given": GIVEN, "fitted": IDENTIFIED, "built_in": BUILT_IN}
+    if row.basis in by_themselves:
+        return by_themselves[row.basis]
+    return REPRODUCED if row.meaning == "equal" and row.basis == "predicted" else WITHIN

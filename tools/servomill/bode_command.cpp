@@ -35,15 +35,15 @@ void check_range(const sim::BodeSettings& settings, const sim::LoopPeriods& peri
   const std::string half =
       fmt::format("{:.6g} Hz, half the rate of the {} loop", nyquist,
                   settings.loop == sim::BodeLoop::velocity ? "velocity" : "position");
-  if (settings.from >= nyquist) fault("--from", settings.from, "< " + half);
+  if (settings.from >= nyquist) fault("--f-min", settings.from, "< " + half);
   if (settings.measure && settings.from < sim::kLowestMeasured) {
-    fault("--from", settings.from,
+    fault("--f-min", settings.from,
           fmt::format(">= {:g} Hz to be measured; --method none goes lower", sim::kLowestMeasured));
   }
   if (!settings.to) return;
-  if (*settings.to > nyquist * (1.0 + 1e-12)) fault("--to", *settings.to, "<= " + half);
+  if (*settings.to > nyquist * (1.0 + 1e-12)) fault("--f-max", *settings.to, "<= " + half);
   if (*settings.to > settings.from) return;
-  fault("--to", *settings.to, fmt::format("> --from, {:g} Hz", settings.from));
+  fault("--f-max", *settings.to, fmt::format("> --f-min, {:g} Hz", settings.from));
 }
 
 sim::Quantity quantity_of(sim::BodeLoop loop, int joint) {
@@ -76,8 +76,8 @@ sim::BodeSettings settings_of(const Options& options, const sim::MachineSettings
                               sim::BodeLoop loop, int joint) {
   sim::BodeSettings settings;
   settings.loop = loop;
-  settings.from = *positive_option(options, "from", sim::kRate, "Hz");
-  if (const auto to = positive_option(options, "to", sim::kRate, "Hz")) settings.to = *to;
+  settings.from = *positive_option(options, "f-min", sim::kRate, "Hz");
+  if (const auto to = positive_option(options, "f-max", sim::kRate, "Hz")) settings.to = *to;
   const int points = options.get<int>("points");
   if (points < 2 || points > static_cast<int>(kMostPoints)) {
     throw InputError({"--points"}, fmt::format("{}; must be >= 2 and <= {}", points, kMostPoints));
@@ -239,9 +239,9 @@ void add_options(Options& options) {
   add_axis_options(options);
   options.add()("loop,l", po::value<std::string>()->default_value("position")->value_name("LOOP"),
                 "position, velocity, compliance or all");
-  options.add()("from", po::value<std::string>()->default_value("1 Hz")->value_name("\"1 Hz\""),
+  options.add()("f-min", po::value<std::string>()->default_value("1 Hz")->value_name("\"1 Hz\""),
                 "lowest frequency; a bare number is in Hz");
-  options.add()("to", po::value<std::string>()->value_name("\"100 Hz\""),
+  options.add()("f-max", po::value<std::string>()->value_name("\"100 Hz\""),
                 "highest frequency, bare numbers in Hz, up to half the rate of the loop (default: "
                 "0.4 times its rate)");
   options.add()("points", po::value<int>()->default_value(30)->value_name("N"),

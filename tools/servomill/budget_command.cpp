@@ -35,7 +35,7 @@ std::string causes_help() {
       "together "
       "is\n"
       "in the remainder. What stays without all is uncorrected, uncorrectable or imposed.\n"
-      "Quantities that have a budget: imposed_curve_residual, trajectory_difference, "
+      "Quantities that have a budget: imposed_error_residual, trajectory_difference, "
       "tool_deviation,\n"
       "following_error.";
   return out;
@@ -61,8 +61,8 @@ std::vector<sim::QuantitySpec> chosen(const sim::Scenario& scenario, const Optio
       sim::budget_quantities(scenario, also, options.list("section"));
   if (all.empty()) {
     throw InputError({options.word()},
-                     "has no quantity with a budget (imposed_curve_residual, brought_out, "
-                     "response_time, trajectory_difference, tool_deviation, following_error); "
+                     "has no quantity with a budget (imposed_error_residual, realised_ratio, "
+                     "lag_time, trajectory_difference, tool_deviation, following_error); "
                      "ask for --quantity tool_deviation or following_error, which each case has");
   }
   if (options.has("section")) {
@@ -94,7 +94,7 @@ std::string title_of(const sim::QuantitySpec& quantity) {
   return fmt::format(
       "{}: {} of {}{}{}", quantity.cases.front(), quantity.name, quantity.axis,
       quantity.sections.empty() ? "" : fmt::format(", {}", fmt::join(quantity.sections, ", ")),
-      quantity.base.empty() ? "" : fmt::format(", against {}", quantity.base));
+      quantity.baseline.empty() ? "" : fmt::format(", against {}", quantity.baseline));
 }
 
 // -0.04 with one decimal is 0, not -0.
@@ -149,7 +149,7 @@ void print_json(const sim::Budget& budget) {
   sim::JsonObject out;
   out.text("case", q.cases.front()).text("quantity", q.name);
   out.text_or_null("axis", q.axis == '\0' ? "" : std::string(1, q.axis));
-  out.text("sections", fmt::format("{}", fmt::join(q.sections, ", "))).text("base", q.base);
+  out.text("sections", fmt::format("{}", fmt::join(q.sections, ", "))).text("baseline", q.baseline);
   if (!budget.note.empty()) {
     fmt::print("{}\n", out.text("note", budget.note).line());
     return;

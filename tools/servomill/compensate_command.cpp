@@ -150,7 +150,7 @@ sim::CompensateRequest request_of(const Options& options) {
                                                   options.get<std::string>("tolerance")));
   }
   request.max_block = positive_option(options, "max-block", sim::kLength, "mm").value_or(0.0);
-  request.splits_rapids = options.has("split-rapids");
+  request.corrects_rapids = options.has("correct-rapids");
   request.axes = static_cast<strategies::DisplacedAxes>(choice_option(options, "axes", kAxes));
   request.dialect = dialect_of(options);
   request.inputs = program_inputs(options);
@@ -217,7 +217,7 @@ int compensate_command(const Arguments& arguments) {
       "max-block", text()->value_name("\"1 mm\""),
       "longest block where the correction varies, bare numbers in mm; default: as long as "
       "the tolerance allows");
-  options.add()("split-rapids", "corrects G0 along its path, too");
+  options.add()("correct-rapids", "corrects G0 along its path, too");
   options.add()("axes", text()->default_value("linear")->value_name("linear|all"),
                 "axes that carry the correction: X, Y and Z only, or rotary axes, too");
   options.add()("dialect", text()->default_value("linuxcnc")->value_name("NAME"),

@@ -64,7 +64,7 @@ Eigen::Vector3d part_zero_of(const std::string& text) {
     from = end + 1;
   }
   if (n < values.size() || from <= text.size()) {
-    throw InputError({"--part-zero " + text},
+    throw InputError({"--work-offset " + text},
                      "must be three lengths, such as 10,0,-5.5 (in mm) or \"10 mm,0 mm,-5.5 mm\"");
   }
   return {values[0], values[1], values[2]};
@@ -82,7 +82,7 @@ void tell(const std::vector<controllers::Warning>& warnings) {
 }
 
 // Odd things explain faults.
-sim::PostedFile post(sim::PostRequest request) {
+sim::PostProcessedFile post(sim::PostRequest request) {
   std::vector<controllers::Warning> warnings;
   try {
     return sim::post_file(std::move(request), &warnings);
@@ -144,9 +144,9 @@ sim::PostRequest request_of(const Options& options) {
   if (options.has("feed")) {
     post.feed = bounded_option(options, "feed", sim::kVelocity, "mm/min");
   }
-  post.turn_rate = bounded_option(options, "turn-feed", sim::kAngularVelocity, "deg/min");
-  if (options.has("part-zero")) {
-    request.part_zero = part_zero_of(options.get<std::string>("part-zero"));
+  post.rotary_rate = bounded_option(options, "rotary-feed", sim::kAngularVelocity, "deg/min");
+  if (options.has("work-offset")) {
+    request.work_offset = part_zero_of(options.get<std::string>("work-offset"));
   }
   post.work_system = whole_option(options, "work-system", 54, 59) - 53;
   if (options.has("tool")) {
@@ -192,7 +192,7 @@ int post_command(const Arguments& arguments) {
   options.add()("classical", "one block a location, nothing between them");
   options.add()("tcp", "for an NC with tool-centre-point control: G43.4, X Y Z are the tip");
   options.add()(
-      "part-zero", po::value<std::string>()->value_name("X,Y,Z"),
+      "work-offset", po::value<std::string>()->value_name("X,Y,Z"),
       "where the part's zero lies in the machine when the rotary axes are at zero, mm: "
       "what the NC's work offset holds; needed with rotary axes (with --tcp where the table "
       "turns, unless --approach direct)");
@@ -217,7 +217,7 @@ int post_command(const Arguments& arguments) {
   options.add()("feed", po::value<std::string>()->value_name("\"300 mm/min\""),
                 "feed of the tip where the file gives none (mm/min)");
   options.add()(
-      "turn-feed",
+      "rotary-feed",
       po::value<std::string>()->default_value("3600 deg/min")->value_name("\"3600 deg/min\""),
       "of the tool axis where the tip stands still (deg/min)");
   options.add()("start", po::value<std::string>()->value_name("A=10,C=90"),
@@ -230,16 +230,16 @@ int post_command(const Arguments& arguments) {
   const bool to_stdout = name == "-";
   sim::PostRequest request = request_of(options);
   if (!to_stdout) sim::refuse_unwritable_text(name, options.has("force"));
-  const sim::PostedFile posted = post(std::move(request));
-  tell(posted.warnings);
+  const sim::PostProcessedFile post_processed = post(std::move(request));
+  tell(post_processed.warnings);
   if (to_stdout) {
-    std::fwrite(posted.program.data(), 1, posted.program.size(), stdout);
+    std::fwrite(post_processed.program.data(), 1, post_processed.program.size(), stdout);
   } else {
-    sim::write_text_file(name, posted.program, options.has("force"));
+    sim::write_text_file(name, post_processed.program, options.has("force"));
   }
   if (!options.has("quiet")) {
     fmt::print(to_stdout ? stderr : stdout, "{}: {} locations, {} points between them\n{}\n", name,
-               posted.locations, posted.inserted, posted.verified);
+               post_processed.locations, post_processed.inserted, post_processed.verified);
   }
   return kDone;
 }

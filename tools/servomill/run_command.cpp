@@ -95,7 +95,7 @@ int run_command(const Arguments& arguments) {
                 "result file (default: name of the scenario with .h5, in this folder)");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario, such as program.feed_override=0.5, "
-                "case[2].strategy[0].lead_ms=auto or machine.nc.Kv=\"4 m/min/mm\"");
+                "case[2].strategy[0].extrapolation_time_ms=auto or machine.nc.Kv=\"4 m/min/mm\"");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads (default: one a core); results do not depend on it");
   options.add()("force,f", "replaces the result file if it exists");

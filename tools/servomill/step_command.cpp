@@ -30,10 +30,10 @@ std::vector<sim::StepKind> kinds_of(const Options& options) {
 }
 
 struct Units {
-  const char *height, *value;  // of what steps, of what answers
-  double height_unit, value_unit;
+  const char *amplitude, *value;  // of what steps, of what answers
+  double amplitude_unit, value_unit;
   sim::Quantity quantity;
-  double default_height;
+  double default_amplitude;
 };
 
 Units units_of(sim::StepKind kind, int joint) {
@@ -56,11 +56,12 @@ sim::StepSettings settings_of(const Options& options, sim::StepKind kind, int jo
   sim::StepSettings settings;
   settings.kind = kind;
   const Units units = units_of(kind, joint);
-  settings.height = quantity_option(options, "height", units.quantity, bare_unit(units.quantity))
-                        .value_or(units.default_height);
-  if (settings.height == 0.0) {
-    throw InputError({"--height"},
-                     fmt::format("'{}' must not be 0", options.get<std::string>("height")));
+  settings.amplitude =
+      quantity_option(options, "amplitude", units.quantity, bare_unit(units.quantity))
+          .value_or(units.default_amplitude);
+  if (settings.amplitude == 0.0) {
+    throw InputError({"--amplitude"},
+                     fmt::format("'{}' must not be 0", options.get<std::string>("amplitude")));
   }
   settings.band = *positive_option(options, "band", sim::kNumber, "%");
   if (settings.band >= 1.0) {
@@ -85,7 +86,7 @@ void print_figures(const sim::StepSettings& settings, const sim::StepResponse& r
   const Units u = units_of(settings.kind, joint);
   const sim::StepFigures& f = response.figures;
   fmt::print("\n{} step of {:g} {}, {:.3g} s\n", name_of(settings.kind),
-             settings.height / u.height_unit, u.height, response.time.back());
+             settings.amplitude / u.amplitude_unit, u.amplitude, response.time.back());
   if (settings.kind == sim::StepKind::load && f.peak == 0.0) {
     fmt::print("  holds still: friction bears the force\n");
   } else if (settings.kind == sim::StepKind::load) {
@@ -113,7 +114,7 @@ void print_json(const sim::StepSettings& settings, const sim::StepResponse& resp
   const sim::StepFigures& f = response.figures;
   sim::JsonObject out;
   out.text("axis", std::string(1, axis)).text("step", name_of(settings.kind));
-  out.number("height_SI", settings.height).number("overshoot", f.overshoot);
+  out.number("amplitude_SI", settings.amplitude).number("overshoot", f.overshoot);
   out.number("rise_time_s", f.rise_time).number("settling_time_s", f.settling_time);
   out.number("band", settings.band).number("steady_error_SI", f.steady_error);
   out.number("peak_SI", f.peak).number("peak_time_s", f.peak_time);
@@ -126,19 +127,19 @@ int step_command(const Arguments& arguments) {
   Options options(
       "step", "SCENARIO.toml --axis Y [--kind position|velocity|load|all] [-o OUT.h5]",
       "Steps an axis in the simulation, with friction, backlash, quantisation and limits as the\n"
-      "scenario has them, and prints figures of merit: a step of the set point (nothing is fed\n"
+      "scenario has them, and prints figures of merit: a step of the setpoint (nothing is fed\n"
       "forward), of the velocity command (position loop open; the motor counts, as slide\n"
       "velocity), of a force on the slide.",
       "SCENARIO.toml");
   add_axis_options(options);
   options.add()("kind,k", po::value<std::string>()->default_value("all")->value_name("KIND"),
                 "position, velocity, load or all");
-  options.add()("height", po::value<std::string>()->value_name("\"0.1 mm\""),
+  options.add()("amplitude", po::value<std::string>()->value_name("\"0.1 mm\""),
                 "of the step, with --kind (default: 0.1 mm, 10 mm/s, 500 N; 0.02 deg, 1 deg/s, "
                 "50 Nm); bare numbers are in these units");
   options.add()(
       "band", po::value<std::string>()->default_value("2 %")->value_name("\"2 %\""),
-      "settled within this share of the height, of the peak of a load step; a bare number "
+      "settled within this share of the amplitude, of the peak of a load step; a bare number "
       "is in %");
   options.add()(
       "duration", po::value<std::string>()->value_name("\"0.5 s\""),
@@ -154,8 +155,8 @@ int step_command(const Arguments& arguments) {
   const sim::Scenario scenario = scenario_for_axes(options);
   const auto joints = chosen_joints(options, scenario.machine);
   const auto kinds = kinds_of(options);
-  if (kinds.size() > 1 && options.has("height")) {
-    throw InputError({"--height"}, "needs one --kind: its unit is that of what steps");
+  if (kinds.size() > 1 && options.has("amplitude")) {
+    throw InputError({"--amplitude"}, "needs one --kind: its unit is that of what steps");
   }
   for (const int joint : joints) {
     for (const sim::StepKind kind : kinds) settings_of(options, kind, joint);

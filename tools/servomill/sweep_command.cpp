@@ -38,7 +38,7 @@ void add_options(Options& options) {
                 "runs these points only, counted from 1");
   options.add()("shard", po::value<std::string>()->value_name("I/N"),
                 "runs one of N parts of the points and writes OUT.I-of-N.h5; see servomill merge");
-  options.add()("series",
+  options.add()("keep-signals",
                 "keeps the signals of every point: OUT.series/POINT.h5, as servomill run "
                 "writes them; points that an earlier sweep ran without are run again");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
@@ -134,7 +134,7 @@ int sweep_command(const Arguments& arguments) {
   const sim::Sweep sweep(options.word(), options.list("set"));
   const sim::Selection selection = selection_of(options, sweep);
   std::string out = output_name(options, sweep.base().name, "_sweep");
-  const std::string signals = options.has("series") ? sim::series_folder(out) : "";
+  const std::string signals = options.has("keep-signals") ? sim::series_folder(out) : "";
   if (options.has("shard")) out = sim::shard_name(out, selection);
   const unsigned threads = thread_count(options);
   const bool force = options.has("force");

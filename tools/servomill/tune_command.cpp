@@ -55,7 +55,7 @@ std::string reason(const sim::Limit& limit, const sim::TuneSettings& wanted,
                          std::round(1e3 * decibel(wanted.gain_margin)) / 1e3,
                          place(limit.frequency, drive));
     case sim::Limit::Kind::overshoot:
-      return fmt::format("the overshoot of {:g} % after a step of the set point",
+      return fmt::format("the overshoot of {:g} % after a step of the setpoint",
                          100.0 * wanted.overshoot);
     case sim::Limit::Kind::bandwidth:
       return fmt::format("the requested bandwidth of {:g} Hz", limit.frequency);
@@ -123,7 +123,7 @@ bool confirm(const sim::MachineSettings& machine, int joint, Tick delay, const s
   const Loop loops[] = {
       {"velocity", sim::PositionLoop::open, sim::Entry::velocity_command,
        sim::AxisSignal::measured_speed, sim::AxisSignal::speed_error, a.velocity},
-      {"position", sim::PositionLoop::closed, sim::Entry::set_point, sim::AxisSignal::reading,
+      {"position", sim::PositionLoop::closed, sim::Entry::setpoint, sim::AxisSignal::reading,
        sim::AxisSignal::position_error, a.position},
   };
   for (const Loop& one : loops) {

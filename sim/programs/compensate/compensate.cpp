@@ -141,7 +141,7 @@ WalkOptions walk_options(const CompensateRequest& request, const MachineSettings
   options.fit.max_block = request.max_block;
   if (request.max_block > 0.0) options.fit.look = std::min(options.fit.look, request.max_block);
   options.is_for_other_control = request.dialect != Dialect::linuxcnc;
-  options.splits_rapids = request.splits_rapids;
+  options.corrects_rapids = request.corrects_rapids;
   options.lower = machine.nc.lower;
   options.upper = machine.nc.upper;
   options.start = setup.start;
@@ -175,8 +175,8 @@ std::array<bool, 3> endless_axes(const MachineDescription& described) {
 DialectSettings dialect_settings(const CompensateRequest& request,
                                  const MachineDescription& described,
                                  const controllers::ProgramSetup& setup) {
-  if (request.splits_rapids) {
-    throw InputError({"--split-rapids"},
+  if (request.corrects_rapids) {
+    throw InputError({"--correct-rapids"},
                      "is for LinuxCNC; on other controls a rapid need not follow a line");
   }
   DialectSettings settings;
@@ -308,7 +308,7 @@ VerificationReport verify(const CompensateRequest& request, Preparation& prepare
   limits.grid =
       is_linuxcnc ? std::pow(10.0, -decimals_for(request.tolerance)) * mm : resolution_of(request);
   limits.grid_turn = is_linuxcnc ? kTurnDecimals : resolution_of(request) / mm * deg;
-  limits.corrects_rapids = options.splits_rapids;
+  limits.corrects_rapids = options.corrects_rapids;
   if (request.dialect == Dialect::heidenhain) limits.time_digit = 1e-3;  // FT has three decimals
   limits.is_linuxcnc = is_linuxcnc;
   limits.retract = request.retract_Z ? request.retract_Z : prepared.described.retract_Z;

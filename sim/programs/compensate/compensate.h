@@ -21,7 +21,7 @@ struct CompensateRequest {
   std::vector<std::string> changes;  // "KEY=VALUE", of the machine
   double tolerance = 1e-6;           // m
   double max_block = 0.0;            // m, where the correction varies; 0: no limit
-  bool splits_rapids = false;
+  bool corrects_rapids = false;
   strategies::DisplacedAxes axes = strategies::DisplacedAxes::linear;
   Dialect dialect = Dialect::linuxcnc;
   std::string program_name;         // other dialects: as the file is called, without extension

@@ -11,7 +11,8 @@ namespace {
 
 const double kSingular = std::sin(1.0 * deg);  // as the strategies have it unless told otherwise
 
-strategies::Belief belief_of(const plant::MachineChain& chain, const plant::ErrorModel& errors) {
+strategies::IdentifiedMachine identified_of(const plant::MachineChain& chain,
+                                            const plant::ErrorModel& errors) {
   return {.layout = chain.layout, .model = plant::VolumetricModel(chain, errors)};
 }
 
@@ -25,7 +26,8 @@ plant::ErrorModel travelling(plant::ErrorModel errors, const Directions& directi
 }  // namespace
 
 Correction::Model::Model(const plant::MachineChain& chain, const plant::ErrorModel& errors)
-    : belief(belief_of(chain, errors)), all(belief, strategies::Iterations::converged, kSingular) {}
+    : identified(identified_of(chain, errors)),
+      all(identified, strategies::Iterations::converged, kSingular) {}
 
 Correction::Correction(const plant::MachineChain& chain, const plant::ErrorModel& errors,
                        strategies::DisplacedAxes axes)
@@ -43,7 +45,7 @@ Correction::Correction(const plant::MachineChain& chain, const plant::ErrorModel
       models_.emplace(directions_, std::make_unique<Model>(chain_, errors_)).first->second.get();
 }
 
-void Correction::set_tool(const Eigen::Vector3d& p_ST) { model_->belief.p_ST = p_ST; }
+void Correction::set_tool(const Eigen::Vector3d& p_ST) { model_->identified.p_ST = p_ST; }
 
 void Correction::set_directions(const Directions& directions) {
   Directions wanted{};
@@ -51,7 +53,7 @@ void Correction::set_directions(const Directions& directions) {
   if (wanted == directions_) return;
   auto& model = models_[wanted];
   if (model == nullptr) model = std::make_unique<Model>(chain_, travelling(errors_, wanted));
-  model->belief.p_ST = model_->belief.p_ST;
+  model->identified.p_ST = model_->identified.p_ST;
   model_ = model.get();
   directions_ = wanted;
 }
@@ -72,21 +74,21 @@ double Correction::reversal_at(const AxisWords& machine, Axis axis) {
 }
 
 AxisWords Correction::at(const AxisWords& machine) const {
-  const strategies::Belief& belief = model_->belief;
-  const Joints Q = belief.layout.joints(machine);
+  const strategies::IdentifiedMachine& identified = model_->identified;
+  const Joints Q = identified.layout.joints(machine);
   AxisWords d = AxisWords::Zero();
   if (axes_ == strategies::DisplacedAxes::all) {
-    d = belief.layout.words(model_->all.of_set_point(strategies::Sign::correct, Q));
+    d = identified.layout.words(model_->all.of_setpoint(strategies::Action::compensate, Q));
   } else {
-    d.head<3>() = strategies::set_point_displacement(belief, strategies::Sign::correct,
-                                                     strategies::Iterations::converged, Q);
+    d.head<3>() = strategies::setpoint_displacement(identified, strategies::Action::compensate,
+                                                    strategies::Iterations::converged, Q);
   }
   return d;
 }
 
-strategies::Leftover Correction::leftover(const AxisWords& machine) const {
-  const strategies::Belief& belief = model_->belief;
-  return strategies::uncorrectable(belief, axes_, kSingular, belief.layout.joints(machine));
+strategies::Residual Correction::residual(const AxisWords& machine) const {
+  const strategies::IdentifiedMachine& identified = model_->identified;
+  return strategies::uncorrectable(identified, axes_, kSingular, identified.layout.joints(machine));
 }
 
 std::vector<double> shares_between_reversals(const Eigen::Vector3d& x, const Eigen::Vector3d& y,

@@ -18,7 +18,7 @@ namespace servomill::sim {
 /// Directions of travel, one for each axis word: 1 up, -1 down, 0 unknown.
 using Directions = std::array<int, kAxisWords>;
 
-/// What is believed of a machine's errors, with the tool that works.
+/// What is identified of a machine's errors, with the tool that works.
 class Correction {
  public:
   Correction(const plant::MachineChain& chain, const plant::ErrorModel& errors,
@@ -28,8 +28,8 @@ class Correction {
 
   /// @param p_ST  tip in the spindle nose (3; m)
   void set_tool(const Eigen::Vector3d& p_ST);
-  const Eigen::Vector3d& tool() const { return model_->belief.p_ST; }
-  const JointLayout& layout() const { return model_->belief.layout; }
+  const Eigen::Vector3d& tool() const { return model_->identified.p_ST; }
+  const JointLayout& layout() const { return model_->identified.layout; }
 
   /// True if errors depend on the direction of travel.
   bool has_reversals() const { return longest_reversal_ > 0.0; }
@@ -44,16 +44,16 @@ class Correction {
   double reversal_at(const AxisWords& machine, Axis axis);
 
   /// What to add to the machine coordinates of the program (6; m, rad), so that the machine with
-  /// the believed errors puts the tool where the ideal one would: F_ni(Q + d) = F_i(Q).
+  /// the identified errors puts the tool where the ideal one would: F_ni(Q + d) = F_i(Q).
   AxisWords at(const AxisWords& machine) const;
 
   /// What stays then.
-  strategies::Leftover leftover(const AxisWords& machine) const;
+  strategies::Residual residual(const AxisWords& machine) const;
 
  private:
   struct Model {
     Model(const plant::MachineChain& chain, const plant::ErrorModel& errors);
-    strategies::Belief belief;
+    strategies::IdentifiedMachine identified;
     strategies::PoseCompensation all;
   };
 

@@ -28,7 +28,7 @@ struct Summary {
   std::optional<At> outside;                    // the first end outside the travel, and how many
   std::size_t outside_count = 0;
   std::optional<At> most_left;  // the place where correcting leaves most
-  strategies::Leftover left;
+  strategies::Residual left;
   std::size_t reversals = 0;    // of axes at feed, whose errors depend on the direction of travel
   double reversal_width = 0.0;  // m, largest change of the tip at one
   double reversal_distance = 0.0;  // m, travel that one takes at most

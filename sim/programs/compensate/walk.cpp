@@ -218,7 +218,7 @@ Step Walk::next(const Move& move, const ExecutedBlock& block, bool is_place) {
   const bool is_way_known = std::all_of(kAllAxes.begin(), kAllAxes.end(), [&](Axis axis) {
     return !has(axis) || step.was_known[static_cast<std::size_t>(index_of(axis))];
   });
-  if (move.kind == MoveKind::rapid && !(options_.splits_rapids && is_way_known)) {
+  if (move.kind == MoveKind::rapid && !(options_.corrects_rapids && is_way_known)) {
     turn_directions(move.end_machine - programmed_, step.was_known);
     step.blocks = {{0.0, 1.0, corrected(step.programmed, correction_, 1.0), {}}};
   } else {

@@ -34,7 +34,7 @@ class SmoothedFeeds;
 
 struct WalkOptions {
   FitOptions fit;
-  bool splits_rapids = false;
+  bool corrects_rapids = false;
   Joints lower = Joints::Zero(), upper = Joints::Zero();  // travel; m, rad
   AxisWords start = AxisWords::Zero();                    // machine coordinates; m, rad
   AxisFlags is_start_known{};
@@ -96,7 +96,7 @@ class Walk {
   void choose_tool(const controllers::ModalState& state);
   bool knows_all() const;
   void know_missing_axes();
-  void look_for_leftover(const Step& step);
+  void sample_residual(const Step& step);
   void warn_of_travel(const Step& step);
   void count(const Step& step);
 

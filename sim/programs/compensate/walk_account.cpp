@@ -8,10 +8,10 @@
 namespace servomill::sim {
 namespace {
 
-constexpr double kLookForLeftover = 5e-3;  // m, between two looks, about
-constexpr double kStill = 1e-12;           // m, rad: what rounding leaves of positions
+constexpr double kResidualStep = 5e-3;  // m, between two looks, about
+constexpr double kStill = 1e-12;        // m, rad: what rounding leaves of positions
 
-bool is_worse(const strategies::Leftover& a, const strategies::Leftover& b) {
+bool is_worse(const strategies::Residual& a, const strategies::Residual& b) {
   constexpr double kAxis = 1e-6;  // rad: of less nothing is said
   const bool by_axis = std::max(a.axis, b.axis) > kAxis;
   return by_axis ? a.axis > b.axis : a.tip > b.tip;
@@ -19,14 +19,14 @@ bool is_worse(const strategies::Leftover& a, const strategies::Leftover& b) {
 
 }  // namespace
 
-void Walk::look_for_leftover(const Step& step) {
+void Walk::sample_residual(const Step& step) {
   if (step.move->kind == MoveKind::rapid) return;
   const double length = step.programmed.length();
-  const int looks = std::max(1, static_cast<int>(length / kLookForLeftover));
+  const int looks = std::max(1, static_cast<int>(length / kResidualStep));
   for (int i = 1; i <= looks; ++i) {
     const AxisWords at =
         step.programmed.frame.machine(step.programmed.at(static_cast<double>(i) / looks));
-    const strategies::Leftover left = correction_.leftover(at);
+    const strategies::Residual left = correction_.residual(at);
     if (summary_.most_left && !is_worse(left, summary_.left)) continue;
     summary_.left = left;
     summary_.most_left = Summary::At{step.move->line, at, AxisWords::Zero()};
@@ -93,7 +93,7 @@ void Walk::count(const Step& step) {
 void Walk::arrive(const Step& step, const AxisWords& machine) {
   if (step.is_corrected) {
     count(step);
-    look_for_leftover(step);
+    sample_residual(step);
     if (record_ != nullptr) record_->add(step, correction_);
   } else {
     ++summary_.blocks_before;

@@ -56,7 +56,7 @@ COMPENSATE = [
     compensated("what a dialect cannot express", CUT.replace("G1", "G59.1\nG1"), FOR_FANUC + " --work-offset G59.1:X=0"),
     compensated("options of other dialects that are missing or cannot be", CUT, AT_ZERO + " --dialect fanuc",
                 AT_ZERO + " --dialect fanuc --retract Z=0", FOR_FANUC + "345", FOR_FANUC + " --resolution '3 um'",
-                FOR_FANUC + " --split-rapids", AT_ZERO + " --retract 5", AT_ZERO + " --preset -1",
+                FOR_FANUC + " --correct-rapids", AT_ZERO + " --retract 5", AT_ZERO + " --preset -1",
                 FOR_FANUC + " --without mirorr", AT_ZERO + " --dialect siemens --retract Z=0 --without mirror",
                 AT_ZERO + " --tool-length 50", COMPENSATE_IT.replace("out.ngc", "my-part.h") + " --dialect heidenhain"),
     compensated("unknown positions for another control", "G21 G90\nG91 G0 Z5\nM2\n", FOR_FANUC),
@@ -130,13 +130,13 @@ SCENARIO = [
     line("a case whose name is a path", 'name = "table"', 'name = "../table"'),
     line("a case without a name", 'name = "table"', 'name = ""'),
     line("an unknown case in a quantity", 'cases = ["table"]', 'cases = ["tabel"]'),
-    line("an unknown quantity", 'name = "imposed_curve_residual"', 'name = "imposed_curve_residuals"'),
+    line("an unknown quantity", 'name = "imposed_error_residual"', 'name = "imposed_error_residuals"'),
     line("an axis that the quantity does not have", 'axis = "Y"\nbase', 'axis = "C"\nbase'),
     machine("an axis that the machine does not have", '"[w X b Y Z t]"', '"[w X b Z t]"'),
-    line("a section that is no circle", 'name = "imposed_curve_residual"\naxis = "Y"\nbase = "nominal"',
-         'name = "circular_deviation"'),
-    line("one direction of a circle where both are needed", 'name = "imposed_curve_residual"\naxis = "Y"\nbase = "nominal"',
-         'name = "bidirectional_circular_deviation"'),
+    line("a section that is no circle", 'name = "imposed_error_residual"\naxis = "Y"\nbaseline = "nominal"',
+         'name = "circular_error"'),
+    line("one direction of a circle where both are needed", 'name = "imposed_error_residual"\naxis = "Y"\nbaseline = "nominal"',
+         'name = "bidirectional_circular_error"'),
     line("a machine of a case that is none", 'name = "nominal"',
          'name = "nominal"\n[case.machine_override.nc]\nKv = 0.0\nKvv = 60.0'),
     line("a case that changes what all cases share", 'name = "nominal"',
@@ -144,8 +144,8 @@ SCENARIO = [
     line("a section that the program does not have", 'sections = ["flank"]', 'sections = ["flnak"]'),
     line("a reference that is no text", 'reference = "20 um"', "reference = 20"),
     line("the imposed model is not named", 'imposed = "imposed"\n', ""),
-    line("a sign that there is not", 'sign = "generate"', 'sign = "generated"'),
-    line("a key of another strategy", "spacing_mm = 1.6384", "spacing_mm = 1.6384\nlead_ms = 3.0"),
+    line("a sign that there is not", 'action = "impose"', 'action = "imposed"'),
+    line("a key of another strategy", "spacing_mm = 1.6384", "spacing_mm = 1.6384\nextrapolation_time_ms = 3.0"),
     line("a word that is not allowed beside numbers", "from_mm = -200.0", 'from_mm = "travl"'),
     line("a strategy's number out of range", "spacing_mm = 1.6384", "spacing_mm = 0.0"),
     line("two sets of feedback hardware", 'type = "table"', 'type = "feedback"\nmodel = "imposed"\n[[case.strategy]]\ntype = "feedback"\nmodel = "imposed"\n[[case.strategy]]\ntype = "table"'),
@@ -181,7 +181,7 @@ MACHINE = [
     line("a machine key: from machine_override", 'Kv = "60 1/s"', 'Kv = "-60 1/s"'),
     typed("a machine key: from --set", "servomill run scenario.toml --set machine.nc.Kv=-60",
           "servomill run scenario.toml --set machine_override.nc.Kv=-60",
-          "servomill run scenario.toml --set 'machine.axis.X.load=750 kgs'",
+          "servomill run scenario.toml --set 'machine.axis.X.moving_mass=750 kgs'",
           "servomill run scenario.toml --set machine.nc.kv=60"),
     line("an unknown key in machine_override", 'Kv = "60 1/s"', 'KV = "60 1/s"'),
     line("machine_override is a number", '[machine_override.nc]\nKv = "60 1/s"', "machine_override = 3"),
@@ -226,7 +226,7 @@ AXIS = [
     table_of_axis("five filters", '[[axis.X.filter]]\ntype = "low_pass"\nfrequency_Hz = 500\n' * 5),
     axis("a crossover without its frequency", 'position_feedback = "crossover"'),
     axis("a feedback that there is not", 'position_feedback = "scales"'),
-    table_of_axis("a spike that does not fade", '[axis.X.friction_compensation]\ncoulomb = "450 N"\nspike = "100 N"\n'),
+    table_of_axis("a spike that does not fade", '[axis.X.friction_compensation]\ncoulomb = "450 N"\nreversal_pulse = "100 N"\n'),
     table_of_axis("an encoder without its period", "[axis.X.scale]\nsubdivision = 1024\n"),
     table_of_axis("an encoder whose signals vanish", '[axis.X.scale]\nperiod = "20 um"\nsine_offset = 1.2\n'),
     table_of_axis("marks on a scale of unknown period", "[axis.X.marks]\nincrement = 1000\n"),
@@ -237,7 +237,7 @@ AXIS = [
                  ("machine.toml", "[axis.Y]", '[axis.X.winding]\ninductance = "4 mH"\nresistance = "0.6 ohm"\n'
                   'bandwidth = "30000 rad/s"\n\n[axis.Y]')]},
     table_of_axis("a filter that the velocity loop cannot bear", '[[axis.X.filter]]\ntype = "low_pass"\nfrequency_Hz = 5\n'),
-    axis("a load that no current can hold", 'constant_load = "30 kN"'),
+    axis("a load that no current can hold", 'gravity_load = "30 kN"'),
     line("feedback of a scale that nobody reads", 'type = "table"', 'type = "feedback"\nmodel = "imposed"\n[[case.strategy]]\ntype = "table"')
     | {"commands": ["servomill check scenario.toml --set 'machine_override.nc.position_feedback=\"motor\"'"]},
     machine("an integrator that there is not", 'name      = "Three-axis mill"',
@@ -390,7 +390,7 @@ SWEEP = [
     sweep("a sweep to where the loop is unstable", '"machine.nc.Kv" = ["60 1/s", "5000 1/s"]', *CHECK, SWEEP_IT),
     sweep("a sweep over nothing", '"program.feed_override" = []'),
     sweep("a sweep over no list", '"program.feed_override" = 1.0'),
-    sweep("a sweep over a case that there is not", '"case.tabel.strategy.response_time_ms" = [0.0, 10.0]'),
+    sweep("a sweep over a case that there is not", '"case.tabel.strategy.time_constant_ms" = [0.0, 10.0]'),
     sweep("a sweep over what is compared", '"quantity[0].axis" = ["X", "Y"]'),
     sweep("a sweep over too many points",
           'program.feed_override = { log = [0.1, 2.0], count = 5000 }\n'
@@ -398,7 +398,7 @@ SWEEP = [
     sweep("ranges and lists that are none",
           '"program.feed_override" = { linear = [0.5, 0.5], count = 3 }\n'
           '"machine.nc.Kv" = { log = ["40 1/s", "2 m/min/mm"], count = 3 }\n'
-          '[[sweep.together]]\n"machine.axis.X.v_max" = [1.0, 2.0]\n"machine.axis.Y.v_max" = [1.0, 2.0, 3.0]'),
+          '[[sweep.zip]]\n"machine.axis.X.v_max" = [1.0, 2.0]\n"machine.axis.Y.v_max" = [1.0, 2.0, 3.0]'),
     sweep("distributions that are none, and no samples",
           '"errors.imposed.EYX.harmonic.amplitude_um" = { normal = [150.0, -3.0] }\n'
           '"program.feed_override" = { uniform = [2.0, 1.0], conut = 3 }'),
@@ -437,15 +437,15 @@ SERVO = [
           "servomill step scenario.toml --axis A", "servomill step scenario.toml --axis ''",
           "servomill tune scenario.toml --axis al"),
     typed("a case that there is not", BODE + " --case tabel", "servomill tune scenario.toml --axis X --case nominl"),
-    typed("frequencies that cannot be", BODE + " --from 0", BODE + " --from nan", BODE + " --from 0.01", BODE + " --to 2600",
-          BODE + " --loop velocity --from 2600", BODE + " --from 10 --to 10", BODE + " --points 1"),
+    typed("frequencies that cannot be", BODE + " --f-min 0", BODE + " --f-min nan", BODE + " --f-min 0.01", BODE + " --f-max 2600",
+          BODE + " --loop velocity --f-min 2600", BODE + " --f-min 10 --f-max 10", BODE + " --points 1"),
     typed("an amplitude that cannot be", BODE + " --amplitude '0 um'", BODE + " --amplitude -20",
           BODE + " --amplitude '20 N'", BODE + " --loop compliance --amplitude '20 um'",
           BODE + " --loop all --amplitude '20 um'", BODE + " --velocity '1 mm'"),
     typed("a loop, a method, a step that there is not", BODE + " --loop positon", BODE + " --method sinus",
           STEP + " --kind force"),
-    typed("a step that cannot be", STEP + " --kind load --height '0 N'", STEP + " --height '1 mm'",
-          STEP + " --kind load --height '1 mm'", STEP + " --band 100", STEP + " --duration '0 s'",
+    typed("a step that cannot be", STEP + " --kind load --amplitude '0 N'", STEP + " --amplitude '1 mm'",
+          STEP + " --kind load --amplitude '1 mm'", STEP + " --band 100", STEP + " --duration '0 s'",
           STEP + " --duration '1 h'"),
     typed("margins that cannot be", TUNE + " --phase-margin 90", TUNE + " --gain-margin 0", TUNE + " --overshoot 100",
           TUNE + " --bandwidth -5", TUNE + " --phase-margin 85"),
@@ -475,7 +475,7 @@ POST = [
     typed("a CSV table without a column", POST_IT.replace("cls", "csv"), write={"part.csv": "x,y,z,i,j\n"}),
     typed("a CSV table with wrong lines", POST_IT.replace("cls", "csv"),
           write={"part.csv": "x,y,z,i,j,k\n1,2,3,0,0\n1,2,3,0,0,0\n1,2,3,0,0,up\n"}),
-    typed("odd cutter locations, which are posted all the same", POST_T + " -q --force",
+    typed("odd cutter locations, which are post-processed all the same", POST_T + " -q --force",
           write={"part.cls": "MACHIN/ANY\nPAINT/PATH\nCOOLNT/THRU\nPAINT/PATH\nGOTO/0,0,10,0,0,1.1\nFINI\nGOTO/1,1,1\n",
                  "out.ngc": "(old)\n"}),
     typed("more odd tool axes than one wants to read of", POST_T + " -q",
@@ -493,13 +493,13 @@ POST = [
           POST_IT.replace("out.ngc", "."), POST_IT.replace("out.ngc", "nowhere/out.ngc"), write={"part.cls": RIGHT}),
     typed("options of post that cannot be", "servomill post part.cls", "servomill post", POST_IT + " --tcp --classical",
           POST_IT + " --tools a.tbl --tool-length 100", POST_IT + " --tolerance 0", POST_IT + " --axis-tolerance nan",
-          POST_IT + " --part-zero 1,2", POST_IT + " --part-zero 1,2,x", POST_IT + " --start Q=1", POST_IT + " --start A=10",
+          POST_IT + " --work-offset 1,2", POST_IT + " --work-offset 1,2,x", POST_IT + " --start Q=1", POST_IT + " --start A=10",
           POST_IT + " --start X=ten", POST_IT + " --work-system 60", POST_IT + " --feed -1", POST_IT + " --tool -1",
           POST_IT + " --approach sideways", POST_IT + " --clearance '0 mm'", POST_IT + " --retract up", POST_IT + " --retract Z=9999",
           POST_IT + " --approach direct --retract Z=10", POST_T + " --clearance '2 m'", POST_T + " --retract Z=15",
           POST_IT + " --tool-length '5 deg'", POST_IT + " --set structure=3", POST_IT + " --set axis.X.lead=3", POST_IT, POST_IT + " --tool 3",
           POST_IT + " --tool 0 --tool-length 5", write={"part.cls": RIGHT}),
-    typed("a part and a tool that are nowhere on a machine with rotary axes", POST_IT, POST_IT + " --part-zero 0,0,0 --approach direct",
+    typed("a part and a tool that are nowhere on a machine with rotary axes", POST_IT, POST_IT + " --work-offset 0,0,0 --approach direct",
           write={"part.cls": RIGHT, "machine.toml": 'structure = "[w C\' A\' b X Y Z t]"\n'}),
     typed("a height that nobody has named", POST_IT, write={"part.cls": RIGHT, "machine.toml": 'structure = "[w b X Y Z t]"\n'}),
     typed("the machine of post", POST_IT.replace("machine.toml", "machin.toml"), POST_IT.replace("machine.toml", "part.ngc"),
@@ -539,14 +539,14 @@ TABLES = [
 CASES = '[[case]]\nname = "nominal"'
 LINE = 'line = { from_mm = [0, 0, -1], to_mm = [50, 0, -1], normal = [0, -1, 0], points = 6 }'
 
-OTHER = '[[quantity]]\nname = "imposed_curve_residual"\naxis = "Y"'
+OTHER = '[[quantity]]\nname = "imposed_error_residual"\naxis = "Y"'
 
 
 def probed(title, probes, *quantities, diameter="\ndiameter_mm = 8.0"):
     """A scenario with these tables before its cases, and quantities behind them."""
     edits = [("scenario.toml", "length_mm = 110.0", "length_mm = 110.0" + diameter),
              ("scenario.toml", CASES, probes + "\n" + CASES)]
-    edits += [("scenario.toml", 'name = "imposed_curve_residual"\naxis = "Y"', one) for one in quantities]
+    edits += [("scenario.toml", 'name = "imposed_error_residual"\naxis = "Y"', one) for one in quantities]
     return {"title": title, "edit": edits, "commands": CHECK}
 
 

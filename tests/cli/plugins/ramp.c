@@ -60,7 +60,7 @@ static const servomill_strategy kRamp = {.size = sizeof(servomill_strategy),
                                          .settle = settle_ramp,
                                          .displacement = displace};
 
-/* `identified`: offsets the set points by the error that the identified model tells. */
+/* `identified`: offsets the setpoints by the error that the identified model tells. */
 static const char* create_identified(const servomill_setup* setup, void** state) {
   servomill_setup* copy = malloc(sizeof *copy);
   if (copy == NULL) return "not enough memory";
@@ -79,7 +79,7 @@ static const char* offset(void* state, const servomill_reading* now, double out[
 
 static const servomill_strategy kIdentified = {.size = sizeof(servomill_strategy),
                                                .name = "identified",
-                                               .summary = "offsets the set points, to first order",
+                                               .summary = "offsets the setpoints, to first order",
                                                .knows_errors = 1,
                                                .create = create_identified,
                                                .destroy = free,

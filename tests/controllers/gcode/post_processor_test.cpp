@@ -32,7 +32,7 @@ PostOptions usual_options() {
   options.approach = Approach::direct;
   options.tools = usual_setup().tools;
   options.tool = 1;
-  options.part_zero << 0.03, -0.02, 0.05;
+  options.work_offset << 0.03, -0.02, 0.05;
   options.feed = 0.02;
   options.tolerance = {1.0 * um, 20.0 * urad};
   return options;
@@ -56,13 +56,13 @@ ClData wandering(unsigned seed, int count = 30) {
   return data;
 }
 
-// The posted program as servomill reads it again.
-std::vector<Move> read_again(const Posted& posted, const PostOptions& options) {
+// The made program as servomill reads it again.
+std::vector<Move> read_again(const PostProcessed& made, const PostOptions& options) {
   ProgramSetup setup;
   setup.tools = options.tools;
-  setup.work_offset[0].head<3>() = options.part_zero;
+  setup.work_offset[0].head<3>() = options.work_offset;
   std::vector<Move> motions;
-  for (const Move& move : interpret(print_program(posted.moves, {}, "").text, "p.ngc", setup)) {
+  for (const Move& move : interpret(print_program(made.moves, {}, "").text, "p.ngc", setup)) {
     if (is_motion(move.kind)) motions.push_back(move);
   }
   return motions;
@@ -84,10 +84,10 @@ TEST(Post, ToolGoesStraightFromLocationToLocation) {
   for (const char* structure : kStructures) {
     const auto inverse = machine(structure);
     const ClData data = wandering(1);
-    const Posted posted = post(data, "p.cls", inverse, options);
-    EXPECT_GT(posted.inserted, data.records.size()) << structure;
-    const auto moves = read_again(posted, options);
-    ASSERT_EQ(moves.size(), data.records.size() + posted.inserted);
+    const PostProcessed made = post(data, "p.cls", inverse, options);
+    EXPECT_GT(made.inserted, data.records.size()) << structure;
+    const auto moves = read_again(made, options);
+    ASSERT_EQ(moves.size(), data.records.size() + made.inserted);
     std::size_t n = 0;
     Joints Q = inverse.chain().layout.joints(moves[0].end_machine);
     double s = 0.0, s_of_location = 0.0;
@@ -95,12 +95,12 @@ TEST(Post, ToolGoesStraightFromLocationToLocation) {
       const Joints next = inverse.chain().layout.joints(moves[i].end_machine);
       const ToolPose from = data.records[n].P, to = data.records[n + 1].P;
       const double length = (to.p_WT - from.p_WT).norm();
-      const double share = (posted.moves[i + 1].s_end - posted.moves[i + 1].s_begin) / length;
+      const double share = (made.moves[i + 1].s_end - made.moves[i + 1].s_begin) / length;
       const plant::StraightToolPath path(from, to);
       for (double f = 0.0; f <= 1.0; f += 0.05) {
         const ToolPose is = plant::forward(inverse.chain(), Q + f * (next - Q), p_ST);
         const ToolPose wanted = path.at((s - s_of_location) / length + f * share);
-        EXPECT_LT((is.p_WT - options.part_zero - wanted.p_WT).norm(),
+        EXPECT_LT((is.p_WT - options.work_offset - wanted.p_WT).norm(),
                   1.01 * options.tolerance.tip + kPrintTol);
         EXPECT_LT(angle_between(is.k_W, wanted.k_W), 1.01 * options.tolerance.axis + kPrintTol);
       }
@@ -121,8 +121,8 @@ TEST(Post, EveryBlockTakesTheTimeThatTheTipNeeds) {
   options.feed = 0.02;
   const auto inverse = machine(kTableTable);
   const ClData data = wandering(2);
-  const Posted posted = post(data, "p.cls", inverse, options);
-  const auto moves = read_again(posted, options);
+  const PostProcessed made = post(data, "p.cls", inverse, options);
+  const auto moves = read_again(made, options);
   double time = 0.0, length = 0.0;
   for (std::size_t i = 1; i < moves.size(); ++i) {
     EXPECT_EQ(moves[i].feed_mode, FeedMode::inverse_time);
@@ -136,7 +136,7 @@ TEST(Post, EveryBlockTakesTheTimeThatTheTipNeeds) {
 
 TEST(Post, StandingTipTurnsWithTheRateOfTheToolAxis) {
   PostOptions options = usual_options();
-  options.turn_rate = 0.5;
+  options.rotary_rate = 0.5;
   const auto inverse = machine(kTableTable);
   const ClData data = cl("GOTO/10,0,0,0.6,0,0.8\nGOTO/10,0,0,0.8,0,0.6\n");
   const auto moves = read_again(post(data, "p.cls", inverse, options), options);
@@ -145,7 +145,7 @@ TEST(Post, StandingTipTurnsWithTheRateOfTheToolAxis) {
     time += (moves[i].end_machine - moves[i - 1].end_machine).head<3>().norm() / moves[i].feed;
   }
   const double angle = std::atan2(0.8, 0.6) - std::atan2(0.6, 0.8);
-  EXPECT_NEAR(time, angle / options.turn_rate, 1e-6);
+  EXPECT_NEAR(time, angle / options.rotary_rate, 1e-6);
 }
 
 TEST(Post, EndlessAxisGoesOnTurning) {
@@ -159,9 +159,9 @@ TEST(Post, EndlessAxisGoesOnTurning) {
                 Eigen::Vector3d(std::cos(angle), std::sin(angle), 1.0).normalized()};
   }
   const auto inverse = machine(kTableTable);
-  const Posted posted = post(data, "p.cls", inverse, options);
-  const double first = posted.moves[1].end_machine[index_of(Axis::C)];
-  const double last = posted.moves.back().end_machine[index_of(Axis::C)];
+  const PostProcessed made = post(data, "p.cls", inverse, options);
+  const double first = made.moves[1].end_machine[index_of(Axis::C)];
+  const double last = made.moves.back().end_machine[index_of(Axis::C)];
   EXPECT_NEAR(std::abs(last - first), 720.0 * deg, kPrintTol);
 }
 
@@ -169,9 +169,9 @@ TEST(Post, ClassicalPostHasOneBlockALocation) {
   PostOptions options = usual_options();
   options.mode = PostMode::locations;
   const ClData data = wandering(3);
-  const Posted posted = post(data, "p.cls", machine(kTableTable), options);
-  EXPECT_EQ(posted.inserted, 0u);
-  EXPECT_EQ(posted.moves.size(), data.records.size() + 1);  // and the tool
+  const PostProcessed made = post(data, "p.cls", machine(kTableTable), options);
+  EXPECT_EQ(made.inserted, 0u);
+  EXPECT_EQ(made.moves.size(), data.records.size() + 1);  // and the tool
 }
 
 TEST(Post, TipWordsAreTheLocations) {
@@ -179,13 +179,13 @@ TEST(Post, TipWordsAreTheLocations) {
   options.mode = PostMode::tip;
   options.tolerance.axis = 1.0;
   const ClData data = wandering(4);
-  const Posted posted = post(data, "p.cls", machine(kTableTable), options);
-  ASSERT_EQ(posted.moves.size(), data.records.size() + 1);
+  const PostProcessed made = post(data, "p.cls", machine(kTableTable), options);
+  ASSERT_EQ(made.moves.size(), data.records.size() + 1);
   for (std::size_t n = 0; n < data.records.size(); ++n) {
-    EXPECT_LT((posted.moves[n + 1].end.head<3>() - data.records[n].P.p_WT).norm(), 1e-15);
+    EXPECT_LT((made.moves[n + 1].end.head<3>() - data.records[n].P.p_WT).norm(), 1e-15);
   }
-  EXPECT_DOUBLE_EQ(posted.moves.back().feed, options.feed);
-  EXPECT_EQ(posted.moves.back().feed_mode, FeedMode::units_per_minute);
+  EXPECT_DOUBLE_EQ(made.moves.back().feed, options.feed);
+  EXPECT_EQ(made.moves.back().feed_mode, FeedMode::units_per_minute);
 }
 
 TEST(Post, TipControlNeedsFewerPoints) {
@@ -271,10 +271,10 @@ M30
 }
 
 TEST(Post, SingularToolAxisIsToldOnce) {
-  const Posted posted = post(cl("GOTO/0,0,10\nGOTO/0,0,0\nGOTO/5,0,0\n"), "p.cls",
-                             machine(kTableTable), usual_options());
-  ASSERT_EQ(posted.warnings.size(), 1u);
-  EXPECT_EQ(to_string(posted.warnings[0]),
+  const PostProcessed made = post(cl("GOTO/0,0,10\nGOTO/0,0,0\nGOTO/5,0,0\n"), "p.cls",
+                                  machine(kTableTable), usual_options());
+  ASSERT_EQ(made.warnings.size(), 1u);
+  EXPECT_EQ(to_string(made.warnings[0]),
             "p.cls:1: warning: the tool axis is singular, here and at 2 more locations: a rotary "
             "axis is free");
 }
@@ -322,8 +322,8 @@ TEST(Post, ChordsAndRoundingTogetherKeepToTheTolerance) {
   const auto distance_from_way = [&](const Vector3d& tip) {
     double nearest = 1e9;
     for (std::size_t n = 1; n < data.records.size(); ++n) {
-      const Vector3d a = data.records[n - 1].P.p_WT + options.part_zero;
-      const Vector3d d = data.records[n].P.p_WT + options.part_zero - a;
+      const Vector3d a = data.records[n - 1].P.p_WT + options.work_offset;
+      const Vector3d d = data.records[n].P.p_WT + options.work_offset - a;
       const double t = std::clamp((tip - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
       nearest = std::min(nearest, (tip - a - t * d).norm());
     }
@@ -371,7 +371,7 @@ TEST(Post, TimesThatAskTooMuchOfAnAxisAreTold) {
     return w.message.starts_with("the programmed feed");
   }));
   options.feed = 0.5;
-  const Posted fast = past(0.01);
+  const PostProcessed fast = past(0.01);
   ASSERT_FALSE(fast.warnings.empty());
   const Warning& warning = fast.warnings.back();
   EXPECT_EQ(warning.place.line, 2);
@@ -385,22 +385,22 @@ TEST(Post, TimesThatAskTooMuchOfAnAxisAreTold) {
 TEST(Post, WhatClassicalPostsBendIsTold) {
   PostOptions options = usual_options();
   options.mode = PostMode::locations;
-  const Posted posted = post(cl("GOTO/10,0,0,0,-0.1,1\nGOTO/30,0,0,0.3,-0.3,1\nGOTO/30,1,0\n"),
-                             "p.cls", machine(kTableTable), options);
+  const PostProcessed made = post(cl("GOTO/10,0,0,0,-0.1,1\nGOTO/30,0,0,0.3,-0.3,1\nGOTO/30,1,0\n"),
+                                  "p.cls", machine(kTableTable), options);
   const auto inverse = machine(kTableTable);
-  const Joints Q_0 = inverse.chain().layout.joints(posted.moves[1].end_machine);
-  const Joints Q_1 = inverse.chain().layout.joints(posted.moves[2].end_machine);
+  const Joints Q_0 = inverse.chain().layout.joints(made.moves[1].end_machine);
+  const Joints Q_1 = inverse.chain().layout.joints(made.moves[2].end_machine);
   double bend = 0.0;
   for (double t = 0.0; t < 1.0; t += 0.0625) {
-    const Vector3d way = options.part_zero + Vector3d(10 + 20 * t, 0, 0) * mm;
+    const Vector3d way = options.work_offset + Vector3d(10 + 20 * t, 0, 0) * mm;
     bend = std::max(
         bend,
         (plant::forward(inverse.chain(), Q_0 + t * (Q_1 - Q_0), Vector3d(0, 0, -100 * mm)).p_WT -
          way)
             .norm());
   }
-  ASSERT_EQ(posted.warnings.size(), 1u);
-  EXPECT_EQ(to_string(posted.warnings.back()),
+  ASSERT_EQ(made.warnings.size(), 1u);
+  EXPECT_EQ(to_string(made.warnings.back()),
             fmt::format("p.cls:2: warning: on the way here the axes lead the tip {:.4g} mm off the "
                         "straight way; only --classical inserts no points",
                         bend / mm));
@@ -417,9 +417,9 @@ TEST(Post, WarningsOfWhatIsRefusedAreKept) {
 // ------------------------------------------------------------------------ singular directions
 
 // Joints of the feed moves, in order.
-std::vector<Joints> joints_of(const Posted& posted, const plant::InverseKinematics& inverse) {
+std::vector<Joints> joints_of(const PostProcessed& made, const plant::InverseKinematics& inverse) {
   std::vector<Joints> out;
-  for (const Move& move : posted.moves) {
+  for (const Move& move : made.moves) {
     if (is_motion(move.kind)) out.push_back(inverse.chain().layout.joints(move.end_machine));
   }
   return out;
@@ -436,8 +436,8 @@ TEST(Post, LooksAheadForTheAngleThatIsFree) {
       const std::string part =
           fmt::format("RAPID\nGOTO/40,10,30\nGOTO/40,10,0\nGOTO/45,10,0\nGOTO/50,15,0,{},{},1\n",
                       0.5 * std::cos(phi * deg), 0.5 * std::sin(phi * deg));
-      const Posted posted = post(cl(part), "p.cls", inverse, options);
-      const auto joints = joints_of(posted, inverse);
+      const PostProcessed made = post(cl(part), "p.cls", inverse, options);
+      const auto joints = joints_of(made, inverse);
       EXPECT_NEAR(joints.back()[4], joints.front()[4], 1e-6) << phi;
       EXPECT_NEAR(joints.back()[3], std::atan(0.5), 1e-9) << phi;
       EXPECT_LT(joints.size(), 200u);
@@ -450,13 +450,13 @@ TEST(Post, TurnsTheFreeAxisWithTheTipInPlace) {
   const Vector3d p_ST(0.0, 0.0, -100.0 * mm);
   PostOptions options = usual_options();
   const std::string part = "GOTO/40,10,0,0,-0.5,1\nGOTO/45,10,0,0,0,1\nGOTO/50,15,0,0.5,0,1\n";
-  const Vector3d upright = Vector3d(45, 10, 0) * mm + options.part_zero;
+  const Vector3d upright = Vector3d(45, 10, 0) * mm + options.work_offset;
   const auto inverse = machine(kTableTable);
-  const Posted posted = post(cl(part), "p.cls", inverse, options);
+  const PostProcessed made = post(cl(part), "p.cls", inverse, options);
   double turned = 0.0, time = 0.0;
-  for (std::size_t i = 1; i < posted.moves.size(); ++i) {
-    const Move& move = posted.moves[i];
-    const Joints Q_0 = inverse.chain().layout.joints(posted.moves[i - 1].end_machine);
+  for (std::size_t i = 1; i < made.moves.size(); ++i) {
+    const Move& move = made.moves[i];
+    const Joints Q_0 = inverse.chain().layout.joints(made.moves[i - 1].end_machine);
     const Joints Q_1 = inverse.chain().layout.joints(move.end_machine);
     if (move.line != 3 || move.s_end > move.s_begin) continue;
     turned += std::abs(Q_1[4] - Q_0[4]);
@@ -468,15 +468,15 @@ TEST(Post, TurnsTheFreeAxisWithTheTipInPlace) {
     }
   }
   EXPECT_NEAR(turned, 90 * deg, 1e-6);
-  EXPECT_NEAR(time, 90 * deg / options.turn_rate, 1e-6);
-  ASSERT_GE(posted.warnings.size(), 1u);
+  EXPECT_NEAR(time, 90 * deg / options.rotary_rate, 1e-6);
+  ASSERT_GE(made.warnings.size(), 1u);
   EXPECT_EQ(
-      to_string(posted.warnings.front()),
+      to_string(made.warnings.front()),
       "p.cls:3: warning: C turns by 90 deg with the tip in place before the tool axis leaves a "
       "singular direction; a retract there would avoid it");
   // the NC with tip control turns it in one block
   options.mode = PostMode::tip;
-  const Posted tip = post(cl(part), "p.cls", inverse, options);
+  const PostProcessed tip = post(cl(part), "p.cls", inverse, options);
   EXPECT_EQ(std::count_if(tip.moves.begin(), tip.moves.end(),
                           [](const Move& m) { return m.line == 3 && m.s_end == m.s_begin; }),
             1);
@@ -485,9 +485,9 @@ TEST(Post, TurnsTheFreeAxisWithTheTipInPlace) {
 TEST(Post, LeavesASingularDirectionOnTheBranchThatArrives) {
   const auto inverse = machine(kTableTable, -0.1);
   for (const double y : {-0.5, 0.5}) {
-    const Posted posted = post(cl(fmt::format("GOTO/0,0,0\nGOTO/10,0,0,0,{},0.866\n", y)), "p.cls",
-                               inverse, usual_options());
-    EXPECT_GT(joints_of(posted, inverse).back()[3], 0.0);
+    const PostProcessed made = post(cl(fmt::format("GOTO/0,0,0\nGOTO/10,0,0,0,{},0.866\n", y)),
+                                    "p.cls", inverse, usual_options());
+    EXPECT_GT(joints_of(made, inverse).back()[3], 0.0);
   }
 }
 

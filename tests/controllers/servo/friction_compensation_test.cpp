@@ -32,8 +32,8 @@ TEST(FrictionCompensation, AddsTheCoulombTorqueOfTheDirection) {
 
 TEST(FrictionCompensation, IsNothingBeforeTheFirstMotion) {
   FrictionCompensationParams p = two_sided();
-  p.tau_spike = 2.0;
-  p.spike_time = 10e-3;
+  p.tau_pulse = 2.0;
+  p.reversal_pulse_time = 10e-3;
   FrictionCompensationState s;
   EXPECT_EQ(friction_compensation(p, s, 0.0), 0.0);
   EXPECT_EQ(friction_compensation(p, s, 0.1), 1.4) << "the first motion is no reversal";
@@ -70,8 +70,8 @@ TEST(FrictionCompensation, HoldsAtStandstillWhatItHeld) {
 
 TEST(FrictionCompensation, AnswersNoiseAtStandstillByItsShareOfTheSwitchOnly) {
   FrictionCompensationParams p = two_sided();
-  p.tau_spike = 2.0;
-  p.spike_time = 10e-3;
+  p.tau_pulse = 2.0;
+  p.reversal_pulse_time = 10e-3;
   FrictionCompensationState s;
   friction_compensation(p, s, 0.1);
   std::mt19937 dice(5);
@@ -85,8 +85,8 @@ TEST(FrictionCompensation, AnswersNoiseAtStandstillByItsShareOfTheSwitchOnly) {
 TEST(FrictionCompensation, TheSpikeFallsWithTime) {
   FrictionCompensationParams p = two_sided();
   p.v_switch = 0.0;
-  p.tau_spike = 2.0;
-  p.spike_time = 10e-3;
+  p.tau_pulse = 2.0;
+  p.reversal_pulse_time = 10e-3;
   FrictionCompensationState s;
   friction_compensation(p, s, 0.1);
   for (int k = 0; k < 500; ++k) {
@@ -98,8 +98,8 @@ TEST(FrictionCompensation, TheSpikeFallsWithTime) {
 TEST(FrictionCompensation, TheSpikeFallsWithTheWayWhateverTheSpeed) {
   FrictionCompensationParams p = two_sided();
   p.v_switch = 0.0;
-  p.tau_spike = 2.0;
-  p.spike_distance = 0.1 * mm;
+  p.tau_pulse = 2.0;
+  p.reversal_pulse_distance = 0.1 * mm;
   std::mt19937 dice(6);
   FrictionCompensationState s;
   friction_compensation(p, s, -0.1);
@@ -120,34 +120,34 @@ TEST(FrictionCompensation, ANegativeSpikeTurnsTheTorqueOverAsBristlesDo) {
   // LuGre friction with Fs = Fc: F(s) = Fc (1 - 2 exp(-s sigma0 / Fc)) behind a reversal
   FrictionCompensationParams p = two_sided();
   p.v_switch = 0.0;
-  p.tau_spike = -(p.tau_plus + p.tau_minus);
-  p.spike_distance = 9.0 * um;
+  p.tau_pulse = -(p.tau_plus + p.tau_minus);
+  p.reversal_pulse_distance = 9.0 * um;
   FrictionCompensationState s;
   friction_compensation(p, s, 0.1);
   const double v = 1.0 * mm;
   for (int k = 0; k < 800; ++k) {
-    const double share = std::exp(-k * v * kTv / p.spike_distance);
+    const double share = std::exp(-k * v * kTv / p.reversal_pulse_distance);
     EXPECT_NEAR(friction_compensation(p, s, -v), -p.tau_minus + share * (p.tau_plus + p.tau_minus),
                 kRounding);
   }
   for (int k = 0; k < 800; ++k) friction_compensation(p, s, -v);
-  EXPECT_EQ(s.spike, 0.0) << "spent as a positive one is";
+  EXPECT_EQ(s.pulse, 0.0) << "spent as a positive one is";
 }
 
 TEST(FrictionCompensation, EachReversalHasOneSpike) {
   FrictionCompensationParams p = two_sided();
-  p.tau_spike = 2.0;
-  p.spike_time = 1e-3;
+  p.tau_pulse = 2.0;
+  p.reversal_pulse_time = 1e-3;
   FrictionCompensationState s;
   int spikes = 0;
   double before = 0.0;
   for (int k = 0; k < 40000; ++k) {  // 8 s of 1 Hz: the first rise is no reversal
     friction_compensation(p, s, 0.01 * std::sin(2.0 * std::numbers::pi * k * kTv));
-    spikes += std::abs(s.spike) > std::abs(before);
-    before = s.spike;
+    spikes += std::abs(s.pulse) > std::abs(before);
+    before = s.pulse;
   }
   EXPECT_EQ(spikes, 15);
-  EXPECT_EQ(s.spike, 0.0) << "spent spikes are gone, they do not become denormal";
+  EXPECT_EQ(s.pulse, 0.0) << "spent spikes are gone, they do not become denormal";
 }
 
 // One inertia with set-valued friction and the loops of DOMAIN.md 4.2 on an axis of a circle, R =
@@ -210,8 +210,8 @@ TEST(FrictionCompensation, TheSpikeTakesTheBreakawayAway) {
   const double tau = 1.43, tau_static = 1.78;
   FrictionCompensationParams p = for_quadrants(tau);
   const double coulomb = quadrant(tau_static, tau, p);
-  p.tau_spike = tau_static - tau;
-  p.spike_time = 1e-3;
+  p.tau_pulse = tau_static - tau;
+  p.reversal_pulse_time = 1e-3;
   const double with_spike = quadrant(tau_static, tau, p);
   EXPECT_LT(with_spike, 0.5 * coulomb);
 }

@@ -182,15 +182,15 @@ TEST(Linearise, LeavesASingularDirectionOnTheBranchThatArrives) {
   }
 }
 
-TEST(PostedSegment, ErrorsVanishAtBothEndsAndModelsMeetThemInTheMiddle) {
+TEST(PostProcessedSegment, ErrorsVanishAtBothEndsAndModelsMeetThemInTheMiddle) {
   Random random(4);
   for (const char* structure : kStructures) {
     const InverseKinematics inverse = machine(structure);
     for (int n = 0; n < 50; ++n) {
       const auto [Q_0, Q_1] = some_segment(random);
-      const PostedSegment segment(inverse, kTool, Q_0, Q_1);
+      const PostProcessedSegment segment(inverse, kTool, Q_0, Q_1);
       for (const auto definition :
-           {NonlinearError::joint_interpolation, NonlinearError::posted_location}) {
+           {NonlinearError::joint_interpolation, NonlinearError::post_processed_location}) {
         EXPECT_LT(segment.error(definition, 0.0)->norm(), kRounding);
         EXPECT_LT(segment.error(definition, 1.0)->norm(), kRounding);
       }
@@ -204,11 +204,11 @@ TEST(PostedSegment, ErrorsVanishAtBothEndsAndModelsMeetThemInTheMiddle) {
   }
 }
 
-TEST(PostedSegment, StandingTipIsCompensatedToo) {
+TEST(PostProcessedSegment, StandingTipIsCompensatedToo) {
   const InverseKinematics inverse = machine(kStructures[0]);
   const Eigen::Vector3d P(0.1, 0.05, 0.02);
-  const auto segment = *PostedSegment::post(inverse, kTool, {P, {0.6, 0.0, 0.8}},
-                                            {P, {0.8, 0.0, 0.6}}, Joints::Zero());
+  const auto segment = *PostProcessedSegment::post(inverse, kTool, {P, {0.6, 0.0, 0.8}},
+                                                   {P, {0.8, 0.0, 0.6}}, Joints::Zero());
   const auto bend = [&](const std::vector<PathPoint>& points) {
     double worst = 0.0;
     Joints Q = segment.Q_0();
@@ -230,14 +230,14 @@ TEST(PostedSegment, StandingTipIsCompensatedToo) {
   EXPECT_LT(bend(*points), peaks.parabolic + 2.0 * chord);
 }
 
-TEST(PostedSegment, ErrorIsOfSecondOrderInTheLength) {
+TEST(PostProcessedSegment, ErrorIsOfSecondOrderInTheLength) {
   const InverseKinematics inverse = machine(kStructures[0]);
   Joints Q_0, step;
   Q_0 << 0.1, 0.05, 0.0, 0.5, 0.3;
   step << 0.05, 0.0, 0.02, 0.2, 0.3;
   double before = 0.0;
   for (const double h : {1.0, 0.5, 0.25, 0.125}) {
-    const PostedSegment segment(inverse, kTool, Q_0, Q_0 + h * step);
+    const PostProcessedSegment segment(inverse, kTool, Q_0, Q_0 + h * step);
     const double error = nonlinear_peaks(segment, NonlinearError::joint_interpolation)->error;
     if (before > 0.0) {
       EXPECT_NEAR(before / error, 4.0, 0.5);  // second order in the length
@@ -246,13 +246,13 @@ TEST(PostedSegment, ErrorIsOfSecondOrderInTheLength) {
   }
 }
 
-TEST(PostedSegment, ParabolaIsBetterByAnOrderOfTheLength) {
+TEST(PostProcessedSegment, ParabolaIsBetterByAnOrderOfTheLength) {
   const InverseKinematics inverse = machine(kStructures[0]);
   Joints Q_0, step;
   Q_0 << 0.1, 0.05, 0.0, 0.5, 0.3;
   step << 0.05, 0.0, 0.02, 0.2, 0.3;
   const auto shares = [&](double h) {
-    const PostedSegment segment(inverse, kTool, Q_0, Q_0 + h * step);
+    const PostProcessedSegment segment(inverse, kTool, Q_0, Q_0 + h * step);
     const auto peaks = *nonlinear_peaks(segment, NonlinearError::joint_interpolation);
     return std::pair(peaks.harmonic / peaks.error, peaks.parabolic / peaks.error);
   };

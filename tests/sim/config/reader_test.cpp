@@ -52,7 +52,7 @@ TEST(Reader, ReadsTheExampleOfItsHeader) {
 TEST(Quantities, AreInSiWhateverTheyAreWrittenIn) {
   EXPECT_DOUBLE_EQ(real("lead_mm = 20", "lead_mm", kLength), 0.02);
   EXPECT_DOUBLE_EQ(real("lead_mm = '0.02 m'", "lead_mm", kLength), 0.02);
-  EXPECT_DOUBLE_EQ(real("response_time_ms = '40 ms'", "response_time_ms", kTime), 0.04);
+  EXPECT_DOUBLE_EQ(real("time_constant_ms = '40 ms'", "time_constant_ms", kTime), 0.04);
   EXPECT_DOUBLE_EQ(real("Kv = 60", "Kv", kRate), 60.0);
   EXPECT_DOUBLE_EQ(real("Kv = '3.6 m/min/mm'", "Kv", kRate), 60.0);
   EXPECT_DOUBLE_EQ(real("Kv = '+3.6e0m/min/mm'", "Kv", kRate), 60.0);

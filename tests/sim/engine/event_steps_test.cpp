@@ -5,7 +5,7 @@
 #include "controllers/gcode/interpreter.h"
 #include "plant/drives/drive_bank.h"
 #include "plant/vocabulary/units.h"
-#include "sim/engine/set_point.h"
+#include "sim/engine/setpoint.h"
 #include "strategies/registry.h"
 #include "tests/sim/small_scenario.h"
 
@@ -17,7 +17,8 @@ namespace {
 struct FiveAxisCase {
   MachineSettings machine =
       read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
-  strategies::Belief belief{machine.chain.layout, plant::VolumetricModel(machine.chain, errors())};
+  strategies::IdentifiedMachine identified{machine.chain.layout,
+                                           plant::VolumetricModel(machine.chain, errors())};
   std::vector<Move> moves = controllers::interpret(
       "G64 P0.01\nG1 X4 Y-3 Z2 B4 C-6 F3000\nX8 Y0 Z3 B2 C3\nM30\n", "p", {});
   controllers::Trajectory trajectory =
@@ -38,16 +39,16 @@ struct FiveAxisCase {
           plant::Encoder(noisy, {.seed = 5, .stream = static_cast<std::uint32_t>(j)});
     }
     machine.motor.fill({});
-    belief.Kv.setConstant(machine.nc.cascade[0].Kv);
+    identified.Kv.setConstant(machine.nc.cascade[0].Kv);
     const strategies::Entry* entry = strategies::find("feedback");
     Parameters p;
     p.set("max_um", 500.0 * um);
     p.set("max_rate_mm_per_s", 10.0 * mm);
-    p.set("lead_ms", "auto");
+    p.set("extrapolation_time_ms", "auto");
     p.set("velocity_window_ms", 3.0 * ms);
     p.set("iterations", "1");
     p.set("axes", "linear");
-    strategy = entry->make(p, strategies::Sign::generate, belief);
+    strategy = entry->make(p, strategies::Action::impose, identified);
   }
 
   static plant::ErrorModel errors() {
@@ -59,8 +60,8 @@ struct FiveAxisCase {
 
   CaseInputs inputs() {
     CaseInputs out = {
-        machine,  belief.model, nullptr,        trajectory, path, tips, ServoModel::cascade,
-        hardware, {},           strategy.get(), 100,        0.02};
+        machine, identified.model, nullptr, trajectory, path, tips, ServoModel::cascade, hardware,
+        {},      strategy.get(),   100,     0.02};
     out.pieces = path.pieces_of(moves);
     return out;
   }
@@ -71,11 +72,11 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
   const LoopPeriods& p = c.machine.nc.periods;
   const std::array<Tick, 1> one = {1};
   const plant::DriveBank drives(c.machine.drives, p.base, one);
-  SetPoint set_point(c.machine.nc, c.trajectory, {});
+  Setpoint setpoint(c.machine.nc, c.trajectory, {});
   controllers::Trajectory::Cursor cursor;
   const Tick model = c.hardware.model_period;
   const auto part = c.strategy->feedback(static_cast<double>(model) * p.base);
-  const Joints Q_start = set_point.settle().Q_cmd;
+  const Joints Q_start = setpoint.settle().Q_cmd;
   plant::DriveState state = drives.at_rest({Q_start.data(), kJoints});
   plant::DriveInput input(kJoints);
   plant::DriveBlock& x = state.blocks.front();
@@ -90,7 +91,7 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
     return Q;
   };
   Joints d_now = part->settle(positions());
-  Joints Q_read = scales(0) + d_now;
+  Joints Q_fb = scales(0) + d_now;
   for (std::size_t j = 0; j < kJoints; ++j) {
     loops[j].phi = drives.motor_angle(state, j);
     loops[j].i_next = loops[j].i_cmd = u.command[j] = x.i[j];
@@ -101,13 +102,13 @@ std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
   for (Tick n = 0; n <= end; ++n) {
     if (n % model == 0) d_now = part->advance(scales(n));
     if ((n + c.hardware.signal_delay) % p.position == 0) {
-      Q_read = scales(n) + d_now;
+      Q_fb = scales(n) + d_now;
     }
     if (n % p.position == 0) {
-      const AxisSetPoint& set = set_point.advance(c.trajectory.at(p.seconds(n), cursor));
+      const AxisSetpoint& set = setpoint.advance(c.trajectory.at(p.seconds(n), cursor));
       for (int j = 0; j < kJoints; ++j) {
         const auto lane = static_cast<std::size_t>(j);
-        controllers::position_loop(c.machine.nc.cascade[lane], loops[lane], set.Q_cmd[j], Q_read[j],
+        controllers::position_loop(c.machine.nc.cascade[lane], loops[lane], set.Q_cmd[j], Q_fb[j],
                                    set.dQ_ff[j], set.ddQ_ff[j]);
       }
     }

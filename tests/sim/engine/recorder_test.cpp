@@ -30,7 +30,7 @@ class Recording : public testing::Test {
       now.s = path_.length() * static_cast<double>(n) / kRows;
       while (now.s > path_.piece(piece).s_end) ++piece;
       now.piece = piece;
-      for (Joints* Q : {&now.Q_ref, &now.Q_cmd, &now.Q_read, &now.Q_meas, &now.Q_true, &now.dQ_true,
+      for (Joints* Q : {&now.Q_ref, &now.Q_cmd, &now.Q_fb, &now.Q_meas, &now.Q_true, &now.dQ_true,
                         &now.current, &now.torque}) {
         for (int j = 0; j < kJoints; ++j) (*Q)[j] = any(random);
       }
@@ -77,7 +77,7 @@ TEST_F(Recording, HasARowForEverySnapshotInOrder) {
     EXPECT_EQ(series.at(n, *series.column("time")), now.time);
     EXPECT_EQ(series.at(n, *series.column("s")), now.s / mm);
     EXPECT_EQ(series.at(n, x), now.Q_true[0] / mm);
-    EXPECT_EQ(series.at(n, error), (now.Q_cmd[1] - now.Q_read[1]) / um);
+    EXPECT_EQ(series.at(n, error), (now.Q_cmd[1] - now.Q_fb[1]) / um);
     EXPECT_EQ(series.at(n, current), now.current[2]);
   }
 }

@@ -93,7 +93,7 @@ TEST(DriveWay, HasThirtyTwoStretchesAtMost) {
 }
 
 TEST(ServoAxes, BeginWhereAnIntegralPartHoldsTheLoad) {
-  const auto [low, high] = following_error(standing("Z.constant_load = \"2000 N\"\n"), 'Z');
+  const auto [low, high] = following_error(standing("Z.gravity_load = \"2000 N\"\n"), 'Z');
   EXPECT_NEAR(low, 0.0, kStandTol);
   EXPECT_NEAR(high, 0.0, kStandTol);
 }
@@ -104,7 +104,7 @@ TEST(ServoAxes, DroopUnderLoadWithoutAnIntegralPart) {
                    kKp = 220.0 * (8.0e-3 + 300.0 * 3.1830988618e-3 * 3.1830988618e-3);
   constexpr double r = 3.1830988618e-3, Kv = 500.0 / 6.0;
   const auto [low, high] = following_error(
-      standing("Z.velocity_reset_time_ms = 0.0\nZ.constant_load = \"2000 N\"\n"), 'Z');
+      standing("Z.velocity_reset_time_ms = 0.0\nZ.gravity_load = \"2000 N\"\n"), 'Z');
   const double droop = kForce * r * r / (kKp * Kv) * 1e6;
   EXPECT_NEAR(low, droop, 1e-6 * droop);
   EXPECT_NEAR(high, droop, 1e-6 * droop);
@@ -117,7 +117,7 @@ TEST(ServoAxes, DroopMoreUnderACurrentLoopWithoutOne) {
       "bandwidth = \"3000 rad/s\", reset_time_ms = 0.0 }\n";
   const auto droop = [&](const std::string& more) {
     const auto [low, high] = following_error(
-        standing("Z.velocity_reset_time_ms = 0.0\nZ.constant_load = \"2000 N\"\n" + more), 'Z');
+        standing("Z.velocity_reset_time_ms = 0.0\nZ.gravity_load = \"2000 N\"\n" + more), 'Z');
     EXPECT_NEAR(low, high, 1e-6 * high);
     return high;
   };

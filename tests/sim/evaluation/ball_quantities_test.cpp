@@ -30,10 +30,11 @@ std::string quantity(const std::string& name, const std::string& rest) {
 }
 
 Scenario asking(const std::string& quantities, const std::string& errors = "") {
-  return small_scenario(kProgram,
-                        "truth = \"machine\"\n[[program.tool]]\nnumber = 1\nlength_mm = 110.0\n"
-                        "[record]\nperiod_ms = 5.0\n[errors.machine]\n" +
-                            errors + "[[case]]\nname = \"one\"\nservo = \"ideal\"\n" + quantities);
+  return small_scenario(
+      kProgram,
+      "machine_errors = \"machine\"\n[[program.tool]]\nnumber = 1\nlength_mm = 110.0\n"
+      "[record]\nperiod_ms = 5.0\n[errors.machine]\n" +
+          errors + "[[case]]\nname = \"one\"\nservo = \"ideal\"\n" + quantities);
 }
 
 std::vector<ComparisonRow> rows_of(const Scenario& scenario, const std::string& name = "one") {
@@ -84,22 +85,22 @@ TEST(BallQuantities, ListEveryLocationErrorWithTheTruthAndWhyNot) {
             "EA0B: -20.0 urad (-20 urad true)\n"
             "EC0B: 0.0 urad (0 urad true)\n"
             "EX0C: 10.0 um (10 um true)\n"
-            "EY0C: acts as set-up um (0 um true)\n"
-            "EX0B: acts as - EX0C + set-up um (0 um true)\n"
-            "EZ0B: acts as set-up um (0 um true)\n"
-            "EA0Y: acts as - EA0Z - EA0C - EA0B + set-up urad (0 urad true)\n"
-            "EB0X: acts as - EB0Z - EB0C + set-up urad (0 urad true)\n"
-            "EC0X: acts as - EC0Y - EC0B + set-up urad (0 urad true)\n");
+            "EY0C: confounded with set-up um (0 um true)\n"
+            "EX0B: confounded with -EX0C and set-up um (0 um true)\n"
+            "EZ0B: confounded with set-up um (0 um true)\n"
+            "EA0Y: confounded with -EA0Z, -EA0C, -EA0B and set-up urad (0 urad true)\n"
+            "EB0X: confounded with -EB0Z, -EB0C and set-up urad (0 urad true)\n"
+            "EC0X: confounded with -EC0Y, -EC0B and set-up urad (0 urad true)\n");
 }
 
 // A ball adjusted to the spindle axis, its length known, tells of offsets, too.
 TEST(BallQuantities, TellMoreOfABallWhosePlaceIsKnown) {
   const std::string more = "error = \"EY0C\"\nsections = [\"C\", \"B\", \"both\"]\n";
   const auto rows = rows_of(asking(
-      quantity("location_error", more) + quantity("location_error", more + "tip_is_known = true"),
+      quantity("location_error", more) + quantity("location_error", more + "tcp_is_known = true"),
       "EY0C = \"10 um\"\n"));
   ASSERT_EQ(rows.size(), 2U);
-  EXPECT_EQ(rows[0].note, "acts as set-up");
+  EXPECT_EQ(rows[0].note, "confounded with set-up");
   EXPECT_NEAR(rows[1].value, 10.0, kWanted * 10.0);
 }
 
@@ -169,12 +170,13 @@ TEST(BallQuantities, HaveTheirNotesInTableAndJson) {
   const auto rows = rows_of(
       asking(quantity("location_error", "sections = [\"C\", \"B\", \"both\"]\nerror = \"EY0C\"")));
   EXPECT_NE(format_table(rows).find("note\n"), std::string::npos);
-  EXPECT_NE(format_table(rows).find("0 um true        acts as set-up\n"), std::string::npos)
+  EXPECT_NE(format_table(rows).find("0 um true         confounded with set-up\n"),
+            std::string::npos)
       << format_table(rows);
   EXPECT_EQ(to_json(rows[0]),
             "{\"case\": \"one\", \"quantity\": \"location_error\", \"axis\": \"EY0C\", "
             "\"statistic\": null, \"sections\": \"C, B, both\", \"value\": null, \"unit\": \"um\", "
-            "\"reference\": \"0 um true\", \"kind\": null, \"note\": \"acts as set-up\"}");
+            "\"reference\": \"0 um true\", \"basis\": null, \"note\": \"confounded with set-up\"}");
 }
 
 // Goal for the scenarios as they are shipped (ISO 10791-6): each identifiable error
@@ -263,7 +265,7 @@ TEST_F(Bk4, RecoversAllButOneOfThem) {
 TEST_F(Bk4, ProvesTheCompensationThatTheRTestFound) {
   EXPECT_GT(largest("none", "ball_bar_deviation"), 10.0);
   Scenario without = scenario;
-  for (CaseSpec& one : without.cases) one.truth = "";
+  for (CaseSpec& one : without.cases) one.machine_errors = "";
   std::map<std::string, double> nominal;
   for (const ComparisonRow& row : rows_of(without, "none")) {
     if (row.quantity == "ball_bar_deviation") nominal[row.sections] = row.value;

@@ -73,7 +73,7 @@ class Comparison : public testing::Test {
     spec.axis = quantity_entry(name).needs_axis() ? 'Y' : '\0';
     spec.statistic = statistic;
     spec.cases = {of};
-    if (quantity_entry(name).needs_base) spec.base = "base";
+    if (quantity_entry(name).needs_baseline) spec.baseline = "base";
     spec.sections = sections;
     const auto rows = compare(std::vector<QuantitySpec>{spec}, cases_);
     EXPECT_EQ(rows.size(), 1U);
@@ -93,16 +93,16 @@ TEST_F(Comparison, TrajectoryDifferenceIsTakenAtEqualArcLength) {  // 10 s - 3, 
 }
 
 TEST_F(Comparison, ImposedCurveResidualIsWhatIsMissing) {
-  EXPECT_NEAR(value("imposed_curve_residual", "max"), 3.0, kTol);
-  EXPECT_NEAR(value("imposed_curve_residual", "mean"), -3.0, kTol);
-  EXPECT_NEAR(value("imposed_curve_residual", "rms"), 3.0, kTol);
-  EXPECT_NEAR(value("imposed_curve_residual", "range"), 0.0, kTol);
-  EXPECT_NEAR(value("brought_out", ""), 100.0 * (1.0 - 3.0 / 95.0), kTol);
+  EXPECT_NEAR(value("imposed_error_residual", "max"), 3.0, kTol);
+  EXPECT_NEAR(value("imposed_error_residual", "mean"), -3.0, kTol);
+  EXPECT_NEAR(value("imposed_error_residual", "rms"), 3.0, kTol);
+  EXPECT_NEAR(value("imposed_error_residual", "range"), 0.0, kTol);
+  EXPECT_NEAR(value("realised_ratio", ""), 100.0 * (1.0 - 3.0 / 95.0), kTol);
 }
 
 // 3 um at 10 um/mm and 1 mm/ms are 0.3 ms.
 TEST_F(Comparison, ResponseTimeIsResidualOverRate) {
-  EXPECT_NEAR(value("response_time", ""), 0.3, kTol);
+  EXPECT_NEAR(value("lag_time", ""), 0.3, kTol);
 }
 
 TEST_F(Comparison, OtherQuantitiesAreThoseOfTheCaseItself) {
@@ -128,7 +128,7 @@ TEST_F(Comparison, HasNoValueWhereACaseStoppedOrIsMissing) {
   EXPECT_TRUE(std::isnan(value("following_error", "max", {}, "no such")));
   cases_[0].finished = false;
   EXPECT_TRUE(std::isnan(value("following_error", "max")));
-  EXPECT_TRUE(std::isnan(value("imposed_curve_residual", "max")));
+  EXPECT_TRUE(std::isnan(value("imposed_error_residual", "max")));
   EXPECT_EQ(value("cycle_time", ""), 12.5) << "the program has a duration, whoever runs it";
   cases_[0].finished = true;
   cases_[1].finished = false;
@@ -154,15 +154,15 @@ TEST_F(Comparison, DoesNotSwallowWhatIsNoNumber) {
 
 std::vector<ComparisonRow> some_rows() {
   ComparisonRow table{
-      "table", "imposed_curve_residual", "Y", "max", "um", "20 um", "identified", "flank", 19.8765};
+      "table", "imposed_error_residual", "Y", "max", "um", "20 um", "fitted", "flank", 19.8765};
   ComparisonRow gcode = table;
   gcode.case_name = "gcode";
   gcode.reference = "2 um";
-  gcode.kind = "bound";
+  gcode.basis = "upper_bound";
   gcode.value = 0.07777;
   ComparisonRow stopped = table;
   stopped.case_name = "stopped";
-  stopped.reference = stopped.kind = "";
+  stopped.reference = stopped.basis = "";
   stopped.value = std::numeric_limits<double>::quiet_NaN();
   ComparisonRow blocks{"table", "blocks", "", "", "1", "", "", "", 123.0};
   return {table, gcode, stopped, blocks};
@@ -171,10 +171,11 @@ std::vector<ComparisonRow> some_rows() {
 TEST(FormatTable, SaysEachGroupOnce) {
   EXPECT_EQ(
       format_table(some_rows()),
-      "quantity                axis  statistic  section  case         value  paper  kind\n"
-      "---------------------------------------------------------------------------------\n"
-      "imposed_curve_residual  Y     max        flank    table     19.88 um  20 um  identified\n"
-      "                                                  gcode    0.0778 um  2 um   bound\n"
+      "quantity                axis  statistic  section  case         value  reference  basis\n"
+      "--------------------------------------------------------------------------------------\n"
+      "imposed_error_residual  Y     max        flank    table     19.88 um  20 um      fitted\n"
+      "                                                  gcode    0.0778 um  2 um       "
+      "upper_bound\n"
       "                                                  stopped       - um\n"
       "blocks                                            table       123.0\n");
 }
@@ -182,18 +183,18 @@ TEST(FormatTable, SaysEachGroupOnce) {
 TEST(ToJson, IsOneObjectWithNullForWhatThereIsNot) {
   const auto rows = some_rows();
   EXPECT_EQ(to_json(rows[0]),
-            R"({"case": "table", "quantity": "imposed_curve_residual", "axis": "Y", )"
+            R"({"case": "table", "quantity": "imposed_error_residual", "axis": "Y", )"
             R"("statistic": "max", "sections": "flank", "value": 19.8765, "unit": "um", )"
-            R"("reference": "20 um", "kind": "identified"})");
+            R"("reference": "20 um", "basis": "fitted"})");
   EXPECT_EQ(to_json(rows[2]),
-            R"({"case": "stopped", "quantity": "imposed_curve_residual", "axis": "Y", )"
+            R"({"case": "stopped", "quantity": "imposed_error_residual", "axis": "Y", )"
             R"("statistic": "max", "sections": "flank", "value": null, "unit": "um", )"
-            R"("reference": null, "kind": null})");
+            R"("reference": null, "basis": null})");
   ComparisonRow quoted = rows[3];
   quoted.case_name = "a \"b\"\\\n";
   EXPECT_EQ(to_json(quoted),
             R"({"case": "a \"b\"\\\u000a", "quantity": "blocks", "axis": null, "statistic": null, )"
-            R"("sections": null, "value": 123, "unit": "1", "reference": null, "kind": null})");
+            R"("sections": null, "value": 123, "unit": "1", "reference": null, "basis": null})");
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ std::string part(const Triangles& triangles) {
 }
 
 Scenario milled(const std::string& errors, const std::string& part_and_more) {
-  return small_scenario(kProgram, "truth = \"machine\"\n" + std::string(kTool) +
+  return small_scenario(kProgram, "machine_errors = \"machine\"\n" + std::string(kTool) +
                                       "[errors.machine]\n" + errors + part_and_more +
                                       "[[case]]\nname = \"one\"\nservo = \"ideal\"\n" + kProbes +
                                       "[[quantity]]\nname = \"distortion\"\n");
@@ -123,8 +123,8 @@ TEST(NominalPart, IsInTheResolvedScenarioAndTheResultFile) {
   const StoredRun back = read_run(path);
   EXPECT_NEAR(compare(back.quantities, back.cases)[0].value, output.comparison[0].value, 1e-6);
   const InputFile file(path);
-  const auto places = file.values("/cases/one/probes/side/fit_place");
-  const auto deviations = file.values("/cases/one/probes/side/fit_deviation");
+  const auto places = file.values("/cases/one/probes/side/aligned_position");
+  const auto deviations = file.values("/cases/one/probes/side/aligned_deviation");
   std::filesystem::remove_all(folder);
   ASSERT_EQ(places.size(), 150U);
   double largest = 0.0;

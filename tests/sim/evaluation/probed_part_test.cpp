@@ -57,7 +57,7 @@ struct Asked {
 };
 
 Scenario asking(const Asked& asked) {
-  return small_scenario(kProgram, asked.root + "\ntruth = \"machine\"\n" + kTool +
+  return small_scenario(kProgram, asked.root + "\nmachine_errors = \"machine\"\n" + kTool +
                                       "[errors.machine]\n" + asked.errors + asked.cases +
                                       asked.probes + asked.quantities);
 }
@@ -163,7 +163,7 @@ TEST(ProbedPart, TellsWhatIsMissed) {
             "warning: case one: 1 of 2 points of probe 'inside' met no cut surface, first at X50 "
             "Y30 Z-5: no cutter came there\n"
             "warning: case one: 1 of 2 points of probe 'inside' met no cut surface, first at X50 "
-            "Y-4 Z-5: the cutter took away all down to 1 mm (cmm.depth_mm) below it\n");
+            "Y-4 Z-5: the cutter took away all down to 1 mm (cmm.search_mm) below it\n");
 }
 
 // Material that no cutter removed is no part outside of the raw part.
@@ -190,11 +190,11 @@ TEST(ProbedPart, IsImposedWithTheToolThatCutIt) {
                  "[errors.wave]\nEXX = { polynomial_um = [0.0, 1.0] }\n"
                  "[[case]]\nname = \"one\"\nservo = \"ideal\"\n"
                  "[[case]]\nname = \"wave\"\nservo = \"ideal\"\n[[case.strategy]]\ntype = "
-                 "\"gcode\"\nmodel = \"wave\"\nsign = \"generate\"\n"
+                 "\"gcode\"\nmodel = \"wave\"\naction = \"impose\"\n"
                  "[[probe]]\nname = \"bore\"\ncircle = { centre_mm = [50.0, 50.0, -5.0], "
                  "radius_mm = 10.0, outside = false, points = 24 }\n" +
                  quantity("probed_imposed_residual",
-                          "probe = \"bore\"\nbase = \"one\"\ncases = [\"wave\"]"));
+                          "probe = \"bore\"\nbaseline = \"one\"\ncases = [\"wave\"]"));
   // um: chords of the rewritten program and the mark of its way in; 30 with the place of tool 2
   EXPECT_LT(run(scenario).comparison.at(0).value, 0.5);
 }
@@ -215,8 +215,8 @@ TEST(ProbedPart, IsComparedWithABaseCaseAndWithWhatIsImposed) {
       "50.0 } }\n";
   asked.cases +=
       "[[case]]\nname = \"wave\"\nservo = \"ideal\"\n[[case.strategy]]\ntype = "
-      "\"feedback\"\nmodel = \"wave\"\nsign = \"generate\"\n";
-  const std::string common = "probe = \"flank\"\nbase = \"one\"\ncases = [\"wave\"]";
+      "\"feedback\"\nmodel = \"wave\"\naction = \"impose\"\n";
+  const std::string common = "probe = \"flank\"\nbaseline = \"one\"\ncases = [\"wave\"]";
   asked.quantities = quantity("probed_deviation", common) + quantity("straightness", common) +
                      quantity("probed_imposed_residual", common) +
                      quantity("probed_deviation", "probe = \"flank\"\ncases = [\"one\"]");

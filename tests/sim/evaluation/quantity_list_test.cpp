@@ -29,7 +29,7 @@ TEST(Quantities, HaveTheKeysOfOneFamily) {
     EXPECT_TRUE(entry.probes > 0 || !entry.has_fit) << entry.name;
     EXPECT_TRUE(entry.is_of_ball || entry.bars == BallBars::none) << entry.name;
     EXPECT_TRUE(entry.is_of_ball || !entry.identifies) << entry.name;
-    EXPECT_FALSE(entry.is_of_program && entry.needs_base) << entry.name;
+    EXPECT_FALSE(entry.is_of_program && entry.needs_baseline) << entry.name;
   }
 }
 
@@ -38,7 +38,8 @@ TEST(Quantities, AreDerivedFromSignals) {
     EXPECT_EQ(has_path_signal(entry.name), entry.signal != nullptr) << entry.name;
     if (entry.derived_from.empty()) continue;
     EXPECT_TRUE(has_path_signal(entry.derived_from)) << entry.name;
-    EXPECT_EQ(quantity_entry(entry.derived_from).needs_base, entry.needs_base) << entry.name;
+    EXPECT_EQ(quantity_entry(entry.derived_from).needs_baseline, entry.needs_baseline)
+        << entry.name;
   }
   EXPECT_FALSE(has_path_signal("no_such_quantity"));
 }

@@ -34,7 +34,7 @@ void set_periods(MachineSettings& machine, double base, Tick ticks) {
 
 ResponseAt open_position_loop(FrequencyResponse& response) {
   return [&](double f) {
-    return ratio(response.at(Entry::set_point, f), AxisSignal::reading, AxisSignal::position_error);
+    return ratio(response.at(Entry::setpoint, f), AxisSignal::reading, AxisSignal::position_error);
   };
 }
 ResponseAt open_velocity_loop(FrequencyResponse& response) {
@@ -59,7 +59,7 @@ TEST(FrequencyResponse, OfTheDriveIsThatOfTwoMasses) {
   FrequencyResponse response(machine, kY, 0, PositionLoop::closed);
   for (const double f : logarithmic(1.0, 2000.0, 60)) {
     const Complex exact =
-        ratio(response.at(Entry::set_point, f), AxisSignal::motor_speed, AxisSignal::current);
+        ratio(response.at(Entry::setpoint, f), AxisSignal::motor_speed, AxisSignal::current);
     EXPECT_LT(std::abs(exact / two_mass(drive_of(machine), s_of(f)) - 1.0),
               kFolding * f * machine.nc.periods.base)
         << f << " Hz";
@@ -120,7 +120,7 @@ TEST(FrequencyResponse, OfAnIdealRigidDriveIsFirstOrder) {
   c.Ki = 0.0;
   FrequencyResponse response(machine, kY, 0, PositionLoop::closed);
   const auto T = [&](double f) {
-    return response.at(Entry::set_point, f)[index_of(AxisSignal::position)];
+    return response.at(Entry::setpoint, f)[index_of(AxisSignal::position)];
   };
   const ClosedLoop closed = closed_loop_of(curve_of(T, logarithmic(0.1, 100.0, 60)), T);
   const double expected = c.Kv / (2.0 * std::numbers::pi);

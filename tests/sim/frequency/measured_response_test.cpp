@@ -59,10 +59,10 @@ Deviation largest_deviation(const MachineSettings& machine, int joint, Tick dela
 
 constexpr int kOfInput = -1;
 constexpr std::array<Of, 6> kAll = {{
-    {"position_closed", PositionLoop::closed, Entry::set_point, AxisSignal::position, kOfInput},
-    {"position_open", PositionLoop::closed, Entry::set_point, AxisSignal::reading,
+    {"position_closed", PositionLoop::closed, Entry::setpoint, AxisSignal::position, kOfInput},
+    {"position_open", PositionLoop::closed, Entry::setpoint, AxisSignal::reading,
      static_cast<int>(AxisSignal::position_error)},
-    {"position_fed_forward", PositionLoop::closed, Entry::set_point_fed_forward,
+    {"position_fed_forward", PositionLoop::closed, Entry::setpoint_fed_forward,
      AxisSignal::position, kOfInput},
     {"velocity_closed", PositionLoop::open, Entry::velocity_command, AxisSignal::motor_speed,
      kOfInput},
@@ -101,7 +101,7 @@ TEST(MeasuredResponse, OfALinearDriveIsTheExactOne) {
 TEST(MeasuredResponse, OfAMultiSineIsTheExactOne) {
   constexpr int kY = 1;
   const MachineSettings machine = linearised(hsm600u());
-  const Measurement how{.entry = Entry::set_point, .method = Method::multi_sine, .amplitude = 1.0};
+  const Measurement how{.entry = Entry::setpoint, .method = Method::multi_sine, .amplitude = 1.0};
   const auto wanted = logarithmic(10.0, 2000.0, 12);
   const MeasuredResponse measured = measure(machine, kY, 0, PositionLoop::closed, how, wanted);
   ASSERT_EQ(measured.points.size(), wanted.size());
@@ -119,7 +119,7 @@ TEST(MeasuredResponse, OfAnAxisWithFrictionIsTheLinearOneWhileItMoves) {
   constexpr double kLow = 3.0;  // Hz
   MachineSettings machine = hsm600u();
   machine.drives[kY].friction.kind = plant::FrictionKind::set_valued;
-  Measurement how{.entry = Entry::set_point};
+  Measurement how{.entry = Entry::setpoint};
   how.amplitude = default_amplitude(machine, kY, how.entry);
   how.velocity = default_velocity(machine, kY, how.entry, how.amplitude);
   const auto deviation = [&] {
@@ -144,14 +144,14 @@ TEST(MeasuredResponse, SaysWhenTheStepDoesNotResolveTheFriction) {
   machine.drives[kX].friction.kind = plant::FrictionKind::set_valued;
   machine.drives[kX].friction.Fs_positive = machine.drives[kX].friction.Fs_negative = 450.0;
   machine.drives[kX].friction.vs = 1e-9;
-  Measurement how{.entry = Entry::set_point};
+  Measurement how{.entry = Entry::setpoint};
   how.amplitude = default_amplitude(machine, kX, how.entry);  // reverses, so that it sticks
   const auto measured = [&] {
     return measure(machine, kX, 0, PositionLoop::closed, how, {5.0}).fault;
   };
   const auto stepped = [&] {
     StepSettings step;
-    step.height = 1e-4;
+    step.amplitude = 1e-4;
     step.duration = 0.05;
     return step_response(machine, kX, 0, step).fault;
   };

@@ -123,7 +123,7 @@ TEST(Tune, IsConfirmedByTheSimulationAtTheCrossovers) {
   EXPECT_NEAR(std::abs(v), 1.0, kSizeTol);
   EXPECT_NEAR(std::remainder(std::arg(-v), 2.0 * std::numbers::pi), t.after.velocity.phase,
               kPhaseTol);
-  const Complex p = measured(PositionLoop::closed, Entry::set_point, AxisSignal::reading,
+  const Complex p = measured(PositionLoop::closed, Entry::setpoint, AxisSignal::reading,
                              AxisSignal::position_error, t.after.position.crossover);
   EXPECT_NEAR(std::abs(p), 1.0, kSizeTol);
   EXPECT_NEAR(std::remainder(std::arg(-p), 2.0 * std::numbers::pi), t.after.position.phase,

@@ -73,10 +73,11 @@ TEST(Design, ReadsTheExampleOfItsHeader) {
       "\"program.feed_override\" = [0.5, 1.0]\n"
       "\"machine.nc.Kv\" = { log = [\"40 1/s\", \"160 1/s\"], count = 5 }\n"
       "samples = { design = \"sobol\", count = 256, seed = 1 }\n"
-      "\"errors.belief.EYX.harmonic.amplitude_um\" = { normal = [150.0, 3.0] }\n"
-      "\"case.table.strategy.response_time_ms\" = { uniform = [30.0, 50.0] }\n"
-      "\"case.table.strategy.entry\" = { one_of = [\"position_command\", \"feed_forward\"] }\n"
-      "[[sweep.together]]\n"
+      "\"errors.identified.EYX.harmonic.amplitude_um\" = { normal = [150.0, 3.0] }\n"
+      "\"case.table.strategy.time_constant_ms\" = { uniform = [30.0, 50.0] }\n"
+      "\"case.table.strategy.injection_point\" = { choice = [\"position_command\", "
+      "\"feed_forward\"] }\n"
+      "[[sweep.zip]]\n"
       "\"machine.axis.X.v_max\" = [\"20 m/min\", \"40 m/min\"]\n"
       "\"machine.axis.Y.v_max\" = [\"10 m/min\", \"20 m/min\"]\n");
   EXPECT_EQ(design.size(), 2U * 5U * 2U * 256U);
@@ -99,7 +100,7 @@ TEST(Design, SpacesRangesEvenlyOrInEqualRatios) {
 
 TEST(Design, VariesListsTogether) {
   const SweepDesign design =
-      design_of("a = [1, 2]\n[[sweep.together]]\nb = [10, 20]\nc.d = ['x', 'y']\n");
+      design_of("a = [1, 2]\n[[sweep.zip]]\nb = [10, 20]\nc.d = ['x', 'y']\n");
   EXPECT_EQ(all_points(design),
             (std::vector<Point>{
                 {"1", "10", "'x'"}, {"1", "20", "'y'"}, {"2", "10", "'x'"}, {"2", "20", "'y'"}}));
@@ -110,7 +111,7 @@ const std::string kSampled =
     "u = { uniform = [10.0, 20.0] }\n"
     "v = { log_uniform = [\"1 um\", \"100 um\"] }\n"
     "w = { normal = [150.0, 3.0] }\n"
-    "x = { one_of = ['a', 'b'] }\n";
+    "x = { choice = ['a', 'b'] }\n";
 
 std::vector<double> column(const SweepDesign& design, std::size_t key) {
   std::vector<double> out;
@@ -205,8 +206,8 @@ TEST(ReadSweep, RefusesWhatIsNoDesign) {
   EXPECT_EQ(refusal("a = []\n"), "s.toml:2:5: error: sweep.a = []" + kForm);
   EXPECT_EQ(refusal("a = 1\n"), "s.toml:2:5: error: sweep.a = 1" + kForm);
   EXPECT_EQ(refusal("a = {}\n"), "s.toml:2:5: error: sweep.a = {...}" + kForm);
-  EXPECT_EQ(refusal("a = [1]\n[[sweep.together]]\na = [2]\n"),
-            "s.toml:4:5: error: sweep.together[0].a = [2]; is varied twice");
+  EXPECT_EQ(refusal("a = [1]\n[[sweep.zip]]\na = [2]\n"),
+            "s.toml:4:5: error: sweep.zip[0].a = [2]; is varied twice");
   EXPECT_EQ(
       refusal("\"sweep.a\" = [1]\n"),
       "s.toml:2:13: error: sweep.\"sweep.a\" = [1]; is the same at all points; sweep cannot be "
@@ -218,13 +219,12 @@ TEST(ReadSweep, RefusesWhatIsNoDesign) {
 }
 
 TEST(ReadSweep, RefusesListsThatCannotGoTogether) {
-  EXPECT_EQ(
-      refusal("[[sweep.together]]\na = [1, 2]\nb = [1, 2, 3]\n"),
-      "s.toml:4:5: error: sweep.together[0].b = [1, 2, 3]; has 3 values, a has 2: lists that go "
-      "together must be as long as each other");
-  EXPECT_EQ(refusal("[[sweep.together]]\na = 1\n"),
-            "s.toml:3:5: error: sweep.together[0].a = 1; must be a list of at least one value");
-  EXPECT_EQ(refusal("[[sweep.together]]\n"), "s.toml:2:1: error: sweep.together[0]: names no key");
+  EXPECT_EQ(refusal("[[sweep.zip]]\na = [1, 2]\nb = [1, 2, 3]\n"),
+            "s.toml:4:5: error: sweep.zip[0].b = [1, 2, 3]; has 3 values, a has 2: lists that go "
+            "together must be as long as each other");
+  EXPECT_EQ(refusal("[[sweep.zip]]\na = 1\n"),
+            "s.toml:3:5: error: sweep.zip[0].a = 1; must be a list of at least one value");
+  EXPECT_EQ(refusal("[[sweep.zip]]\n"), "s.toml:2:1: error: sweep.zip[0]: names no key");
 }
 
 TEST(ReadSweep, RefusesRangesThatAreNone) {
@@ -248,10 +248,10 @@ TEST(ReadSweep, RefusesRangesThatAreNone) {
 TEST(ReadSweep, RefusesMoreKeysToSampleThanThereAreDimensions) {
   std::string toml = "samples = { design = \"random\", count = 3 }\n";
   for (std::size_t k = 0; k < kMostDimensions; ++k) {
-    toml += "a" + std::to_string(k) + " = { one_of = [1] }\n";
+    toml += "a" + std::to_string(k) + " = { choice = [1] }\n";
   }
   EXPECT_EQ(design_of(toml).sampled_dimensions, kMostDimensions);
-  for (const std::string form : {"{ one_of = [1] }", "{ uniform = [0, 1] }"}) {
+  for (const std::string form : {"{ choice = [1] }", "{ uniform = [0, 1] }"}) {
     EXPECT_EQ(
         refusal(toml + "b = " + form + "\n"),
         "s.toml:3670:5: error: sweep.b = {...}; is one key too many to sample; there may be 3667");
@@ -267,8 +267,8 @@ TEST(ReadSweep, RefusesDistributionsThatAreNone) {
       "s.toml:3:17: error: sweep.a.uniform = [2, 1]; must have a first number below the second");
   EXPECT_EQ(refusal(samples + "a = { log_uniform = [-1, 1] }\n"),
             "s.toml:3:21: error: sweep.a.log_uniform = [-1, 1]; must have numbers > 0");
-  EXPECT_EQ(refusal(samples + "a = { one_of = [] }\n"),
-            "s.toml:3:16: error: sweep.a.one_of = []; must be a list of at least one value");
+  EXPECT_EQ(refusal(samples + "a = { choice = [] }\n"),
+            "s.toml:3:16: error: sweep.a.choice = []; must be a list of at least one value");
   EXPECT_EQ(
       refusal(samples + "a = { normal = [1.0, nan] }\n"),
       "s.toml:3:16: error: sweep.a.normal = [1.0, nan]; must be two numbers, the mean and the "

@@ -64,9 +64,10 @@ TEST(KeyList, HasTypeUnitRangeAndDefault) {
   EXPECT_EQ(facts("record", "storage"), "\"float64\" | \"float32\"; ; default \"float64\"");
   EXPECT_EQ(facts("record", "uncorrectable"), "true | false; ; default false");
   EXPECT_EQ(facts("program", "tool"), "list of tables; ; optional");
-  EXPECT_EQ(facts("machine.axis.X", "load"), "number in kg | number in kg m^2; > 0; required");
+  EXPECT_EQ(facts("machine.axis.X", "moving_mass"), "number in kg; > 0; required");
+  EXPECT_EQ(facts("machine.axis.X", "moving_inertia"), "number in kg m^2; > 0; required");
   EXPECT_EQ(facts("case.strategy.table", "spacing_mm"), "number in mm; >= 0.0001; default 1.6384");
-  EXPECT_EQ(entry("machine.axis.X", "load").unit, "kg | kg m^2");
+  EXPECT_EQ(entry("machine.axis.X", "moving_inertia").unit, "kg m^2");
   EXPECT_EQ(entry("record", "compression").unit, "");
 }
 

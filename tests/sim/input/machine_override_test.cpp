@@ -32,7 +32,7 @@ std::string message(const std::string& override_of_second) {
 
 TEST(MachineOverride, IsLaidOverTheMachineOfTheScenarioForThatCaseAlone) {
   const Scenario scenario = scenario_with(
-      "[case.machine_override]\nnc.velocity_feed_forward = 0.5\naxis.Y.load = \"700 kg\"\n",
+      "[case.machine_override]\nnc.velocity_feed_forward = 0.5\naxis.Y.moving_mass = \"700 kg\"\n",
       "machine_override.nc.Kv = 50.0\n");
   const MachineSettings& first = scenario.machine_of(scenario.cases[0]);
   const MachineSettings& second = scenario.machine_of(scenario.cases[1]);
@@ -74,7 +74,7 @@ TEST(MachineOverride, HoldsForThePlanOfTheMotion) {
 
 TEST(MachineOverride, SurvivesWritingAndReading) {
   const Scenario scenario = scenario_with(
-      "machine_override = { nc = { Kv = \"4 m/min/mm\" }, axis.X.load = \"800 kg\" }\n");
+      "machine_override = { nc = { Kv = \"4 m/min/mm\" }, axis.X.moving_mass = \"800 kg\" }\n");
   const Scenario again = read_resolved_scenario(scenario.resolved, "again");
   EXPECT_EQ(again.resolved, scenario.resolved);
   ASSERT_TRUE(again.cases[1].machine);
@@ -86,9 +86,10 @@ TEST(MachineOverride, SurvivesWritingAndReading) {
 TEST(MachineOverride, IsReadLikeAMachine) {
   EXPECT_EQ(message("machine_override = 3\n"),
             "6: case[1].machine_override = 3; must be a table\n");
-  EXPECT_EQ(message("machine_override.nc.Kv = -1.0\nmachine_override.axis.X.laod = 3.0\n"),
+  EXPECT_EQ(message("machine_override.nc.Kv = -1.0\nmachine_override.axis.X.moving_mas = 3.0\n"),
             "6: machine.nc.Kv = -1.0; must be > 0\n"
-            "7: machine.axis.X.laod is not known; did you mean 'load', which is given, too?\n");
+            "7: machine.axis.X.moving_mas is not known; did you mean 'moving_mass', which is "
+            "given, too?\n");
   EXPECT_EQ(message("machine_override.nc.Kv = \"40 m/min/mm\"\n").substr(0, 55),
             "6: case second: axis X: the servo loop is unstable with");
 }

@@ -106,7 +106,7 @@ TEST(CircularTest, FindsSquarenessInTheSecondHarmonic) {
     // the uneven rest of the angle, gamma sin^2 theta, and the radius' gamma^2: second order
     EXPECT_NEAR(turn.squareness, gamma, 2.0 * gamma * gamma);
     EXPECT_NEAR(turn.G, R * std::abs(gamma), R * gamma * gamma);
-    const auto curve = radial_deviation(path, {turn.least_squares.centre, R});
+    const auto curve = radial_error(path, {turn.least_squares.centre, R});
     for (const auto& [theta, dr] : curve) {
       EXPECT_NEAR(dr, 0.5 * R * gamma * std::sin(2.0 * theta), R * gamma * gamma);
     }

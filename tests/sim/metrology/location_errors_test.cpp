@@ -123,12 +123,12 @@ TEST(RTest, SaysAsWhatTheOthersAct) {
     if (!one.value) text += plant::to_string(one.name) + " " + one.why_not() + "\n";
   }
   EXPECT_EQ(text,
-            "EY0C acts as set-up\n"
-            "EX0B acts as - EX0C + set-up\n"
-            "EZ0B acts as set-up\n"
-            "EA0Y acts as - EA0Z - EA0C - EA0B + set-up\n"
-            "EB0X acts as - EB0Z - EB0C + 0.05 um/urad EX0C + set-up\n"
-            "EC0X acts as - EC0Y - EC0B + set-up\n");
+            "EY0C confounded with set-up\n"
+            "EX0B confounded with -EX0C and set-up\n"
+            "EZ0B confounded with set-up\n"
+            "EA0Y confounded with -EA0Z, -EA0C, -EA0B and set-up\n"
+            "EB0X confounded with -EB0Z, -EB0C, 0.05 um/urad EX0C and set-up\n"
+            "EC0X confounded with -EC0Y, -EC0B and set-up\n");
 }
 
 TEST(RTest, RecoversEachOfThemFromTheExactModel) {
@@ -168,7 +168,7 @@ TEST(RTest, DoesNotSeeHowTheBallWasSetUp) {
 TEST(RTest, TellsMoreWithABallAdjustedToTheSpindle) {
   const MachineChain chain = hsm();
   auto readings = r_test(chain, kBall, rotary_angles());
-  const BallSetUp set_up{.tip_is_unknown = false};
+  const BallSetUp set_up{.tcp_is_unknown = false};
   ErrorModel truth;
   const auto can_be = observable_locations(chain, readings, set_up);
   EXPECT_EQ(identified(can_be),
@@ -193,7 +193,7 @@ TEST(RTest, OfOneAxisTellsLess) {
   angles.resize(24);
   const auto fit = observable_locations(chain, r_test(chain, kBall, angles), {});
   EXPECT_EQ(identified(fit), (std::vector<std::string>{"EC0Y", "EA0C", "EB0C"}));
-  EXPECT_EQ(fit.find("EA0Z"_err)->why_not(), "acts as set-up");
+  EXPECT_EQ(fit.find("EA0Z"_err)->why_not(), "confounded with set-up");
   EXPECT_EQ(fit.find("EA0B"_err)->why_not(), "has no effect");
 }
 
@@ -268,11 +268,11 @@ TEST(BallBar, RecoversAllOfTheEightButOneFromFourCircles) {
                          n < 2 ? Frustum{10.0, 15.0} : Frustum{30.0, 45.0}, n);
     readings.insert(readings.end(), one.begin(), one.end());
   }
-  const BallSetUp set_up{.tip_is_unknown = true, .length_is_unknown = true};
+  const BallSetUp set_up{.tcp_is_unknown = true, .length_is_unknown = true};
   const auto fit = observable_locations(chain, readings, set_up);
   EXPECT_EQ(identified(fit),
             (std::vector<std::string>{"EC0Y", "EA0Z", "EB0Z", "EA0C", "EB0C", "EA0B", "EX0C"}));
-  EXPECT_EQ(fit.find("EC0B"_err)->why_not(), "acts as set-up");
+  EXPECT_EQ(fit.find("EC0B"_err)->why_not(), "confounded with set-up");
   for (const LocationEstimate& one : fit.errors) {
     if (!one.value) continue;
     ErrorModel truth;

@@ -43,7 +43,7 @@ std::string faults_of(const std::string& quantities) {
 
 TEST(CircularSections, AreEvaluatedOneByOneOrInPairs) {
   const Scenario scenario =
-      asking(quantity("circular_deviation", "sections = [\"ccw\", \"cw\", \"small\"]") +
+      asking(quantity("circular_error", "sections = [\"ccw\", \"cw\", \"small\"]") +
              quantity("circle_squareness", "sections = [\"ccw\", \"cw\", \"cw\", \"ccw\"]"));
   ASSERT_EQ(scenario.quantities.size(), 5U);
   EXPECT_EQ(scenario.quantities[1].sections, (std::vector<std::string>{"cw"}));
@@ -51,38 +51,36 @@ TEST(CircularSections, AreEvaluatedOneByOneOrInPairs) {
 }
 
 TEST(CircularSections, MustBeNamedAsMeant) {
-  EXPECT_EQ(faults_of(quantity("circular_deviation", "sections = [\"ccw\", \"zx\"]")), "");
+  EXPECT_EQ(faults_of(quantity("circular_error", "sections = [\"ccw\", \"zx\"]")), "");
   EXPECT_EQ(faults_of(quantity("reversal_spike", "axis = \"Z\"\nsections = [\"zx\"]")), "");
-  EXPECT_EQ(faults_of(quantity("circular_deviation", "")), "quantity[0].sections is missing\n");
-  EXPECT_EQ(faults_of(quantity("circular_deviation", "sections = []")),
+  EXPECT_EQ(faults_of(quantity("circular_error", "")), "quantity[0].sections is missing\n");
+  EXPECT_EQ(faults_of(quantity("circular_error", "sections = []")),
             "quantity[0].sections = []; must name at least one turn of a circle\n");
-  EXPECT_EQ(faults_of(quantity("bidirectional_circular_deviation",
-                               "sections = [\"ccw\", \"cw\", \"ccw\"]")),
-            "quantity[0].sections = [\"ccw\", \"cw\", \"ccw\"]; must name pairs of turns of a "
-            "circle, one in each direction\n");
+  EXPECT_EQ(
+      faults_of(quantity("bidirectional_circular_error", "sections = [\"ccw\", \"cw\", \"ccw\"]")),
+      "quantity[0].sections = [\"ccw\", \"cw\", \"ccw\"]; must name pairs of turns of a "
+      "circle, one in each direction\n");
 }
 
 TEST(CircularSections, MustBeTurnsOfOneCircle) {
   const auto said = [](const std::string& name, const std::string& rest) {
     return faults_of(quantity(name, rest));
   };
-  EXPECT_EQ(
-      said("circular_deviation", "sections = [\"half\", \"ccw\", \"square\", \"line\"]"),
-      "circular_deviation: small.ngc: section 'half' covers 180 deg of the circle; must be one "
-      "turn, 360 deg\n"
-      "circular_deviation: small.ngc: section 'square' is no circle\n"
-      "circular_deviation: small.ngc: section 'line' is no circle\n");
-  EXPECT_EQ(said("radial_deviation_max", "sections = [\"skew\"]"),
-            "radial_deviation_max: small.ngc: section 'skew' lies in none of XY, YZ, ZX\n");
+  EXPECT_EQ(said("circular_error", "sections = [\"half\", \"ccw\", \"square\", \"line\"]"),
+            "circular_error: small.ngc: section 'half' covers 180 deg of the circle; must be one "
+            "turn, 360 deg\n"
+            "circular_error: small.ngc: section 'square' is no circle\n"
+            "circular_error: small.ngc: section 'line' is no circle\n");
+  EXPECT_EQ(said("radial_error_max", "sections = [\"skew\"]"),
+            "radial_error_max: small.ngc: section 'skew' lies in none of XY, YZ, ZX\n");
   EXPECT_EQ(said("reversal_spike", "axis = \"Z\"\nsections = [\"ccw\"]"),
             "reversal_spike: small.ngc: section 'ccw' is a circle in XY, where Z does not move\n");
   EXPECT_EQ(said("circle_squareness", "sections = [\"ccw\", \"ccw\"]"),
             "circle_squareness: small.ngc: sections 'ccw' and 'ccw' turn in one direction; must be "
             "one clockwise, one counter-clockwise\n");
-  EXPECT_EQ(
-      said("mean_bidirectional_radial_deviation", "sections = [\"ccw\", \"small\"]"),
-      "mean_bidirectional_radial_deviation: small.ngc: sections 'ccw' and 'small' are not the "
-      "same circle\n");
+  EXPECT_EQ(said("mean_bidirectional_radial_error", "sections = [\"ccw\", \"small\"]"),
+            "mean_bidirectional_radial_error: small.ngc: sections 'ccw' and 'small' are not the "
+            "same circle\n");
 }
 
 // Without feed-forward the circle shrinks: DOMAIN.md section 9, R (1 - 1 / sqrt(1 + (w/Kv)^2)),
@@ -93,13 +91,13 @@ TEST(CircularSections, GiveTheNumbersOfClosedForms) {
   const double shrunk = R * (1.0 - 1.0 / std::hypot(1.0, v / R / Kv));
   const std::string both = "sections = [\"ccw\", \"cw\"]";
   const Scenario scenario = asking(
-      quantity("mean_bidirectional_radial_deviation", both) + quantity("circle_squareness", both) +
-          quantity("circular_deviation", "sections = [\"ccw\"]") +
+      quantity("mean_bidirectional_radial_error", both) + quantity("circle_squareness", both) +
+          quantity("circular_error", "sections = [\"ccw\"]") +
           quantity("reversal_spike", "axis = \"X\"\nsections = [\"ccw\"]"),
       "[[case]]\nname = \"one\"\n[machine_override.nc]\nKv = 60.0\n"
       "velocity_feed_forward = 0.0\nacceleration_feed_forward = 0.0\n"
       "[errors.square]\nEC0Y = { um_per_m = 50.0 }\n",
-      "truth = \"square\"\n");
+      "machine_errors = \"square\"\n");
   const CaseOutput output = run_case(scenario, "one");
   const auto rows = compare(scenario.quantities, std::vector<CaseData>{output.data()});
   EXPECT_NEAR(rows[0].value, shrunk / um, 0.01 * shrunk / um);
@@ -110,7 +108,7 @@ TEST(CircularSections, GiveTheNumbersOfClosedForms) {
 }
 
 TEST(CircularSections, HaveNoNumberWhereTheMachineDidNotFollow) {
-  const Scenario scenario = asking(quantity("circular_deviation", "sections = [\"ccw\"]"));
+  const Scenario scenario = asking(quantity("circular_error", "sections = [\"ccw\"]"));
   CaseOutput output = run_case(scenario, "one");
   const auto value = [&] {
     return compare(scenario.quantities, std::vector<CaseData>{output.data()})[0].value;

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 const std::string kScenario = fmt::format(R"(
 machine = "{}/scenarios/machines/hsm600u.toml"
 imposed = "imposed"
-truth = "other"
+machine_errors = "other"
 [program]
 file = "small.ngc"
 text = '''
@@ -68,8 +68,8 @@ work_offset = {{ C_deg = 90.0 }}
 [[case.strategy]]
 type = "table"
 model = "imposed"
-sign = "generate"
-axis = "X"
+action = "impose"
+base_axis = "X"
 from_mm = -20.0
 to_mm = 20.0
 spacing_mm = 1.6384
@@ -78,7 +78,7 @@ name = "feedback"
 [[case.strategy]]
 type = "feedback"
 model = "imposed"
-lead_ms = "auto"
+extrapolation_time_ms = "auto"
 [[case]]
 name = "gcode"
 [[case.strategy]]
@@ -86,12 +86,12 @@ type = "gcode"
 model = "imposed"
 max_block_mm = 2.0
 [[quantity]]
-name = "circular_deviation"
+name = "circular_error"
 sections = ["ccw"]
 [[quantity]]
-name = "imposed_curve_residual"
+name = "imposed_error_residual"
 axis = "Y"
-base = "nominal"
+baseline = "nominal"
 [[quantity]]
 name = "contour_error"
 statistic = "rms"
@@ -121,9 +121,9 @@ std::string prepared(const Scenario& scenario, PreparationCache* cache) {
         const auto at = in.reference.at(in.reference.duration() * k / 20.0, cursor);
         all.add(at.Q_ref);
         all.add(at.s);
-        all.add(in.truth.error(at.Q_ref, in.tips.begin()->second).dp_W);
+        all.add(in.machine_errors.error(at.Q_ref, in.tips.begin()->second).dp_W);
         all.add(in.imposed->joint_offset(at.Q_ref, in.tips.rbegin()->second));
-        for (const auto& part : in.set_points) all.add(part->offset(at.Q_ref));
+        for (const auto& part : in.setpoints) all.add(part->offset(at.Q_ref));
         if (!feedback) continue;
         if (k == 0) feedback->settle(at.Q_ref);
         all.add(feedback->advance(at.Q_ref));
@@ -271,7 +271,7 @@ TEST_F(Sharing, LeavesOnlyTheLoopsToBeCheckedWhereAGainChanges) {
   EXPECT_EQ(cache.programs.made(), programs);
   EXPECT_EQ(cache.rewritten.made(), 1U);
   EXPECT_EQ(cache.motions.made(), 2 * motions);
-  prepare_at("machine.axis.X.load=\"700 kg\"");
+  prepare_at("machine.axis.X.moving_mass= \"700 kg\"");
   EXPECT_EQ(cache.motions.made(), 2 * motions);
 }
 

@@ -1,6 +1,6 @@
 // The law of rewritten programs: the text that leaves the simulation does what the strategy has
-// made of the program, and what the program asks for where no errors are believed. Random programs
-// of every class, every strategy that rewrites.
+// made of the program, and what the program asks for where no errors are identified. Random
+// programs of every class, every strategy that rewrites.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -13,7 +13,7 @@
 #include "sim/preparation/rewritten_text.h"
 #include "tests/sim/five_axis_program.h"
 #include "tests/sim/programs/verification/random_program.h"
-#include "tests/strategies/beliefs.h"
+#include "tests/strategies/identified_machines.h"
 
 namespace servomill::sim {
 namespace {
@@ -50,9 +50,9 @@ struct Shop {
     }
   }
 
-  strategies::Belief belief(bool has_errors) const {
+  strategies::IdentifiedMachine identified(bool has_errors) const {
     const plant::MachineChain& chain = machine.chain;
-    strategies::Belief out{
+    strategies::IdentifiedMachine out{
         chain.layout,
         {chain, has_errors ? scenario.errors.at("machine") : plant::ErrorModel{}},
         {0.0, 0.0, -120.0 * mm},
@@ -212,11 +212,11 @@ class RewrittenLaw : public testing::TestWithParam<bool> {};
 
 TEST_P(RewrittenLaw, HoldsForRandomPrograms) {
   const bool has_errors = GetParam();
-  const strategies::Belief belief = shop().belief(has_errors);
+  const strategies::IdentifiedMachine identified = shop().identified(has_errors);
   for (const strategies::Entry& entry : strategies::entries()) {
     for (const bool all_axes : {false, true}) {
-      auto acting =
-          strategies::make_acting(entry, strategies::Sign::correct, belief, all_axes, all_axes);
+      auto acting = strategies::make_acting(entry, strategies::Action::compensate, identified,
+                                            all_axes, all_axes);
       const bool has_axes = strategies::default_parameters(entry).is_word("axes");
       if (!acting.strategy->rewrites() || (all_axes && !has_axes)) continue;
       expect_law(fmt::format("{}{}", entry.name, all_axes ? ", all axes" : ""),
@@ -278,8 +278,8 @@ std::map<int, double> times_of(const std::vector<Move>& moves, const AxisWords& 
 // Blocks of the axes take the time of the move of the tip.
 TEST(RewrittenTipLaw, HoldsForRandomPrograms) {
   const Shop& s = shop();
-  const auto acting = strategies::make_acting(*strategies::find("gcode"), strategies::Sign::correct,
-                                              s.belief(true));
+  const auto acting = strategies::make_acting(*strategies::find("gcode"),
+                                              strategies::Action::compensate, s.identified(true));
   const int programs = program_count(), first = first_seed();
   for (int i = 0; i < programs; ++i) {
     const std::string program = tip_program(static_cast<std::uint32_t>(first + i));
@@ -296,7 +296,7 @@ TEST(RewrittenTipLaw, HoldsForRandomPrograms) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Errors, RewrittenLaw, testing::Bool(),
-                         [](const auto& one) { return one.param ? "Believed" : "None"; });
+                         [](const auto& one) { return one.param ? "Identified" : "None"; });
 
 }  // namespace
 }  // namespace servomill::sim

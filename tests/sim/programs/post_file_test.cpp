@@ -1,4 +1,4 @@
-// Programs posted from files, and what the shipped ones do.
+// Programs post-processed from files, and what the shipped ones do.
 #include "sim/programs/post_file.h"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ PostRequest request_of(const std::string& cl_file) {
   request.options.mode = controllers::PostMode::locations;
   request.options.tolerance.tip = 0.01 * um;
   request.options.approach = controllers::Approach::direct;
-  request.part_zero = Eigen::Vector3d::Zero();
+  request.work_offset = Eigen::Vector3d::Zero();
   request.tool_length = 0.0;
   request.has_no_tool = true;
   return request;
@@ -37,11 +37,12 @@ std::string shipped(const std::string& name) { return read_file(kFolder + name, 
 TEST(PostFile, ShippedProgramsArePostedFromShippedLocations) {
   PostRequest example1 = request_of("example1.cls");
   example1.start = "C=180";
-  const PostedFile posted = post_file(example1);
-  EXPECT_EQ(posted.program, shipped("example1.ngc"));
-  ASSERT_EQ(posted.warnings.size(), 2u);
-  EXPECT_EQ(posted.warnings[0].message, "tool axis has length 1.00199; taken as a unit vector");
-  EXPECT_EQ(posted.warnings[1].message,
+  const PostProcessedFile post_processed = post_file(example1);
+  EXPECT_EQ(post_processed.program, shipped("example1.ngc"));
+  ASSERT_EQ(post_processed.warnings.size(), 2u);
+  EXPECT_EQ(post_processed.warnings[0].message,
+            "tool axis has length 1.00199; taken as a unit vector");
+  EXPECT_EQ(post_processed.warnings[1].message,
             "on the way here the axes lead the tip 0.156 mm off the straight way; only --classical "
             "inserts no points");
 
@@ -87,7 +88,7 @@ TEST(PostFile, HeaderSaysWhatTheNcMustKnow) {
   request.options.mode = controllers::PostMode::joints;
   request.options.feed = 10 * mm;
   request.options.tolerance = {2.5 * um, 50 * urad};
-  request.part_zero = Eigen::Vector3d(10 * mm, -20 * mm, 30.5 * mm);
+  request.work_offset = Eigen::Vector3d(10 * mm, -20 * mm, 30.5 * mm);
   request.options.work_system = 2;
   request.tool_length = 110 * mm;
   request.has_no_tool = false;
@@ -107,7 +108,7 @@ std::string fault_of(const PostRequest& request) {
   } catch (const InputError& error) {
     return error.what();
   }
-  return "posted";
+  return "post_processed";
 }
 
 // Cutter locations of a test, for a machine that servomill ships.
@@ -118,7 +119,7 @@ class Locations {
     request_.cl_file = (fs::path(testing::TempDir()) / (test + ".cls")).string();
     std::ofstream(request_.cl_file) << text;
     request_.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/" + machine + ".toml";
-    request_.part_zero = Eigen::Vector3d::Zero();
+    request_.work_offset = Eigen::Vector3d::Zero();
     request_.options.tolerance = {1.0 * um, 100.0 * urad};
   }
   ~Locations() { fs::remove(request_.cl_file); }
@@ -153,20 +154,20 @@ std::string no_length_of(int tool) {
 TEST(PostFile, PlaceOfThePartIsNotAssumed) {
   const std::string no_place =
       ": error: the place of the part is not given, and the rotary axes of this machine turn about "
-      "points of their own; add --part-zero X,Y,Z (0,0,0 is a place, too)";
+      "points of their own; add --work-offset X,Y,Z (0,0,0 is a place, too)";
   for (const char* machine :
        {"generic_head_table_bc", "generic_trunnion_ac", "generic_head_head_ca"}) {
     Locations locations("LOADTL/1\n" + kTilted, machine);
     PostRequest& request = locations.request();
     request.tool_length = 0.0;
-    request.part_zero.reset();
+    request.work_offset.reset();
     EXPECT_EQ(fault_of(request), request.cl_file + no_place);
     request.options.mode = controllers::PostMode::tip;
     const bool is_head = std::string(machine) == "generic_head_head_ca";
     EXPECT_EQ(fault_of(request),
-              is_head ? "posted" : request.cl_file + no_place + " or --approach direct");
+              is_head ? "post_processed" : request.cl_file + no_place + " or --approach direct");
     request.options.approach = controllers::Approach::direct;
-    EXPECT_EQ(fault_of(request), "posted");
+    EXPECT_EQ(fault_of(request), "post_processed");
   }
 }
 
@@ -193,13 +194,13 @@ TEST(PostFile, LengthOfTheToolIsNotAssumed) {
                 "--tool 0: error: without a tool there is no length; add --tool N, or "
                 "--tool-length 0");
       request.tool_length = 0.0;  // said on purpose
-      EXPECT_EQ(fault_of(request), "posted") << machine;
+      EXPECT_EQ(fault_of(request), "post_processed") << machine;
       request.has_no_tool = false;
       request.options.tool = 3;
       request.tool_length.reset();
       EXPECT_EQ(fault_of(request), locations.at(3) + no_length_of(3)) << machine;
       request.tool_length = 0.1;
-      EXPECT_EQ(fault_of(request), "posted") << machine;
+      EXPECT_EQ(fault_of(request), "post_processed") << machine;
     }
   }
 }
@@ -271,7 +272,7 @@ TEST(PostFile, RapidsOfOneToolAxisTurnNoRotaryAxis) {
         machine);
     PostRequest& request = locations.request();
     request.tool_length = 100 * mm;
-    EXPECT_EQ(fault_of(request), "posted");
+    EXPECT_EQ(fault_of(request), "post_processed");
   }
 }
 

@@ -67,7 +67,7 @@ Work work(const char* structure, Approach approach, PostMode mode, const std::st
   out.options.approach = approach;
   out.options.mode = mode;
   out.options.safe = {10.0 * mm, 0.5};
-  out.options.part_zero << 0.03, -0.02, 0.05;
+  out.options.work_offset << 0.03, -0.02, 0.05;
   out.options.tolerance = {2.0 * um, 200.0 * urad};
   out.options.tools = controllers::ToolTable::parse("T1 P1 Z100 D6\nT2 P2 Z80 D4\n", "tool.tbl");
   plant::InverseSettings settings;
@@ -80,8 +80,8 @@ Work work(const char* structure, Approach approach, PostMode mode, const std::st
     if (axis) print.axes += letter(*axis);
   }
   print.tip_control = mode == PostMode::tip;
-  const auto posted = controllers::post(out.data, "p.cls", inverse, out.options);
-  out.program = controllers::print_program(posted.moves, print, "").text;
+  const auto post_processed = controllers::post(out.data, "p.cls", inverse, out.options);
+  out.program = controllers::print_program(post_processed.moves, print, "").text;
   return out;
 }
 
@@ -138,12 +138,12 @@ std::string random_locations(boost::random::mt19937& engine, bool is_upright) {
   return text + "FINI\n";
 }
 
-// Every program that is written is verified. A few random paths cannot be posted: through the
-// vertical, say.
+// Every program that is written is verified. A few random paths cannot be post-processed: through
+// the vertical, say.
 TEST(VerifyPost, RandomLocationsAreVerified) {
   boost::random::mt19937 engine(7);
   constexpr int kFiles = 60;
-  int posted = 0, refused = 0;
+  int post_processed = 0, refused = 0;
   for (int n = 0; n < kFiles; ++n) {
     for (const char* structure : {kTable, kMixed, kHead, kThreeAxes}) {
       const std::string text = random_locations(engine, structure == kThreeAxes);
@@ -156,13 +156,13 @@ TEST(VerifyPost, RandomLocationsAreVerified) {
         ++refused;
         continue;
       }
-      ++posted;
+      ++post_processed;
       ASSERT_EQ(fault_of(*w, w->program), "verified") << structure << " " << n << "\n"
                                                       << text << w->program;
     }
   }
-  EXPECT_EQ(posted + refused, 4 * kFiles);
-  EXPECT_LT(refused, posted / 4);
+  EXPECT_EQ(post_processed + refused, 4 * kFiles);
+  EXPECT_LT(refused, post_processed / 4);
 }
 
 // Lines that change nothing where they are: modes that hold already, a retract at the retract

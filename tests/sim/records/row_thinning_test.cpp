@@ -143,7 +143,7 @@ TEST_F(Thinned, RowsTellOfAllThatAreLeftOut) {
 
 TEST_F(Thinned, DistanceAndAngleOfTheToolAreToldToo) {
   const Series series = thin(400.0 * row_bytes() / 4.0);
-  const auto tip = column(series, "tool_tip_deviation_greatest");
+  const auto tip = column(series, "tcp_deviation_greatest");
   const auto axis = column(series, "tool_axis_deviation_greatest");
   double largest_tip = 0.0, largest_axis = 0.0;
   for (std::size_t n = 0; n < kRows; ++n) {

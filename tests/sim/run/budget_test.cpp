@@ -32,9 +32,12 @@ std::string quantity(const std::string& name, char axis, const std::string& sect
       axis, section);
 }
 
+const std::string kTableOverX =
+    "type = \"table\"\nbase_axis = \"X\"\nfrom_mm = -20.0\nto_mm = 100.0\nmodel = \"imposed\"\n";
+
 std::string one_case(const std::string& strategy, const std::string& more = "") {
-  return "[[case]]\nname = \"one\"\n" + more + "[[case.strategy]]\nsign = \"generate\"\n" +
-         strategy + quantity("imposed_curve_residual", 'Y') + "base = \"nominal\"\n";
+  return "[[case]]\nname = \"one\"\n" + more + "[[case.strategy]]\naction = \"impose\"\n" +
+         strategy + quantity("imposed_error_residual", 'Y') + "baseline = \"nominal\"\n";
 }
 
 // Parts and remainder make the residual, at each place.
@@ -82,10 +85,7 @@ void expect_nothing_else(const Budget& budget, const std::vector<Cause>& but, do
 // A table behind the feed-forward tap, of a straight error curve: behind by slope v / Kv.
 TEST(Budget, OfLagAlone) {
   constexpr double kSlope = 10.0;  // um/mm
-  const Budget budget = budget_of(
-      root("polynomial_um = [0.0, 10.0]") +
-      one_case(
-          "type = \"table\"\naxis = \"X\"\nfrom_mm = -20.0\nto_mm = 100.0\nmodel = \"imposed\"\n"));
+  const Budget budget = budget_of(root("polynomial_um = [0.0, 10.0]") + one_case(kTableOverX));
   const double lag = kSlope * kFeed / kKv;  // 3.87 um
   constexpr double kSome = 0.01;            // share; the path is a little slower at the ends
   EXPECT_NEAR(part(budget, Cause::lag).at_place, -lag, kSome * lag);
@@ -96,12 +96,10 @@ TEST(Budget, OfLagAlone) {
 
 TEST(Budget, OfADelayAlone) {
   constexpr double kSlope = 10.0;  // um/mm
-  const Budget budget = budget_of(
-      root("polynomial_um = [0.0, 10.0]") +
-      one_case(
-          "type = \"table\"\naxis = \"X\"\nfrom_mm = -20.0\nto_mm = 100.0\nmodel = \"imposed\"\n"
-          "dead_time_ms = 20.0\nresponse_time_ms = 30.0\n",
-          "servo = \"ideal\"\n"));
+  const Budget budget =
+      budget_of(root("polynomial_um = [0.0, 10.0]") +
+                one_case(kTableOverX + "dead_time_ms = 20.0\ntime_constant_ms = 30.0\n",
+                         "servo = \"ideal\"\n"));
   const double behind = kSlope * kFeed * 50e-3;  // 11.6 um
   EXPECT_NEAR(part(budget, Cause::delay).at_place, -behind, 0.01 * behind);
   expect_nothing_else(budget, {Cause::delay}, 0.01 * behind);
@@ -109,10 +107,9 @@ TEST(Budget, OfADelayAlone) {
 
 // EYX = 0.1 um/mm^2 x^2 / 2: the chord of an interval is off by spacing^2 / 8 times the curvature.
 TEST(Budget, OfTheSpacingOfATableAlone) {
-  const Budget budget = budget_of(root("polynomial_um = [0.0, 0.0, 0.05]") +
-                                  one_case("type = \"table\"\naxis = \"X\"\nfrom_mm = -20.0\nto_mm "
-                                           "= 100.0\nmodel = \"imposed\"\nspacing_mm = 6.5536\n",
-                                           "servo = \"ideal\"\n"));
+  const Budget budget =
+      budget_of(root("polynomial_um = [0.0, 0.0, 0.05]") +
+                one_case(kTableOverX + "spacing_mm = 6.5536\n", "servo = \"ideal\"\n"));
   const double chord = 6.5536 * 6.5536 / 8.0 * 0.1;  // 0.537 um
   EXPECT_NEAR(part(budget, Cause::table).at_place, chord, 0.01 * chord);
   EXPECT_NEAR(part(budget, Cause::table).at_place, budget.residual.at_place, 1e-3 * chord);
@@ -120,15 +117,15 @@ TEST(Budget, OfTheSpacingOfATableAlone) {
   expect_nothing_else(budget, {Cause::table}, 0.01 * chord);
 }
 
-// Believed 10.5 um/mm in place of 10, once by each way of correcting.
+// Identified 10.5 um/mm in place of 10, once by each way of correcting.
 TEST(Budget, OfAnIdentificationErrorAlone) {
   const std::string errors = root("polynomial_um = [0.0, 10.0]",
-                                  "[errors.belief]\nEYX = { polynomial_um = [0.0, 10.5] }\n");
-  const std::string table = "type = \"table\"\naxis = \"X\"\nfrom_mm = -20.0\nto_mm = 100.0\n";
+                                  "[errors.identified]\nEYX = { polynomial_um = [0.0, 10.5] }\n");
+  const std::string table = "type = \"table\"\nbase_axis = \"X\"\nfrom_mm = -20.0\nto_mm = 100.0\n";
   for (const std::string& type : {table, std::string("type = \"feedback\"\nmax_um = 2000.0\n"),
                                   std::string("type = \"gcode\"\n")}) {
     const Budget budget =
-        budget_of(errors + one_case(type + "model = \"belief\"\n", "servo = \"ideal\"\n"));
+        budget_of(errors + one_case(type + "model = \"identified\"\n", "servo = \"ideal\"\n"));
     const double wrong = 0.5 * 80.0;  // um, where the section ends
     EXPECT_NEAR(part(budget, Cause::identification).at_place, wrong, 0.01 * wrong) << type;
     expect_nothing_else(budget, {Cause::identification}, 0.01 * wrong);
@@ -139,7 +136,7 @@ TEST(Budget, OfAnIdentificationErrorAlone) {
 TEST(Budget, OfAnotherOriginAlone) {
   const Budget budget =
       budget_of(root("polynomial_um = [0.0, 10.0]") +
-                one_case("type = \"gcode\"\nmodel = \"imposed\"\nrewritten_for = \"program\"\n",
+                one_case("type = \"gcode\"\nmodel = \"imposed\"\nrewrite_origin = \"program\"\n",
                          "servo = \"ideal\"\nwork_offset = { X_mm = 7.0 }\n"));
   EXPECT_NEAR(part(budget, Cause::identification).at_place, -70.0, 0.1);
   expect_nothing_else(budget, {Cause::identification}, 0.1);
@@ -176,7 +173,8 @@ TEST(Budget, OfAFollowingErrorHasNoPartForTheInterpolation) {
   program += "(MSG, leave)\nG1 X50\nM30\n";
   const Budget budget = budget_of(
       "[machine_override.nc]\nKv = \"60 1/s\"\nvelocity_feed_forward = 0.0\n"
-      "acceleration_feed_forward = 0.0\nblock_time_ms = 62.5\n[[case]]\nname = \"one\"\n" +
+      "acceleration_feed_forward = 0.0\nblock_processing_time_ms = 62.5\n[[case]]\nname = "
+      "\"one\"\n" +
           quantity("following_error", 'X'),
       program.c_str());
   const double lag = 1e3 * 16.0 / kKv;  // 267 um
@@ -196,7 +194,7 @@ TEST(Budget, OfFrictionAlone) {
   const std::string toml =
       "[machine_override]\nfriction_model = \"set_valued\"\n[machine_override.nc]\n"
       "Kv = \"60 1/s\"\n[machine_override.axis.X]\nvelocity_reset_time_ms = 0.0\n"
-      "motor_friction = 0.0\nslide_friction = 0.0\n[[case]]\nname = \"one\"\n";
+      "motor_viscous_friction = 0.0\nslide_viscous_friction = 0.0\n[[case]]\nname = \"one\"\n";
   const Budget following = budget_of(toml + quantity("following_error", 'X'));
   const Budget deviation = budget_of(toml + quantity("tool_deviation", 'X'));
   EXPECT_NEAR(part(following, Cause::friction).at_place, behind, 1e-3 * behind);
@@ -230,8 +228,7 @@ TEST(Budget, OfBacklashAlone) {
 TEST(Budget, OfATableWithAllOfItsCausesAddsUp) {
   const Budget budget =
       budget_of(root("polynomial_um = [0.0, 0.0, 0.05]") +
-                one_case("type = \"table\"\naxis = \"X\"\nfrom_mm = -20.0\nto_mm = 100.0\nmodel = "
-                         "\"imposed\"\nspacing_mm = 6.5536\ndead_time_ms = 50.0\n"));
+                one_case(kTableOverX + "spacing_mm = 6.5536\ndead_time_ms = 50.0\n"));
   const double slope = 0.1 * 80.0;  // um/mm, where the section ends
   const double lag = slope * kFeed / kKv, delay = slope * kFeed * 50e-3;  // 3.1, 9.3 um
   const double chord = 6.5536 * 6.5536 / 8.0 * 0.1;                       // 0.537 um
@@ -244,15 +241,15 @@ TEST(Budget, OfATableWithAllOfItsCausesAddsUp) {
 // The rest without all other causes has a name that says whose it is.
 TEST(Budget, NamesWhatStays) {
   const std::string errors =
-      "truth = \"machine\"\nimposed = \"wanted\"\n[errors.machine]\n"
+      "machine_errors = \"machine\"\nimposed = \"wanted\"\n[errors.machine]\n"
       "EYX = { polynomial_um = [0.0, 1.0] }\n[errors.wanted]\nEYX = { polynomial_um = [0.0, 3.0] "
       "}\n[[case]]\nname = \"nominal\"\nservo = \"ideal\"\n"
       "[[case]]\nname = \"one\"\nservo = \"ideal\"\n";
   const std::string generate =
-      "[[case.strategy]]\ntype = \"feedback\"\nmodel = \"wanted\"\nsign = \"generate\"\n";
+      "[[case.strategy]]\ntype = \"feedback\"\nmodel = \"wanted\"\naction = \"impose\"\n";
   const std::string correct = "[[case.strategy]]\ntype = \"feedback\"\nmodel = \"machine\"\n";
   const std::string of_tool = quantity("tool_deviation", 'Y');
-  const std::string of_curve = quantity("imposed_curve_residual", 'Y') + "base = \"nominal\"\n";
+  const std::string of_curve = quantity("imposed_error_residual", 'Y') + "baseline = \"nominal\"\n";
 
   const Budget nobody = budget_of(errors + of_tool);
   EXPECT_NEAR(part(nobody, Cause::uncorrected).at_place, 80.0, 0.1);
@@ -268,9 +265,9 @@ TEST(Budget, NamesWhatStays) {
   EXPECT_NEAR(part(both, Cause::imposed).at_place, 240.0, 0.5);
   expect_nothing_else(both, {Cause::uncorrected, Cause::imposed}, 0.1);
 
-  const Budget not_brought_out = budget_of(errors + of_curve);
-  EXPECT_NEAR(part(not_brought_out, Cause::uncorrected).at_place, -240.0, 0.1);
-  expect_nothing_else(not_brought_out, {Cause::uncorrected}, 0.1);
+  const Budget not_realised = budget_of(errors + of_curve);
+  EXPECT_NEAR(part(not_realised, Cause::uncorrected).at_place, -240.0, 0.1);
+  expect_nothing_else(not_realised, {Cause::uncorrected}, 0.1);
 }
 
 // An ideal servo stands where the NC wants it, but the structure gives way to the cut.
@@ -297,19 +294,21 @@ TEST(Budget, AddsUpForExperiment1) {
       "(MSG, leave)\nG1 X75\nM30\n";
   const auto strategy = [](const char* name, const std::string& keys) {
     return std::string("[[case]]\nname = \"") + name +
-           "\"\n[[case.strategy]]\nmodel = \"imposed\"\nsign = \"generate\"\n" + keys;
+           "\"\n[[case.strategy]]\nmodel = \"imposed\"\naction = \"impose\"\n" + keys;
   };
   const std::string toml =
       root("harmonic = { amplitude_um = 150.0, period_mm = 62.0 }",
            "[feedback_hardware]\nconnected = true\n") +
       strategy("table",
-               "type = \"table\"\naxis = \"X\"\nfrom_mm = -200.0\nto_mm = 200.0\n"
-               "response_time_ms = 40.0\n") +
+               "type = \"table\"\nbase_axis = \"X\"\nfrom_mm = -200.0\nto_mm = 200.0\n"
+               "time_constant_ms = 40.0\n") +
       strategy("feedback", "type = \"feedback\"\n") + strategy("gcode", "type = \"gcode\"\n") +
-      strategy("lead", "type = \"feedback\"\nlead_ms = \"auto\"\niterations = \"converged\"\n") +
-      "[[quantity]]\nname = \"imposed_curve_residual\"\naxis = \"Y\"\nbase = \"nominal\"\n"
+      strategy(
+          "lead",
+          "type = \"feedback\"\nextrapolation_time_ms = \"auto\"\niterations = \"converged\"\n") +
+      "[[quantity]]\nname = \"imposed_error_residual\"\naxis = \"Y\"\nbaseline = \"nominal\"\n"
       "sections = [\"flank\"]\ncases = [\"table\", \"feedback\", \"gcode\", \"lead\"]\n"
-      "[[quantity]]\nname = \"brought_out\"\naxis = \"Y\"\nbase = \"nominal\"\n"
+      "[[quantity]]\nname = \"realised_ratio\"\naxis = \"Y\"\nbaseline = \"nominal\"\n"
       "sections = [\"flank\"]\ncases = [\"table\"]\n";  // the same once more
   const Scenario scenario = small_scenario(kFlank, toml);
   const auto budgets = find_budgets(scenario, budget_quantities(scenario));
@@ -330,13 +329,14 @@ TEST(Budget, AddsUpForExperiment1) {
   EXPECT_GT(part(budgets[2], Cause::interpolation).rms, part(budgets[2], Cause::lag).rms);
 }
 
-// Without lag: 144 um believed, of which the limit lets 100 pass, where 120 are true. The belief
-// alone does no harm, and without it the limit would take 20 um; without the limit, the belief adds
-// 24. So the limit has -20 - 24 = -44 and the belief 0, and 24 are both together.
+// Without lag: 144 um identified, of which the limit lets 100 pass, where 120 are true. The wrong
+// identification alone does no harm, and without it the limit would take 20 um; without the limit
+// it adds 24. So the limit has -20 - 24 = -44 and the identification 0, and 24 are both together.
 TEST(Budget, LeavesWhatCausesDoTogetherInTheRemainder) {
   const Budget budget = budget_of(
-      root("constant_um = 120.0", "[errors.belief]\nEYX = { constant_um = 144.0 }\n") +
-      one_case("type = \"feedback\"\nmodel = \"belief\"\nmax_um = 100.0\n", "servo = \"ideal\"\n"));
+      root("constant_um = 120.0", "[errors.identified]\nEYX = { constant_um = 144.0 }\n") +
+      one_case("type = \"feedback\"\nmodel = \"identified\"\nmax_um = 100.0\n",
+               "servo = \"ideal\"\n"));
   constexpr double kSteps = 0.1;  // um, of encoders and more than these
   EXPECT_NEAR(budget.residual.at_place, -20.0, kSteps);
   EXPECT_NEAR(part(budget, Cause::saturation).at_place, -44.0, kSteps);
@@ -348,7 +348,8 @@ TEST(Budget, LeavesWhatCausesDoTogetherInTheRemainder) {
 // centre of C is 10 um off, so X of the workpiece is off by 10 (1 - cos C) um.
 TEST(Budget, ComparesByTheTurnWhereTheTipStands) {
   const Budget budget = budget_of(
-      "truth = \"machine\"\n[errors.machine]\nEX0C = \"10 um\"\n[[program.tool]]\nnumber = "
+      "machine_errors = \"machine\"\n[errors.machine]\nEX0C = \"10 um\"\n[[program.tool]]\nnumber "
+      "= "
       "1\nlength_mm = 110.0\n[[case]]\nname = \"one\"\n"
       "servo = \"ideal\"\n" +
           quantity("tool_deviation", 'X', "turn"),
@@ -393,10 +394,9 @@ TEST(Budget, RefusesASectionThatTheProgramLacks) {
 
 TEST(Budget, SaysWhyThereIsNone) {
   const Scenario scenario = small_scenario(
-      kProgram, root("polynomial_um = [0.0, 10.0]") +
-                    one_case("type = \"table\"\naxis = \"X\"\nfrom_mm = -20.0\nto_mm = "
-                             "100.0\nmodel = \"imposed\"\n",
-                             "[case.machine_override.nc]\nfollowing_error_limit_mm = 1e-6\n"));
+      kProgram,
+      root("polynomial_um = [0.0, 10.0]") +
+          one_case(kTableOverX, "[case.machine_override.nc]\nfollowing_error_limit_mm = 1e-6\n"));
   const auto budgets = find_budgets(scenario, budget_quantities(scenario));
   ASSERT_EQ(budgets.size(), 1U);
   EXPECT_TRUE(budgets[0].note.starts_with("case one stopped: axis ")) << budgets[0].note;

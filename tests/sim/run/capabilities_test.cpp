@@ -64,10 +64,10 @@ Scenario scenario(const std::string& type, const std::string& changes = "",
                             "[[case]]\nname = \"nominal\"\n"
                             "[[case]]\nname = \"one\"\n" +
                             changes + "[[case.strategy]]\ntype = \"" + type +
-                            "\"\nmodel = \"imposed\"\nsign = \"generate\"\n"
+                            "\"\nmodel = \"imposed\"\naction = \"impose\"\n"
                             "max_rate_mm_per_s = 0.5\n"
-                            "[[quantity]]\nname = \"imposed_curve_residual\"\naxis = \"Y\"\n"
-                            "base = \"nominal\"\n");
+                            "[[quantity]]\nname = \"imposed_error_residual\"\naxis = \"Y\"\n"
+                            "baseline = \"nominal\"\n");
 }
 
 std::string refusal(const std::string& type, const std::string& changes) {
@@ -109,7 +109,7 @@ TEST(UnknownFeedbackStrategy, HasTheSameBudget) {
     EXPECT_EQ(known.parts[c].present, strange.parts[c].present) << c;
     EXPECT_EQ(known.parts[c].signal.all(), strange.parts[c].signal.all()) << c;
   }
-  for (const Cause cause : {Cause::delay, Cause::saturation, Cause::one_step}) {
+  for (const Cause cause : {Cause::delay, Cause::saturation, Cause::single_evaluation}) {
     EXPECT_TRUE(strange.parts[static_cast<std::size_t>(cause)].present) << info_of(cause).name;
   }
 }
@@ -168,7 +168,7 @@ TEST(FeedbackHardware, ThatSomeCasesLackCountsAtTheLargestFeedWithItsOverride) {
                        "imposed = \"imposed\"\n[errors.imposed]\nEXX = { um_per_m = 100.0 }\n"
                        "[feedback_hardware]\nconnected = false\n[[case]]\nname = \"nominal\"\n"
                        "[[case]]\nname = \"one\"\n[[case.strategy]]\ntype = \"feedback\"\n"
-                       "model = \"imposed\"\nsign = \"generate\"\n");
+                       "model = \"imposed\"\naction = \"impose\"\n");
     uneven.program.feed_override = feed_override;
     return run(uneven).cases[0].notes.at(0);
   };
@@ -186,7 +186,7 @@ TEST(FeedbackHardware, ThatSomeCasesLackCountsAtTheLargestFeedWithItsOverride) {
 TEST(Comparison, HasNoRowOfTheBaseItself) {
   Scenario all = scenario("feedback");
   EXPECT_EQ(all.quantities.at(0).cases, std::vector<std::string>{"one"});
-  all.quantities[0].name = "response_time";
+  all.quantities[0].name = "lag_time";
   all.quantities[0].cases = {"nominal", "one"};  // as if asked for
   const auto rows = run(all).comparison;
   EXPECT_TRUE(std::isnan(rows.at(0).value)) << rows[0].value << " ms: of nothing";

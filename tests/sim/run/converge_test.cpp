@@ -81,15 +81,15 @@ class Converging : public testing::Test {
                            "EYX = { harmonic = { amplitude_um = 100.0, period_mm = 20.0 } }\n"
                            "[[case]]\nname = \"nominal\"\n"
                         << more
-                        << "[[quantity]]\nname = \"imposed_curve_residual\"\naxis = \"Y\"\n"
-                           "base = \"nominal\"\n";
+                        << "[[quantity]]\nname = \"imposed_error_residual\"\naxis = \"Y\"\n"
+                           "baseline = \"nominal\"\n";
     return path;
   }
   // The default length is 1 mm, the default tolerance 0.1 um.
   static std::string blocks(double max_block_mm, const std::string& servo = "ideal",
                             double tolerance_um = 10.0) {
     return "servo = \"" + servo + "\"\n[[case]]\nname = \"gcode\"\nservo = \"" + servo +
-           "\"\n[[case.strategy]]\ntype = \"gcode\"\nmodel = \"imposed\"\nsign = \"generate\"\n"
+           "\"\n[[case.strategy]]\ntype = \"gcode\"\nmodel = \"imposed\"\naction = \"impose\"\n"
            "tolerance_um = " +
            std::to_string(tolerance_um) + "\nmax_block_mm = " + std::to_string(max_block_mm) + "\n";
   }
@@ -157,11 +157,11 @@ TEST_F(Converging, KnowsTheResolutionOfARow) {
 // The share of 100 um that a scale of step r can tell is r / 100 um.
 TEST_F(Converging, SharesAreAsUncertainAsTheDisplacement) {
   const std::string share =
-      "[[quantity]]\nname = \"brought_out\"\naxis = \"Y\"\nbase = \"nominal\"\n";
+      "[[quantity]]\nname = \"realised_ratio\"\naxis = \"Y\"\nbaseline = \"nominal\"\n";
   const Convergence found = converge(file(blocks(1.0, "cascade", 0.1) + share), {});
   const ConvergedRow* brought = nullptr;
   for (const ConvergedRow& row : found.rows) {
-    if (row.row.quantity == "brought_out" && row.row.case_name == "gcode") brought = &row;
+    if (row.row.quantity == "realised_ratio" && row.row.case_name == "gcode") brought = &row;
   }
   ASSERT_NE(brought, nullptr);
   const Scenario scenario = ScenarioSource(file(blocks(1.0, "cascade", 0.1) + share)).at();
@@ -211,7 +211,8 @@ TEST_F(Converging, SaysWhatCannotBeHalved) {
 }
 
 TEST_F(Converging, IsRefusedBeforeItRuns) {
-  EXPECT_THROW(find_convergence(ScenarioSource(file("", "truth = \"no\"\n")), {}), InputError);
+  EXPECT_THROW(find_convergence(ScenarioSource(file("", "machine_errors = \"no\"\n")), {}),
+               InputError);
 }
 
 }  // namespace

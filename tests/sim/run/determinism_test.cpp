@@ -13,21 +13,21 @@ const std::string kProgram =
 std::string strategy_case(const std::string& type, const std::string& more = "") {
   return fmt::format(
       "[[case]]\nname = \"{0}{1}\"\n[[case.strategy]]\ntype = \"{0}\"\nmodel = \"imposed\"\n"
-      "sign = \"generate\"\n{2}",
+      "action = \"impose\"\n{2}",
       type, more.empty() ? "" : "_more", more);
 }
 
 Scenario all_strategies() {
   return small_scenario(
       kProgram,
-      "imposed = \"imposed\"\ntruth = \"imposed\"\n[errors.imposed]\n"
+      "imposed = \"imposed\"\nmachine_errors = \"imposed\"\n[errors.imposed]\n"
       "EYX = { harmonic = { amplitude_um = 40.0, period_mm = 20.0 } }\n"
       "EXY = { polynomial_um = [1.0, 0.3] }\nEC0Y = \"50 urad\"\n"
       "[feedback_hardware]\nconnected = true\n"
       "[[case]]\nname = \"nominal\"\n" +
-          strategy_case("table", "axis = \"X\"\nfrom_mm = -20.0\nto_mm = 20.0\n") +
-          strategy_case("feedback") + strategy_case("feedback", "lead_ms = \"auto\"\n") +
-          strategy_case("gcode"));
+          strategy_case("table", "base_axis = \"X\"\nfrom_mm = -20.0\nto_mm = 20.0\n") +
+          strategy_case("feedback") +
+          strategy_case("feedback", "extrapolation_time_ms = \"auto\"\n") + strategy_case("gcode"));
 }
 
 RunOutput run_with(const Scenario& scenario, unsigned threads) {
@@ -61,7 +61,7 @@ TEST(RunScenario, StopsTheCaseThatDivergesAndNoOther) {
       "[machine_override.nc]\nfollowing_error_limit_mm = 2.0\n"
       "[[case]]\nname = \"before\"\n"
       "[[case]]\nname = \"mad\"\n[[case.strategy]]\ntype = \"feedback\"\nmodel = \"mad\"\n"
-      "sign = \"generate\"\nmax_um = 1e6\nmax_rate_mm_per_s = 1e6\n"
+      "action = \"impose\"\nmax_um = 1e6\nmax_rate_mm_per_s = 1e6\n"
       "[[case]]\nname = \"after\"\n"
       "[[quantity]]\nname = \"following_error\"\naxis = \"X\"\n");
   const RunOutput out = run_with(scenario, 2);
@@ -99,7 +99,7 @@ TEST(RunScenario, KeepsTheLastTicksOfALoopThatDiverges) {
   EXPECT_LE(last.rows(), 2000U);
   const auto error = [&](std::size_t row) {
     return std::abs(last.at(row, *last.column("cmd", 'X')) -
-                    last.at(row, *last.column("read", 'X')));
+                    last.at(row, *last.column("fb", 'X')));
   };
   for (std::size_t row = 0; row + 1 < last.rows(); ++row) EXPECT_LE(error(row), 0.3e-3);
   EXPECT_GT(error(last.rows() - 1), 0.3e-3);

@@ -1,4 +1,4 @@
-/// Error models that differ from others: beliefs with stated identification errors.
+/// Error models that differ from others: identified_machines with stated identification errors.
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/units.h"
@@ -26,18 +26,19 @@ const std::string kMachine =
 
 TEST(ErrorModels, DifferByWhatTheySay) {
   const Scenario scenario = with_errors(
-      "[errors.belief]\ndiffers_from = \"machine\"\nEX0C = \"-0.5 um\"\nEA0C = { constant_urad = "
+      "[errors.identified]\nrelative_to = \"machine\"\nEX0C = \"-0.5 um\"\nEA0C = { constant_urad "
+      "= "
       "2.0 }\nEB0C = \"3 urad\"\nEYX = { constant_um = 0.25 }\nEZX = { constant_um = 4.0 }\n" +
       kMachine);
-  const plant::ErrorModel &belief = scenario.errors.at("belief"),
+  const plant::ErrorModel &identified = scenario.errors.at("identified"),
                           &machine = scenario.errors.at("machine");
-  EXPECT_NEAR(belief.location("EX0C"_err), 7.5 * um, kRounding);
-  EXPECT_NEAR(belief.location("EA0C"_err), 27.0 * urad, kRounding);
-  EXPECT_NEAR(belief.location("EB0C"_err), 3.0 * urad, kRounding);
-  EXPECT_NEAR(belief.location("EC0Y"_err), 15.0 * urad, kRounding);
+  EXPECT_NEAR(identified.location("EX0C"_err), 7.5 * um, kRounding);
+  EXPECT_NEAR(identified.location("EA0C"_err), 27.0 * urad, kRounding);
+  EXPECT_NEAR(identified.location("EB0C"_err), 3.0 * urad, kRounding);
+  EXPECT_NEAR(identified.location("EC0Y"_err), 15.0 * urad, kRounding);
   const double x = 10.0 * mm;
-  EXPECT_NEAR(belief.component("EYX"_err).value(x), (1.0 + 5.0 + 0.25) * um, kRounding);
-  EXPECT_NEAR(belief.component("EZX"_err).value(x), 4.0 * um, kRounding);
+  EXPECT_NEAR(identified.component("EYX"_err).value(x), (1.0 + 5.0 + 0.25) * um, kRounding);
+  EXPECT_NEAR(identified.component("EZX"_err).value(x), 4.0 * um, kRounding);
   EXPECT_NEAR(machine.location("EX0C"_err), 8.0 * um, kRounding);
   EXPECT_NEAR(machine.component("EYX"_err).value(x), 6.0 * um, kRounding);
 }
@@ -61,36 +62,40 @@ TEST(ErrorModels, RefuseALocationWhoseUnitWasForgotten) {
 }
 
 TEST(ErrorModels, ThatDifferByNothingAreTheSame) {
-  const Scenario scenario = with_errors("[errors.belief]\ndiffers_from = \"machine\"\n" + kMachine);
-  EXPECT_TRUE(scenario.errors.at("belief") == scenario.errors.at("machine"));
+  const Scenario scenario =
+      with_errors("[errors.identified]\nrelative_to = \"machine\"\n" + kMachine);
+  EXPECT_TRUE(scenario.errors.at("identified") == scenario.errors.at("machine"));
 }
 
 TEST(ErrorModels, DifferFromAnotherThatIsComplete) {
   const auto differing = [](const std::string& from) {
-    return kMachine + "[errors.belief]\ndiffers_from = " + from + "\n";
+    return kMachine + "[errors.identified]\nrelative_to = " + from + "\n";
   };
   EXPECT_EQ(faults_of(differing("\"machine\"")), "");
-  EXPECT_EQ(faults_of(differing("\"machin\"")),
-            "errors.belief.differs_from = \"machin\"; must be the name of another error model; did "
-            "you mean 'machine'?\n");
-  EXPECT_EQ(faults_of(differing("\"belief\"")),
-            "errors.belief.differs_from = \"belief\"; must be the name of another error model\n");
-  EXPECT_EQ(faults_of(differing("1")), "errors.belief.differs_from = 1; must be a text\n");
-  EXPECT_EQ(faults_of(differing("\"other\"") + "[errors.other]\ndiffers_from = \"machine\"\n"),
-            "errors.belief.differs_from = \"other\"; must name a model that differs from no other "
-            "itself\n");
+  EXPECT_EQ(
+      faults_of(differing("\"machin\"")),
+      "errors.identified.relative_to = \"machin\"; must be the name of another error model; did "
+      "you mean 'machine'?\n");
+  EXPECT_EQ(
+      faults_of(differing("\"identified\"")),
+      "errors.identified.relative_to = \"identified\"; must be the name of another error model\n");
+  EXPECT_EQ(faults_of(differing("1")), "errors.identified.relative_to = 1; must be a text\n");
+  EXPECT_EQ(
+      faults_of(differing("\"other\"") + "[errors.other]\nrelative_to = \"machine\"\n"),
+      "errors.identified.relative_to = \"other\"; must name a model that differs from no other "
+      "itself\n");
 }
 
-// With a belief that is off by 2 um along X the tip ends up 2 um off, and nowhere else: the C axis
-// has turned half about, so that its place counts twice.
+// With a identified that is off by 2 um along X the tip ends up 2 um off, and nowhere else: the C
+// axis has turned half about, so that its place counts twice.
 TEST(ErrorModels, LeaveTheirDifferenceWhenTheyAreBelieved) {
   const auto left = [](const std::string& difference) {
     const Scenario scenario = small_scenario(
         "G21 G90 G94\nG0 X20 C180\nG1 X30 F1000\nM2\n",
-        "truth = \"machine\"\n" + kMachine + "[errors.belief]\ndiffers_from = \"machine\"\n" +
-            difference +
+        "machine_errors = \"machine\"\n" + kMachine +
+            "[errors.identified]\nrelative_to = \"machine\"\n" + difference +
             "[[case]]\nname = \"one\"\nservo = \"ideal\"\n[[case.strategy]]\ntype = \"feedback\"\n"
-            "model = \"belief\"\niterations = \"converged\"\n");
+            "model = \"identified\"\niterations = \"converged\"\n");
     const CaseOutput out = run_case(scenario, "one");
     return largest_of(out.result.servo, "tool_deviation", 'X',
                       rows_within(out.result.servo, 20.0, 30.0));

@@ -33,7 +33,7 @@ const Series& every_tick() {
 // Model periods lie at ticks n = 0, 6, ...; the position loop at k uses the last with n + 7 <= k.
 TEST(VirtualDisplacement, OfTickNIsReadFromTickNPlus7On) {
   const Series& rows = every_tick();
-  const std::size_t read = rows.column("read_linear", 'X').value();
+  const std::size_t read = rows.column("fb_linear", 'X').value();
   const std::size_t scale = rows.column("meas_linear", 'X').value();
   ASSERT_GT(rows.rows(), 4000U);
   std::size_t steps = 0;

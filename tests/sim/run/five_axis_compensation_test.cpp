@@ -45,19 +45,19 @@ std::string five_axis_case(const std::string& name, const std::string& servo,
                            const std::string& type, const std::string& more) {
   return "[[case]]\nname = \"" + name + "\"\nservo = \"" + servo +
          "\"\n[[case.strategy]]\ntype = \"" + type + "\"\n" +
-         (type == "none" ? "" : "model = \"machine\"\nsign = \"correct\"\n" + more);
+         (type == "none" ? "" : "model = \"machine\"\naction = \"compensate\"\n" + more);
 }
 
 Scenario five_axes(const std::string& program = kProgram) {
   const std::string all = "axes = \"all\"\niterations = \"converged\"\n";
   const std::string fine = "tolerance_um = 0.02\ntolerance_urad = 0.05\n";
   return small_scenario(
-      program, "truth = \"machine\"\n" + all_errors() +
+      program, "machine_errors = \"machine\"\n" + all_errors() +
                    "[record]\nperiod_ms = 10.0\n[[program.tool]]\nnumber = 1\nlength_mm = 110.0\n" +
                    five_axis_case("none", "ideal", "none", "") +
                    five_axis_case("linear", "ideal", "feedback", "iterations = \"converged\"\n") +
                    five_axis_case("feedback", "ideal", "feedback", all) +
-                   five_axis_case("one_step", "ideal", "feedback", "axes = \"all\"\n") +
+                   five_axis_case("single_evaluation", "ideal", "feedback", "axes = \"all\"\n") +
                    five_axis_case("gcode", "ideal", "gcode", all + fine));
 }
 
@@ -77,7 +77,7 @@ struct Left {
 };
 Left left_by(const Scenario& scenario, const std::string& name) {
   const CaseOutput out = run_case(scenario, name);
-  return {quantity(out, "tool_tip_deviation"), quantity(out, "tool_axis_deviation")};
+  return {quantity(out, "tcp_deviation"), quantity(out, "tool_axis_deviation")};
 }
 
 // Goal: less than 0.1 um and 1 urad wherever the machine can. With exact inverses the residual is
@@ -91,7 +91,7 @@ TEST(FiveAxes, FeedbackLeavesNothingOfTipAndToolAxis) {
   constexpr double kTipTol = 1e-5, kAxisTol = 1e-5;  // um, urad
   EXPECT_LT(exact.tip, kTipTol);
   EXPECT_LT(exact.axis, kAxisTol);
-  const Left first_order = left_by(scenario, "one_step");
+  const Left first_order = left_by(scenario, "single_evaluation");
   EXPECT_LT(first_order.tip, 0.1);
   EXPECT_LT(first_order.axis, 1.0);
   EXPECT_GT(first_order.tip, exact.tip);
@@ -123,7 +123,7 @@ TEST(FiveAxes, ReportWhatASingularDirectionLeaves) {
   EXPECT_LT(left.tip, 1e-4);
   EXPECT_GT(left.axis, 1.0);
   EXPECT_LT(left.axis, without.axis);
-  // told at the believed worst place
+  // told at the identified worst place
   const CaseOutput out = run_case(scenario, "feedback");
   ASSERT_EQ(out.notes.size(), 1U);
   EXPECT_NE(out.notes.front().find("small.ngc:5: warning: case feedback: strategy feedback cannot "
@@ -143,7 +143,7 @@ constexpr double kFeed = 1394.0;            // mm/min
 double lag_of_rotary_axis(const std::string& more) {
   const std::string one =
       "[[case]]\nname = \"one\"\nwork_offset = { B_deg = 30.0 }\n[[case.strategy]]\n"
-      "type = \"feedback\"\nmodel = \"tilt\"\nsign = \"generate\"\naxes = \"all\"\n";
+      "type = \"feedback\"\nmodel = \"tilt\"\naction = \"impose\"\naxes = \"all\"\n";
   const Scenario scenario = small_scenario(
       fmt::format("G0 X-30\nG1 X30 F{}\nM30\n", kFeed),
       "[machine_override.nc]\nKv = \"60 1/s\"\n" +
@@ -163,7 +163,7 @@ double lag_of_rotary_axis(const std::string& more) {
 TEST(FiveAxes, LagOfARotaryAxisIsOneOverKvAndIsTakenAwayByItsLead) {
   const double closed_form = 1000.0 / kKv + 8.0 * kTick;  // ms
   const double without = lag_of_rotary_axis("");
-  const double with = lag_of_rotary_axis("lead_ms = \"auto\"\n");
+  const double with = lag_of_rotary_axis("extrapolation_time_ms = \"auto\"\n");
   EXPECT_NEAR(without, closed_form, 0.01 * closed_form);
   EXPECT_LT(std::abs(with), 0.1 * without);
 }

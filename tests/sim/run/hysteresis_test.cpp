@@ -41,7 +41,7 @@ const std::string kErrors =
 
 Scenario machine_with_hysteresis(const std::string& program, const std::string& more,
                                  const std::string& errors = kErrors) {
-  return small_scenario(program, "truth = \"machine\"\n" + errors + more);
+  return small_scenario(program, "machine_errors = \"machine\"\n" + errors + more);
 }
 
 std::string one_case(const std::string& name, const std::string& servo) {
@@ -179,7 +179,7 @@ TEST(Hysteresis, ChangesOverWithoutAJump) {
 TEST(Hysteresis, LeavesHalfItsWidthToACorrectionThatBelievesTheMean) {
   const std::string corrected =
       "[[case]]\nname = \"feedback\"\nservo = \"ideal\"\n[[case.strategy]]\ntype = \"feedback\"\n"
-      "model = \"machine\"\nsign = \"correct\"\n";
+      "model = \"machine\"\naction = \"compensate\"\n";
   const std::string errors =
       "[errors.machine.EXX]\npolynomial_um = [1.0, 0.05]\n"
       "reversal = { width_um = 4.0, distance_mm = 0.05 }\n";

@@ -23,9 +23,9 @@ TEST(Indexing, LeavesNoDeviationOnAFaultlessMachine) {
 TEST(Indexing, TakesAsLongInARewrittenProgram) {
   const Scenario scenario = small_scenario(
       kProgram,
-      "[errors.believed]\nEYC = { harmonic = { amplitude_um = 50.0, period_deg = 40.0 } }\n"
+      "[errors.identified]\nEYC = { harmonic = { amplitude_um = 50.0, period_deg = 40.0 } }\n"
       "[[case]]\nname = \"nominal\"\n"
-      "[[case]]\nname = \"gcode\"\n[[case.strategy]]\ntype = \"gcode\"\nmodel = \"believed\"\n");
+      "[[case]]\nname = \"gcode\"\n[[case.strategy]]\ntype = \"gcode\"\nmodel = \"identified\"\n");
   const double nominal = run_case(scenario, "nominal").duration;
   const double rewritten = run_case(scenario, "gcode").duration;
   EXPECT_GT(nominal, 6.0);                         // 30 deg at 300 deg/min
@@ -56,9 +56,9 @@ TEST(Reading, RefusesAnOddTriangle) {
 TEST(Table, HasAtLeastOneInterval) {
   const Scenario scenario = small_scenario(
       "G21 G90 G94\nG1 X20 F600\nM30\n",
-      "[errors.believed]\nEYX = { constant_um = 10.0 }\n"
-      "[[case]]\nname = \"table\"\n[[case.strategy]]\ntype = \"table\"\nmodel = \"believed\"\n"
-      "sign = \"generate\"\naxis = \"X\"\ngrid = \"free\"\nspacing_mm = 1e12\n");
+      "[errors.identified]\nEYX = { constant_um = 10.0 }\n"
+      "[[case]]\nname = \"table\"\n[[case.strategy]]\ntype = \"table\"\nmodel = \"identified\"\n"
+      "action = \"impose\"\nbase_axis = \"X\"\nspacing_rule = \"free\"\nspacing_mm = 1e12\n");
   const CaseOutput one = run_case(scenario, "table");
   const Series& series = one.result.servo;
   EXPECT_NEAR(series.at(series.rows() - 1, *series.column("cmd_linear", 'Y')), 0.010, 1e-9);
@@ -67,20 +67,20 @@ TEST(Table, HasAtLeastOneInterval) {
 TEST(Lead, IsThatOfEachAxis) {
   const Scenario scenario = small_scenario(
       "G21 G90 G94 G64 P0.001\nG1 X-100 F1394\n(MSG, cruise)\nG1 X60\n(MSG, out)\nG1 X80\nM30\n",
-      "imposed = \"believed\"\n"
+      "imposed = \"identified\"\n"
       "[machine_override.axis.Y]\nKv = \"30 1/s\"\n"
-      "[errors.believed]\nEYX = { harmonic = { amplitude_um = 150.0, period_mm = 62.0 } }\n"
+      "[errors.identified]\nEYX = { harmonic = { amplitude_um = 150.0, period_mm = 62.0 } }\n"
       "[[case]]\nname = \"nominal\"\n"
-      "[[case]]\nname = \"lead\"\n[[case.strategy]]\ntype = \"feedback\"\nmodel = \"believed\"\n"
-      "sign = \"generate\"\nlead_ms = \"auto\"\n"
-      "[[quantity]]\nname = \"brought_out\"\naxis = \"X\"\nbase = \"nominal\"\ncases = "
+      "[[case]]\nname = \"lead\"\n[[case.strategy]]\ntype = \"feedback\"\nmodel = \"identified\"\n"
+      "action = \"impose\"\nextrapolation_time_ms = \"auto\"\n"
+      "[[quantity]]\nname = \"realised_ratio\"\naxis = \"X\"\nbaseline = \"nominal\"\ncases = "
       "[\"lead\"]\n");
   const CaseOutput nominal = run_case(scenario, "nominal"), lead = run_case(scenario, "lead");
   QuantitySpec spec;
-  spec.name = "response_time";
+  spec.name = "lag_time";
   spec.axis = 'Y';
   spec.cases = {"lead"};
-  spec.base = "nominal";
+  spec.baseline = "nominal";
   spec.sections = {"cruise"};
   const std::vector<QuantitySpec> specs = {spec};
   const std::vector<CaseData> data = {nominal.data(), lead.data()};

@@ -134,7 +134,7 @@ TEST_F(RunFile, SpeaksNotOfUnfinishedCasesWhenItIsComplete) {
 TEST_F(RunFile, HasErrorsOverAllOfTheTravelAndLocationErrors) {
   const Scenario far =
       small_scenario("G1 Z1 F1000\nM2\n",
-                     "truth = \"true\"\n"
+                     "machine_errors = \"true\"\n"
                      "[machine_override.axis.X]\ntravel_mm = [600.0, 3400.0]\n"
                      "[machine_override.axis.C]\ntravel_deg = [-3600.0, 3600.0]\n"
                      "[errors.true]\nEXX = { um_per_m = 10.0 }\nECC = { constant_urad = 5.0 }\n"

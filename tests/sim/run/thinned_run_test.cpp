@@ -48,15 +48,15 @@ Scenario scenario(const std::string& record) {
     const std::string keys = "statistic = \"" + statistic + "\"\n";
     quantities += quantity("following_error", "axis = \"X\"\n" + keys);
     quantities += quantity("tool_deviation", "axis = \"Y\"\n" + keys);
-    for (const char* name : {"contour_error", "tool_tip_deviation", "tool_axis_deviation"}) {
+    for (const char* name : {"contour_error", "tcp_deviation", "tool_axis_deviation"}) {
       quantities += quantity(name, keys);
     }
   }
-  const std::string base = "base = \"as_it_is\"\ncases = [\"feedback\"]\n";
-  quantities += quantity("tool_difference", base);
-  quantities += quantity("trajectory_difference", "axis = \"Y\"\n" + base);
+  const std::string baseline = "baseline = \"as_it_is\"\ncases = [\"feedback\"]\n";
+  quantities += quantity("tool_difference", baseline);
+  quantities += quantity("trajectory_difference", "axis = \"Y\"\n" + baseline);
   return small_scenario(program(),
-                        "truth = \"measured\"\n[record]\n" + record + kCases + quantities);
+                        "machine_errors = \"measured\"\n[record]\n" + record + kCases + quantities);
 }
 
 class ThinnedRun : public testing::Test {
@@ -84,7 +84,7 @@ TEST_F(ThinnedRun, ComparesAsAllRowsDo) {
   for (std::size_t i = 0; i < of_all.comparison.size(); ++i) {
     const ComparisonRow &wanted = of_all.comparison[i], &found = of_thinned.comparison[i];
     SCOPED_TRACE(wanted.case_name + " " + wanted.quantity + " " + wanted.statistic);
-    if (quantity_entry(wanted.quantity).needs_base) {
+    if (quantity_entry(wanted.quantity).needs_baseline) {
       EXPECT_NEAR(found.value, wanted.value, kBetween);
       EXPECT_EQ(found.note, "at the rows that are recorded (record.period_ms)");
     } else if (wanted.statistic == "max" || wanted.statistic == "range") {

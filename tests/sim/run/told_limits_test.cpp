@@ -17,7 +17,7 @@ const std::string kErrors =
 std::string one_case(const std::string& name, const std::string& strategy,
                      const std::string& more = "") {
   return "[[case]]\nname = \"" + name + "\"\n" + more +
-         "[[case.strategy]]\nmodel = \"machine\"\nsign = \"generate\"\n" + strategy;
+         "[[case.strategy]]\nmodel = \"machine\"\naction = \"impose\"\n" + strategy;
 }
 
 std::string note_of(const CaseOutput& output) {
@@ -89,7 +89,8 @@ TEST(Saturation, IsTheSameInLockstep) {
 
 // The rapid move to X150 cuts nothing, the way back begins beyond the table.
 TEST(EndOfATable, IsToldWhereTheProgramGoesOn) {
-  const std::string table = "type = \"table\"\naxis = \"X\"\ngrid = \"free\"\nspacing_mm = 10.0\n";
+  const std::string table =
+      "type = \"table\"\nbase_axis = \"X\"\nspacing_rule = \"free\"\nspacing_mm = 10.0\n";
   const Scenario scenario =
       small_scenario(kProgram, kErrors + one_case("wide", table) +
                                    one_case("short", table + "from_mm = -20.0\nto_mm = 55.0\n") +
@@ -115,8 +116,8 @@ TEST(RewrittenProgram, KeepsTheErrorsOfThePlaceThatItWasRewrittenFor) {
                     ideal = "servo = \"ideal\"\n";
   const Scenario scenario = small_scenario(
       kProgram, kErrors + one_case("here", gcode, ideal) + one_case("moved", gcode, ideal + moved) +
-                    one_case("old", gcode + "rewritten_for = \"program\"\n", ideal + moved) +
-                    one_case("unmoved", gcode + "rewritten_for = \"program\"\n", ideal));
+                    one_case("old", gcode + "rewrite_origin = \"program\"\n", ideal + moved) +
+                    one_case("unmoved", gcode + "rewrite_origin = \"program\"\n", ideal));
   // largest distance of Y from the error curve of a place `shift` mm away
   const auto off = [&](const char* name, double shift) {
     const Series servo = run_case(scenario, name).result.servo;

@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kProgram =
     "G17 G21 G40 G90 G94\nG0 X-90 B30\nG1 X60 F6000\nG1 X-20 Y10\nG0 X-150\nM30\n";
 const std::string kErrors =
-    "truth = \"machine\"\n[errors.machine]\nEBX = { polynomial_urad = [0.0, 0.2] }\n";
+    "machine_errors = \"machine\"\n[errors.machine]\nEBX = { polynomial_urad = [0.0, 0.2] }\n";
 
 std::string one_case(const std::string& name, const std::string& more) {
   return "[[case]]\nname = \"" + name +
@@ -22,9 +22,9 @@ std::string one_case(const std::string& name, const std::string& more) {
 
 TEST(Uncorrectable, IsToldWithItsSizeAndLine) {
   const Scenario scenario =
-      small_scenario(kProgram, kErrors + one_case("linear", "sign = \"correct\"\n") +
-                                   one_case("all", "sign = \"correct\"\naxes = \"all\"\n") +
-                                   one_case("generates", "sign = \"generate\"\n"));
+      small_scenario(kProgram, kErrors + one_case("linear", "action = \"compensate\"\n") +
+                                   one_case("all", "action = \"compensate\"\naxes = \"all\"\n") +
+                                   one_case("generates", "action = \"impose\"\n"));
   const std::vector<std::string> notes = run_case(scenario, "linear").notes;
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_TRUE(notes[0].ends_with(
@@ -38,9 +38,9 @@ TEST(Uncorrectable, IsToldWithItsSizeAndLine) {
 TEST(Uncorrectable, IsRecordedWhereTheScenarioAsksForIt) {
   const Scenario scenario =
       small_scenario(kProgram, kErrors + "[record]\nuncorrectable = true\n" +
-                                   one_case("linear", "sign = \"correct\"\n") +
-                                   one_case("all", "sign = \"correct\"\naxes = \"all\"\n") +
-                                   one_case("generates", "sign = \"generate\"\n"));
+                                   one_case("linear", "action = \"compensate\"\n") +
+                                   one_case("all", "action = \"compensate\"\naxes = \"all\"\n") +
+                                   one_case("generates", "action = \"impose\"\n"));
   const Series linear = run_case(scenario, "linear").result.servo;
   const auto tip = linear.column("uncorrectable_tip"), axis = linear.column("uncorrectable_axis");
   ASSERT_TRUE(tip && axis);

@@ -146,7 +146,7 @@ TEST(Lockstep, OfVirtualEncodersGivesEachTheBitsThatItHasAlone) {
     const bool leads = k % 2 == 1;
     std::vector<std::string> changes = {
         fmt::format("case=[{{name=\"only\",strategy=[{{type=\"feedback\",model=\"imposed\","
-                    "sign=\"generate\",iterations=\"converged\",lead_ms={}}}]}}]",
+                    "action=\"impose\",iterations=\"converged\",extrapolation_time_ms={}}}]}}]",
                     leads ? "\"auto\"" : "0"),
         fmt::format("program.feed_override={}", 3.0 + 0.5 * static_cast<double>(k))};
     if (k == 5) changes.push_back("machine.nc.following_error_limit_mm=0.001");

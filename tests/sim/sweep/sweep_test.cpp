@@ -22,7 +22,7 @@ Sweep sweep_of(const std::string& table, std::vector<std::string> changes = {}) 
 
 const std::string kSix =
     "program.feed_override=[1.0,2.0],"
-    "case.table.strategy.response_time_ms={linear=[0.0,20.0],count=3}";
+    "case.table.strategy.time_constant_ms={linear=[0.0,20.0],count=3}";
 
 // All points by number; runs them alone where no control says otherwise.
 std::map<std::uint64_t, BatchResult> run_all(const Sweep& sweep, SweepControl control = {}) {
@@ -124,7 +124,7 @@ TEST(Sweep, SaysWhereTheMachineStopped) {
 TEST(Sweep, RefusesPointsThatAskForSomethingElse) {
   const auto results =
       run_all(sweep_of("\"case[1].name\"=[\"table\",\"tabel\"]",
-                       {"quantity[0].cases=[\"nominal\"]", "quantity[0].base=nominal"}));
+                       {"quantity[0].cases=[\"nominal\"]", "quantity[0].baseline=nominal"}));
   EXPECT_EQ(results.at(0).status, PointStatus::done);
   EXPECT_EQ(results.at(1).status, PointStatus::done);
   const auto others = run_all(
@@ -183,10 +183,10 @@ TEST(ValueOfASweptKey, IsRefused) {
   EXPECT_EQ(refused(feed, "program.feed_override=0.3"),
             "--set program.feed_override=0.3: error: the sweep varies program.feed_override "
             "(--set sweep={program.feed_override=[1.0,2.0]}); this value would never be used");
-  const std::string time = "case.table.strategy.response_time_ms=[1,2]";
-  EXPECT_EQ(refused(time, "case[1].strategy[0].response_time_ms=3"),
-            "--set case[1].strategy[0].response_time_ms=3: error: the sweep varies "
-            "case.table.strategy.response_time_ms (--set sweep={" +
+  const std::string time = "case.table.strategy.time_constant_ms=[1,2]";
+  EXPECT_EQ(refused(time, "case[1].strategy[0].time_constant_ms=3"),
+            "--set case[1].strategy[0].time_constant_ms=3: error: the sweep varies "
+            "case.table.strategy.time_constant_ms (--set sweep={" +
                 time + "}); this value would never be used")
       << "another spelling of the same key";
   EXPECT_EQ(refused(feed, "record.period_ms=1.0"), "accepted");
@@ -205,15 +205,15 @@ TEST(RefuseHopeless, NamesAKeyThatThereIsNot) {
                 "sweep.\"program.feed_overide\": program.feed_overide is not known; did you mean "
                 "'feed_override', which is given, too?");
   EXPECT_EQ(
-      refusal("case.tabel.strategy.response_time_ms=[1,2]"),
-      "--set sweep={case.tabel.strategy.response_time_ms=[1,2]}: error: "
-      "sweep.\"case.tabel.strategy.response_time_ms\": case is a list; 'tabel' is no place in "
+      refusal("case.tabel.strategy.time_constant_ms=[1,2]"),
+      "--set sweep={case.tabel.strategy.time_constant_ms=[1,2]}: error: "
+      "sweep.\"case.tabel.strategy.time_constant_ms\": case is a list; 'tabel' is no place in "
       "it; did you mean 'table'?");
   EXPECT_EQ(
-      refusal("case.table.strategy.respons_time_ms=[1,2]"),
-      "--set sweep={case.table.strategy.respons_time_ms=[1,2]}: error: "
-      "sweep.\"case.table.strategy.respons_time_ms\": case[1].strategy[0].respons_time_ms is not "
-      "known; did you mean 'response_time_ms'?");
+      refusal("case.table.strategy.time_constan_ms=[1,2]"),
+      "--set sweep={case.table.strategy.time_constan_ms=[1,2]}: error: "
+      "sweep.\"case.table.strategy.time_constan_ms\": case[1].strategy[0].time_constan_ms is not "
+      "known; did you mean 'time_constant_ms'?");
 }
 
 TEST(RefuseHopeless, TellsAFaultOfAllOfManyPoints) {

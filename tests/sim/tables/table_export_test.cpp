@@ -60,7 +60,7 @@ using ReadTables = std::map<std::pair<int, int>, ReadTable>;  // {output, input}
 
 int joint_of_letter(char letter) { return static_cast<int>(std::string("XYZ").find(letter)); }
 
-// Displacement of the axes of a SINUMERIK: the set point gets what $AN_CEC says; an axis whose
+// Displacement of the axes of a SINUMERIK: the setpoint gets what $AN_CEC says; an axis whose
 // actual value counts $AA_ENC_COMP more stops so much earlier.
 ReadTables read_siemens(const std::vector<TextFile>& files) {
   ReadTables own, cross;
@@ -215,7 +215,7 @@ TEST(TableExport, RotaryAndLocationErrorsOfFiveAxesAreLeftByName) {
   const auto tables =
       export_tables(machine_of("[w C' X b Y Z t]"), errors, request_of(TableFormat::siemens));
   std::string names;
-  for (const LeftOver& one : tables.left) names += to_string(one.name) + " ";
+  for (const TableResidual& one : tables.left) names += to_string(one.name) + " ";
   EXPECT_EQ(names, "EXC EY0C EA0C ");
 }
 
@@ -306,7 +306,7 @@ TEST(TableExport, CountsAxesWithoutTablesAsLeft) {
   request.axes[0].wanted = request.axes[2].wanted = false;
   const auto tables = export_tables(machine_of("[w X b Y Z t]"), without_angles(), request);
   std::string names;
-  for (const LeftOver& one : tables.left) names += to_string(one.name) + " ";
+  for (const TableResidual& one : tables.left) names += to_string(one.name) + " ";
   EXPECT_EQ(names, "EXX EYX EZX EXZ EYZ EZZ EA0Z EB0Z ");
 }
 

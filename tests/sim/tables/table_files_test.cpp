@@ -160,7 +160,7 @@ CHANDATA(1)
 ;   EAX   20.000 urad; tip 0.224 um, tool axis 20.000 urad
 ; tip at poses all over the travel, beside that of the reference: off by up to 7.257 um without these tables, 0.650 um with
 ; axes: machine axes are taken to be called X1, Y1, ...; first measuring system
-; sign: correction, added to the set point of the compensation axis; check it with one table before you enable all
+; sign: correction, added to the setpoint of the compensation axis; check it with one table before you enable all
 ; load with MD32710 $MA_CEC_ENABLE = 0, then enable SD41300 $SN_CEC_TABLE_ENABLE
 ; Y1 over X1: MD18342 $MN_MM_CEC_MAX_POINTS[0] >= 3
 $AN_CEC[0,0]=0.002900

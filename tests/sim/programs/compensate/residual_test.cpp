@@ -1,5 +1,5 @@
-// A corrected program on a machine with the believed errors: the tool goes where the program wants
-// it, within the tolerance.
+// A corrected program on a machine with the identified errors: the tool goes where the program
+// wants it, within the tolerance.
 #include <random>
 
 #include "sim/input/read_machine.h"
@@ -170,7 +170,7 @@ class Generator {
   bool is_inch_ = false, is_incremental_ = false;
 };
 
-TEST(CompensateResidual, OfAPerfectBeliefIsBelowTheTolerance) {
+TEST(CompensateResidual, OfAPerfectIdentificationIsBelowTheTolerance) {
   double worst = 0.0;
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const std::string program = Generator(seed).program();

@@ -79,7 +79,7 @@ TEST(SplitRapids, BeginWhereThePositionIsKnown) {
   Trial trial = on_a_trunnion(
       "G21 G90 G54\nT1 M6\nS1000 M3\nG0 X10 Y10\nG43 H1 Z50\nG0 A20 C30\nG0 "
       "X60 Y50\nM2\n");
-  trial.request.splits_rapids = true;
+  trial.request.corrects_rapids = true;
   trial.request.error_file = written(
       "wave.toml", "[errors.w]\nEYX = { harmonic = { amplitude_um = 40.0, period_mm = 30.0 } }\n");
   const std::string text = trial.run().program;

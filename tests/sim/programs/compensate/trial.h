@@ -1,4 +1,4 @@
-/// Programs compensated and run on a machine that has just the errors that were believed.
+/// Programs compensated and run on a machine that has just the errors that were identified.
 #pragma once
 
 #include <fmt/format.h>

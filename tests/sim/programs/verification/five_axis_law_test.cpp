@@ -64,7 +64,7 @@ CompensateRequest request_for(const std::string& program, std::uint32_t seed, Di
   request.retract_Z = 0.0;
   request.inputs.parameter_file.clear();
   request.axes = seed % 3 == 0 ? strategies::DisplacedAxes::all : strategies::DisplacedAxes::linear;
-  request.splits_rapids = seed % 7 == 0;
+  request.corrects_rapids = seed % 7 == 0;
   for (const char* place : {"X=0,Y=0,Z=-90,{}=0,C=0", "G55:X=30,Y=-20,Z=-95,{}=0,C=0",
                             "G56:X=-20,Y=40,Z=-80,{}=2,C=30", "G57:X=10,Y=10,Z=-90,{}=0,C=-20",
                             "G58:X=0,Y=0,Z=-90,{}=0,C=0", "G59:X=0,Y=0,Z=-90,{}=0,C=0"}) {

@@ -1,14 +1,14 @@
-#include "sim/engine/set_point.h"
+#include "sim/engine/setpoint.h"
 
 #include <utility>
 
 namespace servomill::sim {
 
-SetPoint::SetPoint(const NcSettings& nc, const controllers::Trajectory& reference,
-                   std::vector<std::unique_ptr<strategies::SetPointPart>> parts)
+Setpoint::Setpoint(const NcSettings& nc, const controllers::Trajectory& reference,
+                   std::vector<std::unique_ptr<strategies::SetpointPart>> parts)
     : reference_(reference), Tp_(nc.periods.seconds(nc.periods.position)) {
   for (auto& part : parts) {
-    const SetPointEntry entry = part->entry();
+    const SetpointEntry entry = part->entry();
     corrections_.push_back({std::move(part), {entry, Tp_}});
   }
   if (nc.filter.length == 0) return;
@@ -28,7 +28,7 @@ SetPoint::SetPoint(const NcSettings& nc, const controllers::Trajectory& referenc
   delay_ = filters_->Q.delay() * Tp_;
 }
 
-Joints& SetPoint::Offsets::of(EntryPoint entry) {
+Joints& Setpoint::Offsets::of(EntryPoint entry) {
   switch (entry) {
     case EntryPoint::before_filter:
       return before_filter;
@@ -40,7 +40,7 @@ Joints& SetPoint::Offsets::of(EntryPoint entry) {
   return feed_forward;
 }
 
-const AxisSetPoint& SetPoint::settle() {
+const AxisSetpoint& Setpoint::settle() {
   const Joints& Q = reference_.start();
   out_ = {Q, Q, Joints::Zero(), Joints::Zero()};
   fed_forward_.setZero();
@@ -54,8 +54,8 @@ const AxisSetPoint& SetPoint::settle() {
   return out_;
 }
 
-const AxisSetPoint& SetPoint::advance(const controllers::Trajectory::Sample& sample, double t,
-                                      const Joints& Q_read) {
+const AxisSetpoint& Setpoint::advance(const controllers::Trajectory::Sample& sample, double t,
+                                      const Joints& Q_fb) {
   out_ = {sample.Q_ref, sample.Q_ref, sample.dQ_ref, sample.ddQ_ref};
   if (filters_) {
     out_.Q_ref = filters_->Q(sample.Q_ref);
@@ -66,7 +66,7 @@ const AxisSetPoint& SetPoint::advance(const controllers::Trajectory::Sample& sam
   if (corrections_.empty()) return out_;
 
   Offsets offsets =
-      corrections_at({t, sample.s, sample.Q_ref, sample.dQ_ref, sample.ddQ_ref, Q_read});
+      corrections_at({t, sample.s, sample.Q_ref, sample.dQ_ref, sample.ddQ_ref, Q_fb});
   if (filters_) {
     offsets.before_filter = filters_->offset(offsets.before_filter);
   }
@@ -75,7 +75,7 @@ const AxisSetPoint& SetPoint::advance(const controllers::Trajectory::Sample& sam
   return out_;
 }
 
-SetPoint::Offsets SetPoint::corrections_at(strategies::Reading now) {
+Setpoint::Offsets Setpoint::corrections_at(strategies::Reading now) {
   const Joints Q_ref = now.Q_ref;
   Offsets offsets;
   for (Correction& correction : corrections_) {
@@ -89,7 +89,7 @@ SetPoint::Offsets SetPoint::corrections_at(strategies::Reading now) {
   return offsets;
 }
 
-std::string_view SetPoint::failure() const {
+std::string_view Setpoint::failure() const {
   for (const Correction& correction : corrections_) {
     if (const auto why = correction.part->failure(); !why.empty()) return why;
   }
@@ -97,7 +97,7 @@ std::string_view SetPoint::failure() const {
 }
 
 // A correction has no analytic derivative: the NC differentiates it over a position period.
-void SetPoint::feed_forward(const Joints& offset) {
+void Setpoint::feed_forward(const Joints& offset) {
   const Joints rate = (offset - fed_forward_) / Tp_;
   out_.Q_cmd += offset;
   out_.dQ_ff += rate;

@@ -1,4 +1,4 @@
-/// The NC's set point of one case: interpolated reference, nominal-position filter, corrections,
+/// The NC's setpoint of one case: interpolated reference, nominal-position filter, corrections,
 /// feed-forward. Advanced once per position period.
 #pragma once
 
@@ -9,34 +9,34 @@
 
 #include "controllers/path/nominal_filter.h"
 #include "controllers/path/trajectory.h"
-#include "controllers/servo/set_point_correction.h"
+#include "controllers/servo/setpoint_correction.h"
 #include "sim/engine/servo_axes.h"
 #include "sim/model/machine.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim {
 
-class SetPoint {
+class Setpoint {
  public:
-  SetPoint(const NcSettings& nc, const controllers::Trajectory& reference,
-           std::vector<std::unique_ptr<strategies::SetPointPart>> parts);
+  Setpoint(const NcSettings& nc, const controllers::Trajectory& reference,
+           std::vector<std::unique_ptr<strategies::SetpointPart>> parts);
 
   /// Standing at the start of the trajectory for long; corrections settled.
-  const AxisSetPoint& settle();
+  const AxisSetpoint& settle();
   /// Time by which the filter delays the reference (s).
   double delay() const { return delay_; }
 
-  /// Set point for what the trajectory asks for, one position period after the call before.
-  /// @param t, Q_read  s, and what the position loops read last: for strategies that look
-  const AxisSetPoint& advance(const controllers::Trajectory::Sample& sample, double t = 0.0,
-                              const Joints& Q_read = Joints::Zero());
+  /// Setpoint for what the trajectory asks for, one position period after the call before.
+  /// @param t, Q_fb  s, and what the position loops read last: for strategies that look
+  const AxisSetpoint& advance(const controllers::Trajectory::Sample& sample, double t = 0.0,
+                              const Joints& Q_fb = Joints::Zero());
   /// Why a correction cannot go on; empty while all can.
   std::string_view failure() const;
 
  private:
   struct Correction {
-    std::unique_ptr<strategies::SetPointPart> part;
-    controllers::SetPointCorrection in_nc;
+    std::unique_ptr<strategies::SetpointPart> part;
+    controllers::SetpointCorrection in_nc;
   };
   struct Filters {  // one for each signal that passes
     controllers::NominalFilter Q, dQ, ddQ, offset;
@@ -55,7 +55,7 @@ class SetPoint {
   double Tp_;
   double delay_ = 0.0;
   std::optional<Filters> filters_;
-  AxisSetPoint out_;
+  AxisSetpoint out_;
   Joints fed_forward_ = Joints::Zero();  // corrections, one period ago
   Joints fed_forward_rate_ = Joints::Zero();
 };

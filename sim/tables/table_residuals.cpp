@@ -1,4 +1,4 @@
-#include "sim/tables/left_over.h"
+#include "sim/tables/table_residuals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,9 +77,9 @@ plant::ErrorModel only(const plant::ErrorModel& errors, const plant::ErrorName& 
 }
 
 // The error alone. Between the ends of the other linear axes what stays is linear.
-LeftOver stay_of(TableSource source, const std::vector<TableLine>& lines,
-                 const std::vector<OmittedTable>& omitted, const FormatRules& rules,
-                 const plant::ErrorName& name, int own) {
+TableResidual stay_of(TableSource source, const std::vector<TableLine>& lines,
+                      const std::vector<OmittedTable>& omitted, const FormatRules& rules,
+                      const plant::ErrorName& name, int own) {
   constexpr int kFine = 129, kFineTurn = 33, kEnds = 2, kAngles = 5;
   source.errors = only(source.errors, name);
   const auto samples = samples_of(source, lines, omitted, rules, [&](int joint) {
@@ -87,7 +87,7 @@ LeftOver stay_of(TableSource source, const std::vector<TableLine>& lines,
     return joint < kLinearJoints ? (fine ? kFine : kEnds) : (fine ? kFineTurn : kAngles);
   });
   const plant::VolumetricModel machine(source.chain, source.errors);
-  LeftOver out{.name = name};
+  TableResidual out{.name = name};
   Joints Q = source.reference;
   for_all(samples, 0, Q, LineCorrection(source).base(), [&](const Joints& at, const Joints& d) {
     const ToolPose actual = machine.forward(at + d, source.p_ST);
@@ -100,10 +100,11 @@ LeftOver stay_of(TableSource source, const std::vector<TableLine>& lines,
 
 }  // namespace
 
-std::vector<LeftOver> left_over(const TableSource& source, const std::vector<TableLine>& lines,
-                                const std::vector<OmittedTable>& omitted,
-                                const FormatRules& rules) {
-  std::vector<LeftOver> out;
+std::vector<TableResidual> table_residuals(const TableSource& source,
+                                           const std::vector<TableLine>& lines,
+                                           const std::vector<OmittedTable>& omitted,
+                                           const FormatRules& rules) {
+  std::vector<TableResidual> out;
   for (const TableLine& line : lines) {
     const Axis axis = *source.chain.layout.axis[static_cast<std::size_t>(line.joint)];
     for (const bool is_location : {false, true}) {
@@ -112,7 +113,7 @@ std::vector<LeftOver> left_over(const TableSource& source, const std::vector<Tab
         const double size = is_location ? std::abs(source.errors.location(name))
                                         : largest_within(source.errors.component(name), line);
         if (size == 0.0) continue;
-        LeftOver one = stay_of(source, lines, omitted, rules, name, line.joint);
+        TableResidual one = stay_of(source, lines, omitted, rules, name, line.joint);
         one.size = size;
         if (one.tip > kNothing || one.tool_axis > kNothing) out.push_back(one);
       }

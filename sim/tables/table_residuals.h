@@ -9,7 +9,7 @@
 namespace servomill::sim {
 
 /// One error that tables leave in part or as a whole. Interpolation is not counted here.
-struct LeftOver {
+struct TableResidual {
   plant::ErrorName name;
   double size = 0.0;       // m, rad: its largest magnitude within the travel
   double tip = 0.0;        // m: largest displacement of the tip that stays, were it alone
@@ -32,8 +32,10 @@ struct OmittedTable {
 /// errors before location errors.
 /// @param lines    one for each axis of the machine: its travel, and whether it has tables
 /// @param omitted  tables that the format could hold
-std::vector<LeftOver> left_over(const TableSource& source, const std::vector<TableLine>& lines,
-                                const std::vector<OmittedTable>& omitted, const FormatRules& rules);
+std::vector<TableResidual> table_residuals(const TableSource& source,
+                                           const std::vector<TableLine>& lines,
+                                           const std::vector<OmittedTable>& omitted,
+                                           const FormatRules& rules);
 
 Volume volume(const TableSource& source, const std::vector<TableLine>& lines,
               const std::vector<CompensationTable>& tables);

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """What the scenarios about statements of [G] say at their heads, and what is identified with its intervals.
-words.py SERVOMILL"""
+statements.py SERVOMILL"""
 import csv
 import json
 import math
@@ -13,19 +13,19 @@ import unittest
 HERE = os.path.dirname(os.path.abspath(__file__))
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 SCENARIOS = os.path.join(HERE, "..", "..", "scenarios")
-WORDS = os.path.join(SCENARIOS, "words")
+STATEMENTS = os.path.join(SCENARIOS, "statements")
 SHARE = 0.01     # numbers at the heads have three digits
 CHORD_UM = 0.2   # chord tolerance of rewritten programs and path tolerance, 0.1 um each
 
 
-class Words(unittest.TestCase):
+class Statements(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.out = os.path.join(folder.name, "out.h5")
 
     def servomill(self, command, name, *arguments):
-        return subprocess.run([SERVOMILL, command, os.path.join(WORDS, name), "-o", self.out, "--force", *arguments],
+        return subprocess.run([SERVOMILL, command, os.path.join(STATEMENTS, name), "-o", self.out, "--force", *arguments],
                               capture_output=True, text=True, check=False)
 
     def values(self, name, quantity, statistic="max"):
@@ -41,13 +41,13 @@ class Words(unittest.TestCase):
             self.assertAlmostEqual(found[case], value, delta=SHARE * value, msg=case)
 
     def test_a_rewritten_program_belongs_to_its_origin(self):
-        found = self.values("origin_shift.toml", "imposed_curve_residual")
+        found = self.values("origin_shift.toml", "imposed_error_residual")
         self.near(found, gcode_moved=254.6, feedback=4.87, feedback_moved=4.87)
         for case in ("gcode", "gcode_again"):
             self.assertLess(found[case], CHORD_UM)
 
     def test_a_table_cannot_follow_a_sudden_error(self):
-        found = self.values("sudden_error.toml", "imposed_curve_residual")
+        found = self.values("sudden_error.toml", "imposed_error_residual")
         self.near(found, table=15.0, table_fine=22.1, table_prompt=18.7, feedback=6.31, feedback_lead=1.44)
         self.assertLess(found["gcode"], 1.0)
         refused = self.servomill("run", "sudden_error.toml", "--set",
@@ -66,8 +66,8 @@ class Words(unittest.TestCase):
         for case in ("feedback", "gcode_1mm", "gcode_0.1mm_fast_nc"):
             self.assertLess(time[case], 1.05 * time["nominal"])
 
-    def test_security_blocks_take_what_they_must_and_say_so(self):
-        found = self.values("saturation.toml", "imposed_curve_residual")
+    def test_saturation_limits_take_what_they_must_and_say_so(self):
+        found = self.values("saturation.toml", "imposed_error_residual")
         self.near(found, wide=4.87, displacement=50.0, rate=20.8, short_table=117.6)
         said = self.servomill("run", "saturation.toml").stderr.splitlines()
         self.assertEqual(len(said), 4, said)
@@ -99,7 +99,7 @@ class Words(unittest.TestCase):
     def test_the_table_of_axis_C_has_no_impact_but_its_errors_have(self):
         found = self.values("rotation_of_c.toml", "trajectory_difference")
         self.assertEqual(set(found.values()), {0.0})
-        tip = self.values("rotation_of_c.toml", "tool_tip_deviation")
+        tip = self.values("rotation_of_c.toml", "tcp_deviation")
         self.assertAlmostEqual(tip["turned_180"], tip["nominal"], delta=0.01)
         self.assertAlmostEqual(tip["off_centre"] - tip["off_centre_0"], 20.0, delta=0.6)
 
@@ -114,7 +114,7 @@ class Words(unittest.TestCase):
     def test_another_gain_or_feed_forward_shows_where_a_table_enters(self):
         found = self.swept("discriminating/table_entry.toml")
         gain, share = found["machine_nc_Kv"], found["machine_nc_velocity_feed_forward"]
-        behind, fed = (found[case + "_imposed_curve_residual_Y_max_flank"] for case in ("behind_tap", "fed_forward"))
+        behind, fed = (found[case + "_imposed_error_residual_Y_max_flank"] for case in ("behind_tap", "fed_forward"))
 
         def span(values, feed_forward, low, high):
             chosen = [v for v, k, f in zip(values, gain, share) if f == feed_forward and low < k < high]
@@ -141,21 +141,21 @@ class Words(unittest.TestCase):
 
     def test_what_experiment_1_identifies_has_an_interval_and_is_a_product(self):
         scenario = os.path.join(SCENARIOS, "guevel2025", "experiment1.toml")
-        for Kv, response, period, brought_out in ((63.4, 41.2, 62.0, 96.0), (73.0, 43.3, 62.0, 96.5), (86.8, 45.5, 62.0, 97.0),
+        for Kv, response, period, realised_ratio in ((63.4, 41.2, 62.0, 96.0), (73.0, 43.3, 62.0, 96.5), (86.8, 45.5, 62.0, 97.0),
                                                   (73.0 * 62.0 / 80.0, 43.3 * 80.0 / 62.0, 80.0, 96.5)):
             done = self.servomill("run", scenario, "--json", "--set", f"machine_override.nc.Kv={Kv} 1/s",
-                                  "--set", f"case.table.strategy.response_time_ms={response}",
+                                  "--set", f"case.table.strategy.time_constant_ms={response}",
                                   "--set", f"errors.imposed.EYX.harmonic.period_mm={period}")
             self.assertEqual(done.returncode, 0, done.stderr)
             found = {(row["case"], row["quantity"], row["axis"]): row["value"] for row in map(json.loads, done.stdout.splitlines())}
-            self.assertAlmostEqual(found["feedback", "brought_out", "Y"], brought_out, delta=0.06)
-            self.assertAlmostEqual(found["table", "imposed_curve_residual", "Y"], 20.0, delta=0.1)
+            self.assertAlmostEqual(found["feedback", "realised_ratio", "Y"], realised_ratio, delta=0.06)
+            self.assertAlmostEqual(found["table", "imposed_error_residual", "Y"], 20.0, delta=0.1)
 
     def test_block_length_and_friction_leave_what_the_README_of_the_sweeps_says(self):
         found = self.swept("sweeps/blocks_friction.toml")
         residual = {(length, force): value for length, force, value in
                     zip(found["case_gcode_strategy_max_block_mm"], found["machine_axis_Y_friction_coulomb"],
-                        found["gcode_imposed_curve_residual_Y_max_flank"])}
+                        found["gcode_imposed_error_residual_Y_max_flank"])}
         for length, row in ((0.5, (0.1, 2.4, 3.6, 5.4)), (1.0, (0.2, 2.1, 3.4, 5.2)), (2.0, (0.8, 1.8, 3.1, 5.0)),
                             (3.2, (1.9, 1.9, 2.8, 4.7)), (4.0, (3.0, 3.0, 3.0, 4.3))):
             self.assertEqual(tuple(round(residual[length, force], 1) for force in (0.45, 112.5, 225.0, 450.0)), row)

@@ -1,25 +1,25 @@
-#include "controllers/servo/set_point_correction.h"
+#include "controllers/servo/setpoint_correction.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace servomill::controllers {
 
-SetPointCorrection::SetPointCorrection(const SetPointEntry& entry, double position_period)
+SetpointCorrection::SetpointCorrection(const SetpointEntry& entry, double position_period)
     : entry_(entry.entry),
       periods_per_update_(
           std::max(1, static_cast<int>(std::ceil(entry.update_period / position_period - 1e-9)))),
-      gain_(entry.response_time > 0.0 ? -std::expm1(-position_period / entry.response_time) : 1.0),
+      gain_(entry.time_constant > 0.0 ? -std::expm1(-position_period / entry.time_constant) : 1.0),
       delayed_(static_cast<std::size_t>(std::lround(entry.dead_time / position_period)),
                Joints::Zero()) {}
 
-void SetPointCorrection::settle(const Joints& value) {
+void SetpointCorrection::settle(const Joints& value) {
   std::fill(delayed_.begin(), delayed_.end(), value);
   held_ = value;
   out_ = value;
 }
 
-Joints SetPointCorrection::advance(const Joints& value) {
+Joints SetpointCorrection::advance(const Joints& value) {
   if (wants_value()) held_ = value;
   phase_ = phase_ + 1 == periods_per_update_ ? 0 : phase_ + 1;
 

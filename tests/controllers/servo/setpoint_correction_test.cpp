@@ -1,44 +1,44 @@
-#include "controllers/servo/set_point_correction.h"
+#include "controllers/servo/setpoint_correction.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace servomill::controllers::set_point_correction_test {
+namespace servomill::controllers::setpoint_correction_test {
 namespace {
 
 constexpr double kTp = 0.2e-3;
 const Joints kOne{1.0, -2.0, 0.5, -0.3, 0.7};
 
-TEST(SetPointCorrection, PassesValuesOnAtOnceByDefault) {
-  SetPointCorrection correction({}, kTp);
+TEST(SetpointCorrection, PassesValuesOnAtOnceByDefault) {
+  SetpointCorrection correction({}, kTp);
   EXPECT_EQ(correction.advance(kOne), kOne);
 }
 
-TEST(SetPointCorrection, RespondsLikeAFirstOrderLag) {
-  SetPointEntry entry;
-  entry.response_time = 40e-3;
-  SetPointCorrection correction(entry, kTp);
+TEST(SetpointCorrection, RespondsLikeAFirstOrderLag) {
+  SetpointEntry entry;
+  entry.time_constant = 40e-3;
+  SetpointCorrection correction(entry, kTp);
   Joints out;
   for (int k = 0; k < 200; ++k) out = correction.advance(kOne);  // one time constant
   EXPECT_NEAR(out.x(), 1.0 - std::exp(-1.0), 1e-12);
 }
 
-TEST(SetPointCorrection, LagsARampByResponseTimeAndDeadTime) {
-  SetPointEntry entry;
-  entry.response_time = 40e-3;
+TEST(SetpointCorrection, LagsARampByResponseTimeAndDeadTime) {
+  SetpointEntry entry;
+  entry.time_constant = 40e-3;
   entry.dead_time = 10e-3;
-  SetPointCorrection correction(entry, kTp);
+  SetpointCorrection correction(entry, kTp);
   Joints out;
   for (int k = 0; k < 10000; ++k) out = correction.advance(kOne * (k * kTp));
   const double lag = (10000 - 1) * kTp - out.x();
   EXPECT_NEAR(lag, 40e-3 + 10e-3, kTp);  // the discrete lag is T - Tp / 2 + O(Tp^2)
 }
 
-TEST(SetPointCorrection, AsksForAValueOnceAnUpdatePeriod) {
-  SetPointEntry entry;
+TEST(SetpointCorrection, AsksForAValueOnceAnUpdatePeriod) {
+  SetpointEntry entry;
   entry.update_period = 3e-3;
-  SetPointCorrection correction(entry, kTp);
+  SetpointCorrection correction(entry, kTp);
   int wanted = 0;
   for (int k = 0; k < 150; ++k) {
     wanted += correction.wants_value();
@@ -47,14 +47,14 @@ TEST(SetPointCorrection, AsksForAValueOnceAnUpdatePeriod) {
   EXPECT_EQ(wanted, 10);
 }
 
-TEST(SetPointCorrection, StaysWhereItWasSettled) {
-  SetPointEntry entry;
-  entry.response_time = 40e-3;
+TEST(SetpointCorrection, StaysWhereItWasSettled) {
+  SetpointEntry entry;
+  entry.time_constant = 40e-3;
   entry.dead_time = 10e-3;
-  SetPointCorrection correction(entry, kTp);
+  SetpointCorrection correction(entry, kTp);
   correction.settle(kOne);
   for (int k = 0; k < 100; ++k) EXPECT_EQ(correction.advance(kOne), kOne);
 }
 
 }  // namespace
-}  // namespace servomill::controllers::set_point_correction_test
+}  // namespace servomill::controllers::setpoint_correction_test

@@ -1,5 +1,5 @@
 /// The time law that uses the jerk of every joint.
-#include "controllers/path/quicken.h"
+#include "controllers/path/time_optimal_law.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::controllers::quicken_test {
+namespace servomill::controllers::time_optimal_law_test {
 namespace {
 
 constexpr double kRounding = 1e-7;  // of a limit
@@ -67,7 +67,7 @@ TEST(Phase, HasNoStepWhereItsFormulaChanges) {
 TEST(Quicken, KeepsTheLimitsAndIsQuicker) {
   const SmoothPath path = wave(20 * mm, 2 * mm, 400);
   const std::vector<double> v_top(path.pieces.size(), 100 * mm);
-  const TimeLaw slow = slow_law(path), law = quicken(slow, path, v_top, limits());
+  const TimeLaw slow = slow_law(path), law = refine_time_law(slow, path, v_top, limits());
   EXPECT_LT(law.duration, 0.99 * slow.duration);
   double used = 0.0;
   std::size_t phase = 0, piece = 0;
@@ -92,7 +92,7 @@ TEST(Quicken, KeepsTheLimitsAndIsQuicker) {
 TEST(Quicken, EveryPhaseEndsWhereTheNextBegins) {
   const SmoothPath path = wave(20 * mm, 2 * mm, 400);
   const std::vector<double> v_top(path.pieces.size(), 100 * mm);
-  const TimeLaw law = quicken(slow_law(path), path, v_top, limits());
+  const TimeLaw law = refine_time_law(slow_law(path), path, v_top, limits());
   for (std::size_t i = 0; i + 1 < law.phases.size(); ++i) {
     const auto end = law.phases[i].at(law.phases[i + 1].t);
     ASSERT_NEAR(end.s, law.phases[i + 1].s, 1e-14) << i;
@@ -109,8 +109,9 @@ TEST(Quicken, LeavesALawThatCannotBeImproved) {
   line.pieces = {piece};
   line.s = {0.0, 0.1};
   const TimeLaw law = plan_speed(std::vector<StretchLimits>{{0.1, 50 * mm, 3.0, 50.0}});
-  EXPECT_EQ(quicken(law, line, std::vector<double>{50 * mm}, limits()).duration, law.duration);
+  EXPECT_EQ(refine_time_law(law, line, std::vector<double>{50 * mm}, limits()).duration,
+            law.duration);
 }
 
 }  // namespace
-}  // namespace servomill::controllers::quicken_test
+}  // namespace servomill::controllers::time_optimal_law_test

@@ -1,4 +1,4 @@
-#include "controllers/path/quicken.h"
+#include "controllers/path/time_optimal_law.h"
 
 #include <algorithm>
 #include <array>
@@ -332,8 +332,8 @@ class Quickener {
 
 }  // namespace
 
-TimeLaw quicken(TimeLaw law, const SmoothPath& path, std::span<const double> v_top,
-                const JointLimits& limits) {
+TimeLaw refine_time_law(TimeLaw law, const SmoothPath& path, std::span<const double> v_top,
+                        const JointLimits& limits) {
   TimeLaw quicker;
   if (Quickener(law, path, v_top, limits).run(quicker)) return quicker;
   return law;

@@ -13,10 +13,10 @@ enum class EntryPoint : std::uint8_t {
 };
 
 /// The NC's answer to a value of the table: computed every `update_period` from the reference
-/// position, delayed by `dead_time`, then a first-order lag of `response_time`.
-struct SetPointEntry {
+/// position, delayed by `dead_time`, then a first-order lag of `time_constant`.
+struct SetpointEntry {
   EntryPoint entry = EntryPoint::position_command;
-  double response_time = 0.0;  // s, >= 0
+  double time_constant = 0.0;  // s, >= 0
   double dead_time = 0.0;      // s, >= 0, rounded to whole position periods
   double update_period = 0.0;  // s, rounded up to whole position periods; 0: every one
 };

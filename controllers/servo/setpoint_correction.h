@@ -1,11 +1,11 @@
-/// A correction on its way through the NC to the set point.
+/// A correction on its way through the NC to the setpoint.
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
 #include "plant/vocabulary/axes.h"
-#include "plant/vocabulary/set_point_entry.h"
+#include "plant/vocabulary/setpoint_entry.h"
 
 namespace servomill::controllers {
 
@@ -13,10 +13,10 @@ namespace servomill::controllers {
 /// period Tp:
 ///   u_k = f(Q_ref,k) every n-th period, held between
 ///   y_k = y_{k-1} + (1 - exp(-Tp / T)) (u_{k-d} - y_{k-1})
-class SetPointCorrection {
+class SetpointCorrection {
  public:
   /// @param position_period  s
-  SetPointCorrection(const SetPointEntry& entry, double position_period);
+  SetpointCorrection(const SetpointEntry& entry, double position_period);
 
   EntryPoint entry() const { return entry_; }
 
@@ -27,7 +27,7 @@ class SetPointCorrection {
   void settle(const Joints& value);
 
   /// @param value  what the table says now (5; m, rad); only read when wants_value()
-  /// @return offset of the set points in this period (5; m, rad)
+  /// @return offset of the setpoints in this period (5; m, rad)
   Joints advance(const Joints& value);
 
  private:

@@ -13,12 +13,12 @@
 
 namespace servomill::strategies {
 
-/// A five-axis machine of +-200 mm with a tool of 110 mm, its rotary axes turned, believed to have
-/// these errors. The reference position is a point of a table with the default spacing.
-inline Belief belief_in(const plant::ErrorModel& errors,
-                        const char* structure = "[w C' B' X b Y Z (C1) t]") {
+/// A five-axis machine of +-200 mm with a tool of 110 mm, its rotary axes turned, identified to
+/// have these errors. The reference position is a point of a table with the default spacing.
+inline IdentifiedMachine identified_with(const plant::ErrorModel& errors,
+                                         const char* structure = "[w C' B' X b Y Z (C1) t]") {
   const plant::MachineChain chain = plant::make_chain(plant::parse_structure(structure));
-  Belief identified{chain.layout, plant::VolumetricModel(chain, errors)};
+  IdentifiedMachine identified{chain.layout, plant::VolumetricModel(chain, errors)};
   identified.p_ST << 0.0, 0.0, -110.0 * mm;
   identified.lower << -200.0 * mm, -200.0 * mm, -200.0 * mm, -2.0, -7.0;
   identified.upper << 200.0 * mm, 200.0 * mm, 200.0 * mm, 2.0, 7.0;
@@ -48,16 +48,16 @@ inline Parameters default_parameters(const Entry& entry) {
 /// Parts that act on a run, made once.
 struct Acting {
   std::unique_ptr<Strategy> strategy;
-  std::unique_ptr<SetPointPart> set_point;
+  std::unique_ptr<SetpointPart> setpoint;
   std::unique_ptr<FeedbackPart> feedback;
 
-  bool acts() const { return strategy->rewrites() || set_point || feedback; }
+  bool acts() const { return strategy->rewrites() || setpoint || feedback; }
 
-  /// Displacement of the axes (5; m, rad) at standstill in Q: set point, program and feedback
+  /// Displacement of the axes (5; m, rad) at standstill in Q: setpoint, program and feedback
   /// together.
   Joints displacement(const JointLayout& layout, const Joints& Q) const {
     Joints sum = Joints::Zero();
-    if (set_point) sum += set_point->offset(Q);
+    if (setpoint) sum += setpoint->offset(Q);
     if (feedback) sum -= feedback->settle(Q);
     if (strategy->rewrites()) {
       Move move;
@@ -70,25 +70,25 @@ struct Acting {
 
 inline constexpr double kModelPeriod = 60e-6;  // s
 
-inline Acting make_acting(const Entry& entry, const Parameters& parameters, Sign sign,
-                          const Belief& belief) {
+inline Acting make_acting(const Entry& entry, const Parameters& parameters, Action action,
+                          const IdentifiedMachine& identified) {
   Acting out;
-  out.strategy = entry.make(parameters, sign, belief);
-  out.set_point = out.strategy->set_point();
+  out.strategy = entry.make(parameters, action, identified);
+  out.setpoint = out.strategy->setpoint();
   out.feedback = out.strategy->feedback(kModelPeriod);
   return out;
 }
 
 /// The strategy with its default parameters; `iterations = "converged"` and `axes = "all"` where it
 /// knows them.
-inline Acting make_acting(const Entry& entry, Sign sign, const Belief& belief,
+inline Acting make_acting(const Entry& entry, Action action, const IdentifiedMachine& identified,
                           bool converged = false, bool all_axes = false) {
   Parameters parameters = default_parameters(entry);
   if (converged && parameters.is_word("iterations")) parameters.set("iterations", "converged");
   if (all_axes && parameters.is_word("axes")) parameters.set("axes", "all");
-  return make_acting(entry, parameters, sign, belief);
+  return make_acting(entry, parameters, action, identified);
 }
 
-inline constexpr std::array<Sign, 2> kBothSigns = {Sign::generate, Sign::correct};
+inline constexpr std::array<Action, 2> kBothActions = {Action::impose, Action::compensate};
 
 }  // namespace servomill::strategies

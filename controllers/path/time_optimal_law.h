@@ -35,7 +35,7 @@ namespace servomill::controllers {
 /// @return a law that takes less time; `law` itself if none is found
 /// Law: (1) and v <= v_top hold everywhere on the way: between the points where slacks are kept
 /// positive the hull of the polynomials is looked at, and the whole slowed down by what is missing.
-TimeLaw quicken(TimeLaw law, const SmoothPath& path, std::span<const double> v_top,
-                const JointLimits& limits);
+TimeLaw refine_time_law(TimeLaw law, const SmoothPath& path, std::span<const double> v_top,
+                        const JointLimits& limits);
 
 }  // namespace servomill::controllers

@@ -1,27 +1,27 @@
-#include "sim/engine/set_point.h"
+#include "sim/engine/setpoint.h"
 
 #include <gtest/gtest.h>
 
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim::set_point_test {
+namespace servomill::sim::setpoint_test {
 namespace {
 
 constexpr double kTp = 200e-6;  // s
 
 // Y is displaced in proportion to X.
-class Proportional final : public strategies::SetPointPart {
+class Proportional final : public strategies::SetpointPart {
  public:
   Proportional(EntryPoint where, double slope, double dead_time)
       : entry_{where, 0.0, dead_time, 0.0}, slope_(slope) {}
-  SetPointEntry entry() const override { return entry_; }
+  SetpointEntry entry() const override { return entry_; }
   Joints offset(const Joints& Q_ref) const override {
     return {0.0, slope_ * Q_ref[0], 0.0, 0.0, 0.0};
   }
 
  private:
-  SetPointEntry entry_;
+  SetpointEntry entry_;
   double slope_;
 };
 
@@ -44,9 +44,9 @@ controllers::Trajectory along_x() {
   return controllers::plan(std::vector<Move>{move}, chain.layout, start, limits);
 }
 
-std::vector<std::unique_ptr<strategies::SetPointPart>> one_part(EntryPoint where,
+std::vector<std::unique_ptr<strategies::SetpointPart>> one_part(EntryPoint where,
                                                                 double dead_time = 0.0) {
-  std::vector<std::unique_ptr<strategies::SetPointPart>> parts;
+  std::vector<std::unique_ptr<strategies::SetpointPart>> parts;
   parts.push_back(std::make_unique<Proportional>(where, kSlope, dead_time));
   return parts;
 }
@@ -57,7 +57,7 @@ NcSettings nc_with_filter(Tick length = 0) {
   return nc;
 }
 
-class SetPointOf : public testing::Test {
+class SetpointOf : public testing::Test {
  protected:
   const controllers::Trajectory trajectory_ = along_x();
   controllers::Trajectory::Sample at(double t) {
@@ -69,15 +69,15 @@ class SetPointOf : public testing::Test {
   }
 };
 
-TEST_F(SetPointOf, NothingIsTheTrajectoryItself) {
-  SetPoint set_point(nc_with_filter(), trajectory_, {});
-  EXPECT_EQ(set_point.settle().Q_cmd, trajectory_.start());
-  EXPECT_EQ(set_point.delay(), 0.0);
+TEST_F(SetpointOf, NothingIsTheTrajectoryItself) {
+  Setpoint setpoint(nc_with_filter(), trajectory_, {});
+  EXPECT_EQ(setpoint.settle().Q_cmd, trajectory_.start());
+  EXPECT_EQ(setpoint.delay(), 0.0);
   controllers::Trajectory::Cursor cursor;
   for (std::size_t k = 0; k < periods(); ++k) {
     const double t = static_cast<double>(k) * kTp;
     const auto wanted = trajectory_.at(t, cursor);
-    const AxisSetPoint& out = set_point.advance(at(t));
+    const AxisSetpoint& out = setpoint.advance(at(t));
     EXPECT_EQ(out.Q_ref, wanted.Q_ref);
     EXPECT_EQ(out.Q_cmd, wanted.Q_ref);
     EXPECT_EQ(out.dQ_ff, wanted.dQ_ref);
@@ -86,13 +86,13 @@ TEST_F(SetPointOf, NothingIsTheTrajectoryItself) {
 }
 
 // Behind the feed-forward tap: the command changes, what is fed forward does not, bit for bit.
-TEST_F(SetPointOf, APositionCommandIsNotFedForward) {
-  SetPoint plain(nc_with_filter(), trajectory_, {});
-  SetPoint corrected(nc_with_filter(), trajectory_, one_part(EntryPoint::position_command));
+TEST_F(SetpointOf, APositionCommandIsNotFedForward) {
+  Setpoint plain(nc_with_filter(), trajectory_, {});
+  Setpoint corrected(nc_with_filter(), trajectory_, one_part(EntryPoint::position_command));
   EXPECT_EQ(corrected.settle().Q_cmd[1], kSlope * 10.0 * mm);
   for (std::size_t k = 0; k < periods(); ++k) {
     const double t = static_cast<double>(k) * kTp;
-    const AxisSetPoint without = plain.advance(at(t)), with = corrected.advance(at(t));
+    const AxisSetpoint without = plain.advance(at(t)), with = corrected.advance(at(t));
     EXPECT_EQ(with.Q_ref, without.Q_ref);
     EXPECT_EQ(with.Q_cmd[1], kSlope * without.Q_ref[0]);
     EXPECT_EQ(with.dQ_ff, without.dQ_ff);
@@ -101,15 +101,15 @@ TEST_F(SetPointOf, APositionCommandIsNotFedForward) {
 }
 
 // Fed forward: velocity and acceleration are its differences over a period.
-TEST_F(SetPointOf, AFedForwardCorrectionHasItsRate) {
-  SetPoint corrected(nc_with_filter(), trajectory_, one_part(EntryPoint::feed_forward));
+TEST_F(SetpointOf, AFedForwardCorrectionHasItsRate) {
+  Setpoint corrected(nc_with_filter(), trajectory_, one_part(EntryPoint::feed_forward));
   corrected.settle();
   // mean over a period against its end: half a period late, at up to 100 m/s^3 of X
   constexpr double kRateTol = kSlope * 5.0 * 0.5 * kTp;
   constexpr double kAccelerationTol = kSlope * 100.0 * kTp * (1.0 + 1e-6);  // reached, rounded
   double y = kSlope * 10.0 * mm, largest_rate = 0.0;
   for (std::size_t k = 0; k < periods(); ++k) {
-    const AxisSetPoint& out = corrected.advance(at(static_cast<double>(k) * kTp));
+    const AxisSetpoint& out = corrected.advance(at(static_cast<double>(k) * kTp));
     EXPECT_EQ(out.Q_cmd[1], kSlope * out.Q_ref[0]);
     EXPECT_NEAR(out.dQ_ff[1], (out.Q_cmd[1] - y) / kTp, 1e-12);
     EXPECT_NEAR(out.dQ_ff[1], kSlope * out.dQ_ff[0], kRateTol);
@@ -121,8 +121,8 @@ TEST_F(SetPointOf, AFedForwardCorrectionHasItsRate) {
 }
 
 // Before the filter: the correction is filtered like the position, so that it stays in proportion.
-TEST_F(SetPointOf, ACorrectionBeforeTheFilterPassesIt) {
-  SetPoint corrected(nc_with_filter(25), trajectory_, one_part(EntryPoint::before_filter));
+TEST_F(SetpointOf, ACorrectionBeforeTheFilterPassesIt) {
+  Setpoint corrected(nc_with_filter(25), trajectory_, one_part(EntryPoint::before_filter));
   corrected.settle();
   EXPECT_DOUBLE_EQ(corrected.delay(), 12.0 * kTp);
   controllers::Trajectory::Cursor cursor;
@@ -130,36 +130,36 @@ TEST_F(SetPointOf, ACorrectionBeforeTheFilterPassesIt) {
   double behind = 0.0;
   for (std::size_t k = 0; k < periods(); ++k) {
     const double t = static_cast<double>(k) * kTp;
-    const AxisSetPoint& out = corrected.advance(at(t));
+    const AxisSetpoint& out = corrected.advance(at(t));
     EXPECT_NEAR(out.Q_cmd[1], kSlope * out.Q_ref[0], kRounding);
     behind = std::max(behind, trajectory_.at(t, cursor).Q_ref[0] - out.Q_ref[0]);
   }
   EXPECT_NEAR(behind, 12.0 * kTp * 50.0 * mm, kRounding);
 }
 
-TEST_F(SetPointOf, ACorrectionWithDeadTimeIsTheOneOfBefore) {
-  SetPoint corrected(nc_with_filter(), trajectory_,
+TEST_F(SetpointOf, ACorrectionWithDeadTimeIsTheOneOfBefore) {
+  Setpoint corrected(nc_with_filter(), trajectory_,
                      one_part(EntryPoint::position_command, 5.0 * kTp));
   std::vector<double> x(5, corrected.settle().Q_ref[0]);
   for (std::size_t k = 0; k < periods(); ++k) {
-    const AxisSetPoint& out = corrected.advance(at(static_cast<double>(k) * kTp));
+    const AxisSetpoint& out = corrected.advance(at(static_cast<double>(k) * kTp));
     x.push_back(out.Q_ref[0]);
     EXPECT_EQ(out.Q_cmd[1], kSlope * x[k]);
   }
 }
 
 // Parts of several strategies add up.
-TEST_F(SetPointOf, CorrectionsAddUp) {
+TEST_F(SetpointOf, CorrectionsAddUp) {
   auto parts = one_part(EntryPoint::position_command);
   parts.push_back(std::make_unique<Proportional>(EntryPoint::feed_forward, 2.0 * kSlope, 0.0));
-  SetPoint corrected(nc_with_filter(), trajectory_, std::move(parts));
+  Setpoint corrected(nc_with_filter(), trajectory_, std::move(parts));
   constexpr double kRounding = 1e-18;  // m
   EXPECT_NEAR(corrected.settle().Q_cmd[1], 3.0 * kSlope * 10.0 * mm, kRounding);
   for (std::size_t k = 0; k < periods(); ++k) {
-    const AxisSetPoint& out = corrected.advance(at(static_cast<double>(k) * kTp));
+    const AxisSetpoint& out = corrected.advance(at(static_cast<double>(k) * kTp));
     EXPECT_NEAR(out.Q_cmd[1], 3.0 * kSlope * out.Q_ref[0], kRounding);
   }
 }
 
 }  // namespace
-}  // namespace servomill::sim::set_point_test
+}  // namespace servomill::sim::setpoint_test
