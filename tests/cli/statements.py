@@ -92,7 +92,7 @@ class Statements(unittest.TestCase):
             model = float(row["feedback_hardware_model_period_us"])
             ahead = float(row[column["connected_trajectory_difference_X_mean_flank"]])
             self.assertAlmostEqual(ahead, feed * signal * 1e-3, delta=1e-3 + 1e-3 * ahead)
-            behind = float(row[column["feedback_response_time_Y_flank"]])
+            behind = float(row[column["feedback_lag_time_Y_flank"]])
             period = 0.2                 # ms, of the position loop: within it, it takes what the model gives
             self.assertAlmostEqual(behind, 1e3 / Kv + 1.5e-3 * model, delta=period)
 

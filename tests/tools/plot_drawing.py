@@ -96,23 +96,23 @@ class Drawing(WithFiles):
         return path
 
     def test_two_parameters_give_maps(self):
-        path = self.sweep_of("two.h5", 'program.feed_override=[1.0,2.0,3.0],case.table.strategy.entry='
+        path = self.sweep_of("two.h5", 'program.feed_override=[1.0,2.0,3.0],case.table.strategy.injection_point='
                                        '["position_command","feed_forward"]')
         with results.open_result(path) as sweep:
-            feed, entry = (next(one for one in sweep.parameters if part in one.key) for part in ("feed", "entry"))
+            feed, point = (next(one for one in sweep.parameters if part in one.key) for part in ("feed", "injection_point"))
             value = sweep.quantities[0]["value"]
-            picture = sweeps.as_picture(feed, entry, value)
-            self.assertEqual(entry.texts, ("position_command", "feed_forward"))
-            for x, y, one in zip(feed.values, entry.values, value):
+            picture = sweeps.as_picture(feed, point, value)
+            self.assertEqual(point.texts, ("position_command", "feed_forward"))
+            for x, y, one in zip(feed.values, point.values, value):
                 self.assertEqual(picture[int(y), int(x) - 1], one)
         done = plot(path, "-o", self.out, "--format", "svg", "--figures", "maps")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         drawn = (self.out / "two-maps.svg").read_text()
-        for text in ("feed_forward", "program.feed_override", "imposed-error residual"):
+        for text in ("feed_forward", "program.feed_override", "imposed error residual"):
             self.assertIn(text, drawn)
 
     def test_one_number_and_texts_give_curves(self):
-        path = self.sweep_of("text.h5", 'program.feed_override=[1.0,2.0,3.0],case.table.strategy.entry='
+        path = self.sweep_of("text.h5", 'program.feed_override=[1.0,2.0,3.0],case.table.strategy.injection_point='
                                         '["position_command","feed_forward"]')
         done = plot(path, "-o", self.out, "--format", "svg", "--figures", "curves")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -120,8 +120,8 @@ class Drawing(WithFiles):
         self.assertIn("table, feed_forward", drawn)
 
     def test_parameters_that_go_together_are_one_and_further_ones_have_maps_of_their_own(self):
-        path = self.sweep_of("three.h5", 'program.feed_override=[1.0,2.0],case.table.strategy.entry='
-                                         '["position_command","feed_forward"],together=[{'
+        path = self.sweep_of("three.h5", 'program.feed_override=[1.0,2.0],case.table.strategy.injection_point='
+                                         '["position_command","feed_forward"],zip=[{'
                                          'machine.axis.X.v_max=["20 m/min","30 m/min","40 m/min"],'
                                          'machine.axis.Y.v_max=["10 m/min","20 m/min","30 m/min"]}]')
         with results.open_result(path) as sweep:

@@ -270,9 +270,9 @@ class Derived(WithResults):
         return function(types.SimpleNamespace(compared=lambda _: self.ROWS), "r", **arguments)
 
     def test_effectiveness_is_what_a_case_takes_away_of_another(self):
-        self.assertAlmostEqual(self.of(derived.effectiveness, case="on", generated="off", base="b", axis="X"), 99.5, delta=1e-12)
+        self.assertAlmostEqual(self.of(derived.effectiveness, case="on", generated="off", baseline="b", axis="X"), 99.5, delta=1e-12)
         with self.assertRaises(files.NotInFile) as fault:
-            self.of(derived.effectiveness, case="on", generated="off", base="b", axis="Y")
+            self.of(derived.effectiveness, case="on", generated="off", baseline="b", axis="Y")
         self.assertEqual(str(fault.exception), "r holds no trajectory_difference of off, Y")
 
     def test_the_largest_of_cases_and_axes_counts_magnitudes(self):

@@ -35,7 +35,7 @@ def _panel(ax, letter, kind, step, transmission):
     found = step.attrs
     t = step["time"][:] * 1e3
     length = str(step["position"].attrs["units"])
-    height, band = float(found["amplitude"]), float(found["band"])
+    amplitude, band = float(found["amplitude"]), float(found["band"])
     if kind == "velocity":
         y, unit = step["velocity"][:], f"{length}/s"
         if transmission is not None:
@@ -48,9 +48,9 @@ def _panel(ax, letter, kind, step, transmission):
     if kind == "load":
         peak = float(found["peak"]) * UM[length][1]
         _note(ax, float(found["peak_time_s"]) * 1e3, peak, f"{peak:.3g} {unit}")
-        ax.set_title(f"{letter}: load of {height:g} {found['height_units']}")
+        ax.set_title(f"{letter}: load of {amplitude:g} {found['amplitude_units']}")
     else:
-        target = height * (UM[length][1] if kind == "position" else 1.0)
+        target = amplitude * (UM[length][1] if kind == "position" else 1.0)
         ax.axhspan(target * (1.0 - band), target * (1.0 + band), color=style.PALE, zorder=0)
         ax.axhline(target, color=style.BLACK, linewidth=0.8)
         over = 100.0 * float(found["overshoot"])
@@ -58,7 +58,7 @@ def _panel(ax, letter, kind, step, transmission):
             _note(ax, float(found["peak_time_s"]) * 1e3, target * (1.0 + over / 100.0),
                   f"{over:.1f} % over")
         units = str(found["amplitude_units"]).replace(" s-1", "/s")
-        ax.set_title(f"{letter}: {kind} step of {height:g} {units}")
+        ax.set_title(f"{letter}: {kind} step of {amplitude:g} {units}")
     settled = float(found["settling_time_s"]) * 1e3
     if np.isfinite(settled) and settled > 0.0:
         ax.axvline(settled, color=style.GREY, linewidth=0.9, linestyle=style.DOT)

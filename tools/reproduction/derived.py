@@ -97,12 +97,12 @@ def largest_of(results, run, quantity, cases):
 PATHS = "plane, circle, diamond, square"   # sections of experiment 2 on which parts are finished
 
 
-def effectiveness(results, run, case, generated, base, axis):
+def effectiveness(results, run, case, generated, baseline, axis):
     """What a case takes away of the displacement of another one, both relative to a third: 100 % less what it leaves."""
     def largest(one):
         found = [row["value"] for row in results.compared(run)
                  if (row["case"], row["quantity"], row.get("axis"), row.get("sections")) ==
-                 (one, "trajectory_difference", axis, PATHS) and row.get("baseline", base) == base]
+                 (one, "trajectory_difference", axis, PATHS) and row.get("baseline", baseline) == baseline]
         if len(found) != 1 or not math.isfinite(found[0]):
             raise NotInFile(f"{run} holds no trajectory_difference of {one}, {axis}")
         return found[0]
@@ -167,9 +167,9 @@ def largest_after_best_fit(results, run, case):
     return float(_best_fit(results, run, case).largest())
 
 
-def difference_after_best_fit(results, run, case, base):
+def difference_after_best_fit(results, run, case, baseline):
     """Largest difference of these distances between two parts, um."""
-    one, other = (_best_fit(results, run, name) for name in (case, base))
+    one, other = (_best_fit(results, run, name) for name in (case, baseline))
     return float(np.abs(one.distance - other.distance).max())
 
 
@@ -199,24 +199,24 @@ def cutting_minus_air(results, run, case, at, section):
     return float(np.median(files.trajectory_difference(cutting, air, "Z", cutting.samples((section,)))))
 
 
-def _between_parts(results, run, case, base, section):
-    apart = abs(cutting_minus_air(results, run, case, "tool", section) - cutting_minus_air(results, run, base, "tool", section))
+def _between_parts(results, run, case, baseline, section):
+    apart = abs(cutting_minus_air(results, run, case, "tool", section) - cutting_minus_air(results, run, baseline, "tool", section))
     if apart == 0.0:
-        raise NotInFile(f"cutting shifts {case} and {base} alike")
+        raise NotInFile(f"cutting shifts {case} and {baseline} alike")
     return apart
 
 
-def stiffness_needed(results, run, case, base, section, um):
+def stiffness_needed(results, run, case, baseline, section, um):
     """Structural stiffness of Z (N/um) at which the tool would show `um` between two parts cut with these forces."""
     return (scenario_key(results, run, "machine.axis.Z.structural_stiffness", "N/um")
-            * _between_parts(results, run, case, base, section) / um)
+            * _between_parts(results, run, case, baseline, section) / um)
 
 
-def wear_needed(results, run, case, base, section, um):
+def wear_needed(results, run, case, baseline, section, um):
     """Wear (factor on the terms of the edge) of the later part at which the tool would show `um` between the two."""
     first = scenario_key(results, run, "cutting.wear")
     later = scenario_key(results, run, f"case.{case}.wear")
-    return first + (later - first) * um / _between_parts(results, run, case, base, section)
+    return first + (later - first) * um / _between_parts(results, run, case, baseline, section)
 
 
 # Li 2024 --------------------------------------------------------------------------------------------------------------
