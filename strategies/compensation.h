@@ -1,4 +1,4 @@
-/// Displacement of the linear axes that brings identified errors out or corrects them, and the
+/// Displacement of the linear axes that imposes identified errors or compensates them, and the
 /// parameters that strategies share.
 #pragma once
 
@@ -30,16 +30,16 @@ extern const ParameterSpec kSingularSpec;
 extern const ParameterSpec kIterationsSpec;
 
 /// Displacement of the setpoint (3; m) for the programmed position Q.
-///   generate:              P_comp = F_ni(I_i(P)), exact in one step      (paper [G], equation 3)
-///   correct, one:          -(F_ni(Q) - F_i(Q)), leaves about |E'||E|
-///   correct, converged:    F_ni(Q + d) = F_i(Q), the non-ideal inverse
+///   impose:                P_comp = F_ni(I_i(P)), exact in one step      (paper [G], equation 3)
+///   compensate, one:          -(F_ni(Q) - F_i(Q)), leaves about |E'||E|
+///   compensate, converged:    F_ni(Q + d) = F_i(Q), the non-ideal inverse
 Eigen::Vector3d setpoint_displacement(const IdentifiedMachine& identified, Action action,
                                       Iterations iterations, const Joints& Q);
 
 /// Displacement of the reading (3; m) for the measured position Q: the axis moves by its negative.
-///   correct:               F_ni(Q) - F_i(Q), exact in one step: the reading is where the tool is
-///   generate, one:         -(F_ni(Q) - F_i(Q)) at the measured position, as paper [G] does
-///   generate, converged:   -(F_ni(Q_prog) - F_i(Q_prog)) with Q = Q_prog - d
+///   compensate:            F_ni(Q) - F_i(Q), exact in one step: the reading is where the tool is
+///   impose, one:           -(F_ni(Q) - F_i(Q)) at the measured position, as paper [G] does
+///   impose, converged:   -(F_ni(Q_prog) - F_i(Q_prog)) with Q = Q_prog - d
 void feedback_displacement(const IdentifiedMachine& identified, Action action,
                            Iterations iterations, const Joints& Q, Eigen::Vector3d& d);
 /// The same of eight runs side by side.

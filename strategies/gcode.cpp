@@ -266,7 +266,7 @@ class Rewriter {
   const Move* move_ = nullptr;
   const ProgrammedWay* way_ = nullptr;
   AxisWords out_at_;                // displaced end of the block before
-  std::vector<double> directions_;  // of travel, of each play of the identified; 0: not yet
+  std::vector<double> directions_;  // of travel, of each play of the identified model; 0: not yet
   double s_ = 0.0, t_ = 0.0;
 };
 

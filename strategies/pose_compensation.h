@@ -1,4 +1,4 @@
-/// Displacement of all joints that brings identified errors of tip and tool axis out or corrects
+/// Displacement of all joints that imposes identified errors of tip and tool axis or compensates
 /// them: rotary axes take what turns the tool axis, linear axes the rest, what those turns do to
 /// the tip included, so that nothing is corrected twice.
 ///
@@ -8,7 +8,7 @@
 ///     J_kr dr = s_k               by least squares
 ///     J_pl dl = s_p - J_pr dr
 ///
-/// Where the smaller singular value of J_kr falls below sigma_0, the angle that hardly matters
+/// If the smaller singular value of J_kr falls below sigma_0, the angle that hardly matters
 /// there would have to turn far for little. It then counts what it turns: |J_kr dr - s_k|^2 +
 /// lambda^2 |dr|^2 is smallest, with
 ///
@@ -35,18 +35,18 @@ class PoseCompensation {
   PoseCompensation(const IdentifiedMachine& identified, Iterations iterations, double sigma_0);
 
   /// Displacement of the setpoint (5; m, rad) for the programmed position Q.
-  ///   generate:            F_i(Q + d) = F_ni(Q)
-  ///   correct:             F_ni(Q + d) = F_i(Q), the non-ideal inverse
+  ///   impose:              F_i(Q + d) = F_ni(Q)
+  ///   compensate:          F_ni(Q + d) = F_i(Q), the non-ideal inverse
   /// With one iteration both are of first order, and each the negative of the other.
   Joints of_setpoint(Action action, const Joints& Q) const;
 
   /// Displacement of the reading (5; m, rad) for the measured position Q: the axes move by its
   /// negative.
-  ///   correct:             F_i(Q + d) = F_ni(Q), the reading says where the tool is
-  ///   generate:            F_ni(Q + d) = F_i(Q), the error where the program is
+  ///   compensate:          F_i(Q + d) = F_ni(Q), the reading says where the tool is
+  ///   impose:              F_ni(Q + d) = F_i(Q), the error where the program is
   Joints of_feedback(Action action, const Joints& Q) const;
 
-  /// What is left of the errors when the axes stand at Q + d instead of Q.
+  /// Residual of the errors when the axes stand at Q + d instead of Q.
   Residual residual(const Joints& Q, const Joints& d) const;
 
  private:
@@ -58,7 +58,7 @@ class PoseCompensation {
   double sigma_0_;
 };
 
-/// What stays at the programmed position Q of identified errors that are corrected as well as the
+/// Residual at the programmed position Q of identified errors that are corrected as well as the
 /// axes can, however many iterations that takes: on linear axes what turns the tool, on rotary ones
 /// what they cannot turn or, near a singular direction, give way to.
 /// @param sigma_0  of PoseCompensation, where axes is all

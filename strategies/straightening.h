@@ -31,7 +31,7 @@ using PointsOfLine =
 std::vector<Move> with_points(const std::vector<Move>& moves, const IdentifiedMachine& identified,
                               const PointsOfLine& points_of);
 
-/// The nominal machine that a strategy believes in, with its travel.
+/// The nominal machine that a strategy assumes, with its travel.
 plant::InverseKinematics nominal_inverse(const IdentifiedMachine& identified);
 
 /// Parameters of the strategies that compensate with a model of the error.

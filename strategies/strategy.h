@@ -17,7 +17,7 @@
 
 namespace servomill::strategies {
 
-/// `generate` brings the identified errors out on the part, as paper [G] does; `correct` removes
+/// `impose` adds the identified errors to the part, as paper [G] does; `compensate` removes
 /// them.
 enum class Action : std::int8_t { impose = 1, compensate = -1 };
 

@@ -102,7 +102,7 @@ def begin_reading(file):
 
 def pages_of(files, named, why, names):
     """All figures of all files as (stem of the file name, figure), and whether a file could not be read. What is not
-    drawn is told, unless another kind of file was meant. InputError: nothing can be drawn."""
+    drawn is reported, unless another kind of file was meant. InputError: nothing can be drawn."""
     pages, found, missing, unread = [], set(), [], []
     for file in files:
         begin_reading(file)

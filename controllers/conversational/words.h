@@ -1,4 +1,4 @@
-/// Words of a conversational block, taken one by one; a word left over is refused by name.
+/// Words of a conversational block, taken one by one; an unused word is refused by name.
 #pragma once
 
 #include <optional>

@@ -92,7 +92,7 @@ struct Comment {
   int column = 0;
 };
 
-/// What an O-word says, M98 and M99 among them.
+/// Meaning of an O-word, M98 and M99 among them.
 enum class Flow : std::uint8_t {
   none,
   sub,

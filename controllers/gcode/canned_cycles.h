@@ -14,8 +14,8 @@ constexpr bool is_canned_cycle(int tenths) {
   return tenths == 730 || tenths == 740 || (tenths > 800 && tenths < 900);
 }
 
-/// What a cycle leaves for the blocks behind it; all in the unit of the program, which LinuxCNC
-/// does not convert when the unit changes.
+/// Words of a cycle that stay in force for the blocks after it; all in the unit of the program,
+/// which LinuxCNC does not convert when the unit changes.
 struct CycleMemory {
   double r = 0.0, bottom = 0.0;      // words
   double dwell = 0.0;                // s, P

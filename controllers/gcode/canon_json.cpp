@@ -150,7 +150,7 @@ void add_arc(const Move& move, std::string& out) {
   fmt::format_to(std::back_inserter(out), R"(,"turns":{})", move.arc.turns);
 }
 
-// What X Y Z of "mend" are: nothing is said if they are positions of the axes.
+// Coordinates of X Y Z in "mend"; left out where they are positions of the axes.
 void add_control(const Move& move, std::string& out) {
   const Eigen::Vector3d& k = move.tool_axis;
   switch (move.tool_control) {

@@ -305,7 +305,7 @@ void Interpreter::Machine::enter_call(const std::string& name, const OWord& o,
   parameters_.enter_scope();
 }
 
-// Where it is known to be; else in a file of its name; else further on in this text.
+// Looks at its known place, then for a file of its name, then further on in this text.
 void Interpreter::Machine::find_subroutine(const std::string& name) {
   if (const auto known = flow_.labels.find(name); known != flow_.labels.end()) {
     return go_to(known->second.place);

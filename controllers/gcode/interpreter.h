@@ -104,7 +104,7 @@ class Interpreter {
   /// The same, held compactly.
   MoveList rest_held();
 
-  /// What was put right, or is odd, in the blocks so far: tool axes that were not of unit length,
+  /// Warnings of the blocks so far: tool axes that were not of unit length,
   /// tools that cut in a tilted plane without standing along its Z.
   const std::vector<Fault>& warnings() const;
 

@@ -16,7 +16,7 @@ constexpr std::array<std::pair<std::string_view, CommentKind>, 3> kActiveComment
     {"PRINT,", CommentKind::print},
 }};
 
-// What a character may be, as bits, so that a harmless line is seen in one pass.
+// Classes of a character, as bits, so that a harmless line is seen in one pass.
 constexpr std::uint8_t kPlain = 0, kSemicolon = 1, kOpen = 2, kClose = 4, kForbidden = 8;
 
 constexpr std::array<std::uint8_t, 256> kClasses = [] {

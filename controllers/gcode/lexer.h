@@ -78,7 +78,7 @@ class Cursor {
   std::size_t at_ = 0;
 };
 
-/// What the text between '(' and ')' is: a message if it begins with MSG, DEBUG, or PRINT, and a
+/// Kind of the text between '(' and ')': a message if it begins with MSG, DEBUG, or PRINT, and a
 /// comma, in capitals or not, without blanks within. A comment behind ';' is always a plain one.
 /// @param column  of the '('
 Comment classify_comment(std::string_view text, int column);

@@ -1,4 +1,4 @@
-/// What (DEBUG, ...) and (PRINT, ...) say.
+/// Text of (DEBUG, ...) and (PRINT, ...).
 #pragma once
 
 #include <string>

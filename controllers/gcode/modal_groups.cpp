@@ -181,7 +181,7 @@ namespace {
 
 constexpr std::size_t kTenths = 1000;  // no code is G100 or above
 
-// Where the code of so many tenths stands in its table, counted from 1.
+// Position of the code of so many tenths in its table, counted from 1.
 template <std::size_t N>
 constexpr std::array<std::uint8_t, kTenths> index_of_codes(const std::array<Code, N>& codes) {
   std::array<std::uint8_t, kTenths> index{};

@@ -16,7 +16,7 @@ std::string significant_text(double x);
 /// "G4 P2.": with a decimal point, without which other controls count milliseconds.
 std::string dwell_block(double seconds);
 
-/// What may stand between '(' and ')': one line of at most 200 characters, brackets in place of
+/// Text allowed between '(' and ')': one line of at most 200 characters, brackets in place of
 /// parentheses.
 std::string comment_text(std::string_view text);
 

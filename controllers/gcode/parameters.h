@@ -39,8 +39,8 @@ constexpr bool is_read_only(int number) { return number >= kTool && number <= kL
 /// global; others belong to the subroutine, or to the program outside of all, that sets them.
 class Parameters {
  public:
-  /// What the interpreter computes on demand: read-only numbers 5400 ... 5428, and named ones that
-  /// are set by the system, like #<_x>. Returns nullopt for a name that it does not know.
+  /// Values that the interpreter computes on demand: read-only numbers 5400 ... 5428, and named
+  /// ones that are set by the system, like #<_x>. Returns nullopt for a name that it does not know.
   struct System {
     std::function<double(int number)> number;
     std::function<std::optional<double>(std::string_view name)> name;
@@ -56,7 +56,7 @@ class Parameters {
   void set(int number, double value);
   void set(const std::string& name, double value);
 
-  /// Whether names that are not defined count as 0, as in a definition that is passed over.
+  /// Lets names that are not defined count as 0, as in a definition that is passed over.
   void forgive_unknown_names(bool forgive) { forgives_ = forgive; }
 
   /// A subroutine with names of its own begins; ends.

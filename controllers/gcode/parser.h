@@ -28,7 +28,7 @@ class Parser {
  public:
   explicit Parser(bool block_delete = false) : block_delete_(block_delete) {}
 
-  /// Whether blocks get their pieces. They do not at first: to run a program no one needs them.
+  /// Makes blocks keep their pieces. They do not at first: to run a program no one needs them.
   void keep_pieces(bool keep) { keeps_pieces_ = keep; }
 
   /// How much of a line is read. Where flow control skips, RS274/NGC does not look at what a line

@@ -88,7 +88,7 @@ class Post {
     out_.warnings.push_back({{file_, line, 0}, std::move(message)});
   }
 
-  // What is told of once.
+  // Adds the warnings that are given once.
   void sum_up() {
     if (singular_ > 0) {
       warn(first_singular_,
@@ -180,8 +180,8 @@ class Post {
     runs_ = {};
   }
 
-  // What follows the last location before a tool change or the end waits for the retract; a dwell
-  // belongs to the location.
+  // The blocks after the last location before a tool change or the end wait for the retract; a
+  // dwell belongs to the location.
   void leave_before(std::size_t i) {
     const MoveKind kind = data_.records[i].kind;
     if (!is_safe() || is_retracted_ || kind == MoveKind::dwell || kind == MoveKind::message) return;

@@ -39,12 +39,12 @@ struct PostOptions {
   double feed = 0.0;              // m/s, where the data give none; 0: they must
   double rotary_rate = 1.0;       // rad/s of the tool axis where the tip stands still
   Joints start = Joints::Zero();  // m, rad; chooses among the solutions of the first location
-  // m/s, rad/s: of which post-processed times are told to ask too much
+  // m/s, rad/s: limits for the warning of post-processed times
   Joints v_max = Joints::Constant(std::numeric_limits<double>::infinity());
 };
 
-/// Of the tolerance of the tip, for the chords between inserted points; the rest is the NC's to
-/// round corners with (G64 P).
+/// Share of the tolerance of the tip for the chords between inserted points; the rest is the NC's
+/// to round corners with (G64 P).
 inline constexpr double kChordTolerance = 0.5;
 
 struct PostProcessed {
@@ -64,7 +64,7 @@ struct PostProcessed {
 /// tolerance of the tip is shared by the chords of `PostMode::joints` and the rounding of corners
 /// (G64 P); other modes leave all of it to the latter.
 ///
-/// Where the tool axis is singular an axis is free. A rapid turns it to where it will be when the
+/// At a singular tool axis one axis is free. A rapid turns it to where it will be when the
 /// tool axis leaves that direction, if such a location follows; a feed to that direction leaves it,
 /// and it turns with the tip in place before the tool axis goes on, of which a warning tells.
 ///

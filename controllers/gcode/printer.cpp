@@ -140,7 +140,7 @@ class Printer {
     coolant_ = wanted;
   }
 
-  // What holds for motion: work system, tool offset, path control, feed mode.
+  // Prints the modes of motion: work system, tool offset, path control, feed mode.
   void print_modes(const Move& move) {
     change(work_, work_system_code(move.work_offset), true);
     if (move.tool_offset == kOtherToolOffset) {

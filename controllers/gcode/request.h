@@ -12,7 +12,7 @@
 
 namespace servomill::controllers {
 
-/// What a block asks for. At most one code of each group.
+/// Codes and words of a block. At most one code of each group.
 struct Request {
   struct Cell {
     double value = 0.0;

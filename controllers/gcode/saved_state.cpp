@@ -155,7 +155,7 @@ void Interpreter::Machine::saved_modes() {
   }
 }
 
-// What stands beside an M72 that restores something is lost in LinuxCNC: the blocks that it runs
+// Words next to an M72 that restores something are lost in LinuxCNC: the blocks that it runs
 // take the place of this one.
 void Interpreter::Machine::restore_saved_level(int column) {
   if (!saved_level().is_valid) {

@@ -1,4 +1,4 @@
-/// What M70 and M73 save, and M72 or the end of a subroutine restores.
+/// State that M70 and M73 save, and M72 or the end of a subroutine restores.
 #pragma once
 
 #include <vector>

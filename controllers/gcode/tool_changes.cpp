@@ -22,7 +22,7 @@ void Interpreter::Machine::reload_tools() {
   setup_.tools = tools_at_start_;
 }
 
-// Where the tool, without its offset, stands in a work system. G92 is left out of the fixture's.
+// Position of the tool, without its offset, in a work system. G92 is left out of the fixture's.
 AxisWords Interpreter::Machine::position_for_tool(int system) const {
   ModalState other = state_;
   other.tool_account.setZero();

@@ -41,10 +41,10 @@ BarrierKernel barrier_kernel() {
                        []<SimdLevel level>() { return make_barrier_kernel<level>(); });
 }
 
-class Quickener {
+class Refinement {
  public:
-  Quickener(const TimeLaw& law, const SmoothPath& path, std::span<const double> v_top,
-            const JointLimits& limits)
+  Refinement(const TimeLaw& law, const SmoothPath& path, std::span<const double> v_top,
+             const JointLimits& limits)
       : law_(law),
         path_(path),
         v_top_(v_top),
@@ -335,7 +335,7 @@ class Quickener {
 TimeLaw refine_time_law(TimeLaw law, const SmoothPath& path, std::span<const double> v_top,
                         const JointLimits& limits) {
   TimeLaw quicker;
-  if (Quickener(law, path, v_top, limits).run(quicker)) return quicker;
+  if (Refinement(law, path, v_top, limits).run(quicker)) return quicker;
   return law;
 }
 

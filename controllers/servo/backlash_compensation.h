@@ -5,7 +5,7 @@ namespace servomill::controllers {
 
 /// Constant description for one axis.
 struct BacklashCompensationParams {
-  double width = 0.0;         // m or rad, the gap as the NC believes it; < 0 has the other sign
+  double width = 0.0;         // m or rad, the backlash that the NC assumes; < 0 has the other sign
   double time = 0.0;          // s, over which it is crossed, rounded to whole periods, at least one
   double hysteresis = 20e-9;  // m or rad, way back that counts as a reversal: above the noise of
                               // the command, by default one step of the position (19.5 nm)

@@ -19,7 +19,7 @@ struct PositionFeedbackParams {
 };
 
 struct PositionFeedbackState {
-  double difference = 0.0;  // m or rad, y_scale - y_motor as it is identified
+  double difference = 0.0;  // m or rad, y_scale - y_motor as it is assumed
 };
 
 /// 1 - exp(-2 pi f Tp): a first-order low-pass at the crossover frequency f (Hz), exact at the

@@ -21,7 +21,7 @@ struct SupervisionParams {
 
 struct SupervisionState {
   double difference_at_start = 0.0;  // m or rad
-  std::int64_t standing = 0;         // periods for which the axis has been told to stand
+  std::int64_t standing = 0;         // periods for which the axis has been commanded to stand
 };
 
 /// Reading of one axis by the NC in a position period (m or rad, m/s or rad/s).

@@ -92,7 +92,7 @@ class MarkMonitor {
   /// Begins at true position x with reading y (m or rad); no mark has been passed yet.
   void start(double x, double y);
 
-  /// Moves on to x, y. Of several faults in one step the first is told.
+  /// Moves on to x, y. Of several faults in one step the first is reported.
   /// @pre start() came before; both are finite and continuous, y is not wrapped
   std::optional<MarkFault> advance(double x, double y) {
     if (x >= below_ && x < above_) {

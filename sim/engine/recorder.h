@@ -57,7 +57,7 @@ class Recorder {
 
   /// Says how many rows will come, about; before the first.
   void expect(std::size_t rows);
-  /// @param directions  in which axes have travelled: of each of the machine_errors's plays()
+  /// @param directions  in which axes have travelled: of each of machine_errors.plays()
   void record(const Snapshot& now, std::span<const double> directions = {});
   /// All rows; once.
   Series take();

@@ -164,11 +164,11 @@ double statistic_of(std::string_view name, const AtRow& value, const RowRanges& 
 // A statistic of all samples of a thinned recording; none if its rows do not tell of the signal.
 std::optional<double> statistic_of_samples(const QuantitySpec& spec, std::string_view signal,
                                            const CaseData& one, const RowRanges& rows) {
-  const auto told = [&](const char* what) {
+  const auto between_rows = [&](const char* what) {
     return column_of(one, std::string(signal) + what, spec.axis);
   };
-  const AtRow least = told("_least"), greatest = told("_greatest");
-  const AtRow mean = told("_mean"), rms = told("_rms");
+  const AtRow least = between_rows("_least"), greatest = between_rows("_greatest");
+  const AtRow mean = between_rows("_mean"), rms = between_rows("_rms");
   const AtRow samples = column_of(one, kSamples, '\0');
   if (!least || !greatest || !mean || !rms || !samples) return std::nullopt;
   Statistic statistic(spec.statistic);

@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 using plant::Meeting;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kPoorChord = 1.0 * um;  // chord errors beyond it are told
+constexpr double kPoorChord = 1.0 * um;  // chord errors beyond it are reported
 constexpr double kParallel = 1e-9;       // sine of an angle
 constexpr double kBelow = 1.0 * um;      // a surface, where its material is looked for
 

@@ -25,7 +25,7 @@ struct Window {
   std::vector<Tick> periods;  // one number a frequency
 };
 
-// A sinusoid whose mirror image the sampling folds onto itself cannot be told from it.
+// A sinusoid whose mirror image the sampling folds onto itself cannot be distinguished from it.
 bool folds_onto_itself(Tick periods, Tick hyperperiods) {
   return (2 * periods) % hyperperiods == 0;
 }

@@ -14,7 +14,8 @@ namespace servomill::sim {
 plant::ErrorModel read_errors(Reader& model, const JointLayout& layout);
 
 /// All models of a table [errors], by name. A model with the key `relative_to` is the sum of the
-/// model of that name and what it says itself: a identified and its identification errors, say.
+/// model of that name and what it says itself: an identified model and its identification errors,
+/// say.
 std::map<std::string, plant::ErrorModel> read_error_models(Reader& models,
                                                            const JointLayout& layout);
 

@@ -57,7 +57,7 @@ struct Likeness {
 /// Estimate of one location error from readings.
 struct LocationEstimate {
   plant::ErrorName name;
-  std::optional<double> value;  // m or rad; nothing where it cannot be told from others
+  std::optional<double> value;  // m or rad; nothing where it is confounded with others
   double uncertainty = 0.0;     // m or rad; standard deviation if what the fit leaves of the
                                 // readings is independent noise
   // Without a value: errors and set-up that together have the same effect. Empty: the error has no
@@ -79,7 +79,7 @@ struct LocationFit {
   int number_identified() const;
 };
 
-/// An effect of which less than this share is its own cannot be told from that of others.
+/// An effect of which less than this share is its own is confounded with that of others.
 inline constexpr double kOwnShare = 1e-3;
 
 /// All location errors that do something on this machine, in the order in which they are kept where

@@ -24,7 +24,7 @@ class ZoneShape {
   /// One of cells() parts of the shape, to begin with the extreme points of each.
   virtual std::size_t cell(std::size_t point) const = 0;
   virtual std::size_t cells() const = 0;
-  /// Length in which rounding is told from a width.
+  /// Length that distinguishes rounding from a width.
   virtual double size() const = 0;
   /// Motions of one step are at most this many widths of the zone.
   virtual double reach() const = 0;

@@ -1,4 +1,4 @@
-/// Faults of cases: what refuses a case before it runs, and how the faults of several are told.
+/// Faults of cases: what refuses a case before it runs, and how the faults of several are reported.
 #pragma once
 
 #include <span>

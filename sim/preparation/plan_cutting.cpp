@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kCoarse = 2 * mm, kFinest = 0.25 * mm;  // between rows of the table
-constexpr double kRubbed = 20 * um;     // of material that a tool rubs, thickness not told
+constexpr double kRubbed = 20 * um;     // of material that a tool rubs, thickness not reported
 constexpr double kTangent = 1 * um;     // over which the direction of feed is taken
 constexpr double kForceShare = 0.02;    // of the larger force, by which linear may be wrong,
 constexpr double kForceTol = 0.5;       // N, at least

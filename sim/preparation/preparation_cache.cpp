@@ -99,7 +99,7 @@ InterpretedProgram::InterpretedProgram(MoveList moves_in, std::vector<Fault> war
       path(moves, setup.start, setup.machine, tips) {
   const AxisWords& start = setup.start;
   first_tip_move_ = first_move(moves, controls_tip);
-  // the tip of the first tool that the program works with: the one that a strategy believes in
+  // the tip of the first tool that the program works with: the one that a strategy assumes
   const auto works = [](const Move& move) { return is_motion(move.kind) && move.tool_offset != 0; };
   const auto first = first_move(moves, works);
   if (first) first_tip = tips.at(first->tool_offset);

@@ -19,7 +19,7 @@ struct GivenPlaces {
   bool has_stored_places = false;  // of G28 and G30: a parameter file
 };
 
-/// What is known of one move.
+/// Known positions of one move.
 struct MoveKnowledge {
   AxisWords begin_work = AxisWords::Zero();     // m, rad, in the coordinates of Move::end
   AxisWords begin_machine = AxisWords::Zero();  // m, rad

@@ -125,7 +125,7 @@ void refuse_unknown_tools(const PostRequest& request, const controllers::ClData&
   }
 }
 
-// Where rotary axes turn head or workpiece, the axes go with the place of the part: 0 may be given,
+// With rotary axes the positions depend on the place of the part: 0 may be given,
 // but is not assumed. Under tip control X and Y are approached without it, where the table turns.
 void refuse_unknown_place(const PostRequest& request, const plant::MachineChain& chain) {
   if (request.work_offset) return;
@@ -205,10 +205,10 @@ PostProcessedFile post_file(PostRequest request, std::vector<controllers::Warnin
       read_machine_description(request.machine_file, request.changes);
   const MachineSettings& machine = described.machine;
   std::vector<controllers::Warning> ignored;
-  std::vector<controllers::Warning>& told = of_refused != nullptr ? *of_refused : ignored;
+  std::vector<controllers::Warning>& warnings = of_refused != nullptr ? *of_refused : ignored;
   const controllers::ClData data = controllers::read_cl_data(
-      read_file(request.cl_file, {}, "cutter location file"), request.cl_file, &told);
-  told = data.warnings;
+      read_file(request.cl_file, {}, "cutter location file"), request.cl_file, &warnings);
+  warnings = data.warnings;
   refuse_unknown_place(request, machine.chain);
   controllers::PostOptions& options = request.options;
   options.start = joints_of(request.start, machine.chain.layout);
@@ -227,8 +227,8 @@ PostProcessedFile post_file(PostRequest request, std::vector<controllers::Warnin
   settings.upper = machine.nc.upper;
   const plant::InverseKinematics inverse(machine.chain, settings);
   controllers::PostProcessed post_processed =
-      controllers::post(data, request.cl_file, inverse, options, &told);
-  told.clear();
+      controllers::post(data, request.cl_file, inverse, options, &warnings);
+  warnings.clear();
 
   controllers::PrintOptions print;
   print.axes = names_of(machine.chain.layout);

@@ -81,7 +81,7 @@ void RowThinning::watch(const Signal& signal, Watched watched) {
   watched.columns = signal.columns();
   watched.is_single = signal.storage == Storage::float32;
   watched_.push_back(watched);
-  told_.resize(told_.size() + watched.columns);
+  statistics_.resize(statistics_.size() + watched.columns);
   const auto add = [&](const char* suffix, const char* what, Storage storage) {
     Signal one = signal;
     one.name += suffix;
@@ -170,14 +170,14 @@ double RowThinning::value(const Watched& watched, std::size_t column, std::span<
 }
 
 void RowThinning::tell_of(std::span<const double> row) {
-  Told* told = told_.data();
+  Statistics* one_column = statistics_.data();
   for (const Watched& watched : watched_) {
-    for (std::size_t c = 0; c < watched.columns; ++c, ++told) {
+    for (std::size_t c = 0; c < watched.columns; ++c, ++one_column) {
       const double v = value(watched, c, row);
-      told->least = samples_ == 0 ? v : std::min(told->least, v);
-      told->greatest = samples_ == 0 ? v : std::max(told->greatest, v);
-      told->sum = samples_ == 0 ? v : told->sum + v;
-      told->squares = samples_ == 0 ? v * v : told->squares + v * v;
+      one_column->least = samples_ == 0 ? v : std::min(one_column->least, v);
+      one_column->greatest = samples_ == 0 ? v : std::max(one_column->greatest, v);
+      one_column->sum = samples_ == 0 ? v : one_column->sum + v;
+      one_column->squares = samples_ == 0 ? v * v : one_column->squares + v * v;
     }
   }
   ++samples_;
@@ -187,20 +187,20 @@ void RowThinning::stay(std::span<const double> row, std::vector<double>& out) {
   out.insert(out.end(), row.begin(), row.end());
   const auto samples = static_cast<double>(samples_);
   out.push_back(samples);
-  const Told* told = told_.data();
+  const Statistics* one_column = statistics_.data();
   for (const Watched& watched : watched_) {
     const auto put = [&](auto value, bool is_single) {
       for (std::size_t c = 0; c < watched.columns; ++c) {
-        out.push_back(is_single ? as_single(value(told[c])) : value(told[c]));
+        out.push_back(is_single ? as_single(value(one_column[c])) : value(one_column[c]));
       }
     };
-    put([](const Told& one) { return one.least; }, watched.is_single);
-    put([](const Told& one) { return one.greatest; }, watched.is_single);
+    put([](const Statistics& one) { return one.least; }, watched.is_single);
+    put([](const Statistics& one) { return one.greatest; }, watched.is_single);
     if (watched.has_mean) {
-      put([&](const Told& one) { return one.sum / samples; }, true);
-      put([&](const Told& one) { return std::sqrt(one.squares / samples); }, true);
+      put([&](const Statistics& one) { return one.sum / samples; }, true);
+      put([&](const Statistics& one) { return std::sqrt(one.squares / samples); }, true);
     }
-    told += watched.columns;
+    one_column += watched.columns;
   }
   last_contour_error_ = row[contour_error_];
   samples_ = 0;

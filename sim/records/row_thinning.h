@@ -50,7 +50,7 @@ class RowThinning {
   void account(std::uint64_t bytes, std::size_t rows);
 
  private:
-  // A signal whose values between rows are told: columns of a row, or computed from them.
+  // A signal whose values between rows have statistics: columns of a row, or computed from them.
   struct Watched {
     enum class Kind : std::uint8_t { column, length, angle };
     Kind kind = Kind::column;
@@ -60,7 +60,7 @@ class RowThinning {
     bool is_single = false;           // kept as float32
   };
   // Extremes of a column since the last row that stayed.
-  struct Told {
+  struct Statistics {
     double least = 0.0, greatest = 0.0, sum = 0.0, squares = 0.0;
   };
 
@@ -84,10 +84,10 @@ class RowThinning {
   std::vector<std::size_t> axes_;  // columns of the interpolated position
   std::size_t line_ = 0, section_ = 0, rapid_ = 0, contour_error_ = 0;
 
-  std::vector<double> before_;  // the row before; empty: there was none
-  std::vector<int> senses_;     // in which the axes went last
-  std::vector<Told> told_;      // column after column of what is watched
-  std::size_t samples_ = 0;     // since a row stayed
+  std::vector<double> before_;          // the row before; empty: there was none
+  std::vector<int> senses_;             // in which the axes went last
+  std::vector<Statistics> statistics_;  // column after column of what is watched
+  std::size_t samples_ = 0;             // since a row stayed
   double last_contour_error_ = 0.0, greatest_contour_error_ = 0.0;
 
   double bytes_ = 0.0, bytes_per_row_ = 0.0;           // as accounted for

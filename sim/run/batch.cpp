@@ -194,13 +194,13 @@ void run_batch(std::span<const Scenario> points, const StopFlag& stop, std::atom
       together.push_back(prepared(points[next], control.cache));
       rows += together.back().rows();
     }
-    std::vector<bool> told(together.size(), false);
+    std::vector<bool> reported(together.size(), false);
     const auto tell_ended = [&] {
       std::vector<EndedPoint> now;
       for (std::size_t k = 0; k < together.size(); ++k) {
         Point& point = together[k];
-        if (told[k] || point.left > 0 || point.interrupted) continue;
-        told[k] = true;
+        if (reported[k] || point.left > 0 || point.interrupted) continue;
+        reported[k] = true;
         now.push_back({first + k, result_of(point, control.keep)});
       }
       if (!now.empty()) ended(std::move(now));

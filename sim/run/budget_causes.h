@@ -24,7 +24,7 @@ enum class Cause : std::uint8_t {
                // feedback hardware, delay of the scales: 0, and one base tick for the model
   saturation,  // limits of virtual displacements: out of reach
   single_evaluation,  // errors evaluated where displacing changes them: iterations = "converged"
-  identification,  // strategies believe in the truth (or, without one, in the imposed model), and
+  identification,  // strategies know the actual errors (or, without one, in the imposed model), and
                    // in the origin of the case (rewrite_origin = "case")
   friction,        // dry friction, backlash, cogging, and what the NC does against them: none
   measurement,     // errors, noise, steps, marks of encoders, errors of screws: none

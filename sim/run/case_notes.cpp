@@ -16,7 +16,7 @@
 namespace servomill::sim {
 namespace {
 
-// Nominal points this far from the mesh are told: its facets stand in for curved faces.
+// Nominal points this far from the mesh are reported: its facets stand in for curved faces.
 constexpr double kFacets = 1e-6;  // m
 
 const plant::MachineChain& chain_of(const PreparedParts& one) {

@@ -10,7 +10,7 @@
 
 namespace servomill::sim {
 
-/// A thread of its own that does one job after the other, in the order in which they were posted.
+/// A thread of its own that does one job after the other, in the order in which they were given.
 /// None waits in a queue, so that what jobs hold stays bounded. For one poster.
 ///
 /// A job that throws is the last one: the next post() or wait() throws what it threw, those after

@@ -82,7 +82,7 @@ bool may_be_result_file(const std::string& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return false;
   std::ifstream file(path, std::ios::binary);
-  if (!file) return true;  // cannot be told
+  if (!file) return true;  // cannot be known
   std::string begin(kSignature.size(), '\0');
   file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
   begin.resize(static_cast<std::size_t>(file.gcount()));
@@ -204,7 +204,7 @@ void refuse_partial(const std::string& partial) {
                        "exists, left by a run that did not end; use --force to overwrite");
     case Writer::unknown:
       throw InputError({partial},
-                       "exists; whether a run still writes it cannot be told; use "
+                       "exists; whether a run still writes it is unknown; use "
                        "--force to overwrite");
   }
 }

@@ -47,8 +47,8 @@ class LineCorrection {
   const Joints& base() const { return base_; }
 
  private:
-  // IdentifiedMachine without the positioning errors of rotary axes. A joint whose errors depend on
-  // the direction of travel has one for each direction.
+  // Identified machine without the positioning errors of rotary axes. A joint whose errors depend
+  // on the direction of travel has one for each direction.
   strategies::IdentifiedMachine identified_of(const plant::ErrorModel& errors) const;
   const strategies::IdentifiedMachine& identified(int joint, int direction) const;
   Eigen::Vector3d linear_at(const strategies::IdentifiedMachine& identified,

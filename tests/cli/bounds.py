@@ -123,12 +123,12 @@ class Bounds(unittest.TestCase):
         self.assertRegex(said, r"error: takes \S+ h in \d+ cases and \S+ rows: \S+ GB of signals; must be <= record.max_size_GB = 8")
         self.assertLess(time.monotonic() - begin, 5.0, "the motion has been planned")
 
-    def test_what_is_long_or_large_is_told_before_it_begins(self):
+    def test_what_is_long_or_large_is_reported_before_it_begins(self):
         said = self.first_lines(1, "program.feed_override=2e-4")[0]
         self.assertRegex(said, r"^estimate: 108 min of motion, 6\.5e\+06 rows, 2\.9 GB of signals in a file of 0\.4\d GB, "
                          r"0\.\d+ GB of memory, about \d+ (s|min) of computing\n$")
 
-    def test_a_disk_that_is_too_small_is_told_before_it_begins(self):
+    def test_a_disk_that_is_too_small_is_reported_before_it_begins(self):
         disk, slow = self.path("disk"), "program.feed_override=2e-4"
         os.mkdir(disk)
         tmpfs = ["mount", "-t", "tmpfs", "-o", "size=900m", "tmpfs", disk]   # takes memory as it is filled

@@ -81,7 +81,7 @@ class Ends(unittest.TestCase):
         process = subprocess.Popen([SERVOMILL, "sweep", SCENARIO, "-o", self.out, "--json", "--set", points],
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, bufsize=1)
         self.addCleanup(process.stdout.close)
-        first = process.stdout.readline()  # told as soon as it is known
+        first = process.stdout.readline()  # printed as soon as it is known
         process.send_signal(signal.SIGINT)
         _, stderr = process.communicate(timeout=PATIENCE)
         self.assertIn("program.feed_override = 1.0", first)

@@ -155,7 +155,7 @@ class Resume(Sweeps):
             return np.count_nonzero(file["sweep/status"][:])
 
     def end_after(self, what, name):
-        """Sends a signal when the first points are told of."""
+        """Sends a signal when the first points are reported."""
         process = self.start(name)
         process.stdout.readline()
         process.send_signal(what)

@@ -33,7 +33,7 @@ class Sharded(unittest.TestCase):
         return points(shard_name(cls.out, shard))
 
     def expect_going_on(self, shard, finished, there, said):
-        """Who was told SAID goes on with a shard of which so many points were finished when it was killed."""
+        """A run that printed SAID goes on with a shard of which so many points were finished when it was killed."""
         self.assertTrue(0 < finished < there, f"{finished} of {there} points when shard {shard} was killed")
         self.assertIn(f"{finished} of {there} points are there already", said)
 

@@ -35,7 +35,7 @@ void require(bool holds, std::string_view law, std::string_view details = {});
 
 /// Law: every fault has a message and names the file; line and column, where it has them, are in
 /// the text. (What is missing in a file has neither.)
-/// @param file  what the reader was told the text is called
+/// @param file  name of the text
 void require_places(std::span<const Fault> faults, std::string_view text, std::string_view file);
 
 }  // namespace servomill::fuzz

@@ -10,7 +10,7 @@ root = pathlib.Path(sys.argv[1])
 MAY_SEE = {
     "plant": ["plant/"],
     "controllers": ["controllers/", "plant/vocabulary/", "plant/kinematics/"],
-    # strategies know the machine as the NC believes it to be and the form of the error model
+    # strategies know the machine as the NC models it and the form of the error model
     "strategies": ["strategies/", "plant/vocabulary/", "plant/kinematics/", "plant/geometry/"],
     "sim": ["sim/", "controllers/", "strategies/", "plant/"],
     "tools": ["tools/", "sim/", "plant/vocabulary/"],

@@ -1,4 +1,4 @@
-/// Perfect identified and ideal axes: what remains is the error of the strategy's own
+/// Perfect identification and ideal axes: what remains is the error of the strategy's own
 /// approximation.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -112,7 +112,7 @@ TEST(EveryStrategy, ThatDisplacesTheFeedbackUsesItsHardware) {
   }
 }
 
-// Law 1: who believes in no errors changes nothing, bit for bit.
+// Law 1: an identified model without errors changes nothing, bit for bit.
 TEST(EveryStrategy, LeavesPositionsAloneWithoutErrors) {
   const IdentifiedMachine identified = identified_with({});
   plant::Uniform random(1);
@@ -185,7 +185,7 @@ TEST(EveryStrategy, KeepsEveryProgrammedPointWithoutErrors) {
   }
 }
 
-// Law 2: to generate is to displace the axes by the identified error, to correct by its negative,
+// Law 2: to impose is to displace the axes by the identified error, to compensate by its negative,
 // to first order. The points are those where a table interpolates nothing.
 TEST(EveryStrategy, DisplacesByTheIdentifiedErrorTimesItsSign) {
   const IdentifiedMachine identified = randomly_identified();
@@ -295,8 +295,8 @@ TEST(EveryStrategy, DoesTheSameInEveryRun) {
   }
 }
 
-// Law 6: a strategy that displaces all axes, with perfect identified and axes that stand where they
-// are sent, leaves neither tip nor tool axis anything, whatever the machine.
+// Law 6: a strategy that displaces all axes, with perfect identification and axes that stand where
+// they are sent, leaves neither tip nor tool axis anything, whatever the machine.
 TEST(EveryStrategyOfAllAxes, LeavesNothingOfTipAndToolAxis) {
   constexpr double kPoseTol = 2e-12;  // m, rad: ten times that of the iteration and its slopes
   plant::Uniform random(13);

@@ -88,7 +88,7 @@ plant::ErrorModel trilinear_errors() {
 
 constexpr double kSquaredAngles = 1e-12;  // m: (3e-6 x 0.2 m)^2 0.3 m and the like
 
-TEST(Lattice, IsExactForTrilinearErrors) {
+TEST(GridLayout, IsExactForTrilinearErrors) {
   const IdentifiedMachine identified = three_axes(trilinear_errors());
   const Made grid(identified, {.spacing = 100 * mm}), lines(identified, {.layout = "axis_tables"});
   plant::Uniform random(3);
@@ -101,7 +101,7 @@ TEST(Lattice, IsExactForTrilinearErrors) {
   EXPECT_GT(lines_miss, 50 * nm);  // the products stand on no line
 }
 
-TEST(Lattice, HoldsTheErrorsAtItsPointsAndTheirConstantBeyond) {
+TEST(GridLayout, HoldsTheErrorsAtItsPointsAndTheirConstantBeyond) {
   const IdentifiedMachine identified = three_axes(trilinear_errors());
   const Made grid(identified, {});
   for (const double x : {-0.2, -0.05, 0.2}) {
@@ -113,7 +113,7 @@ TEST(Lattice, HoldsTheErrorsAtItsPointsAndTheirConstantBeyond) {
 }
 
 // A sine is missed most at a crest in the middle of a cell: A (1 - cos(w h / 2)), of second order.
-TEST(Lattice, ConvergesWithTheSquareOfItsSpacing) {
+TEST(GridLayout, ConvergesWithTheSquareOfItsSpacing) {
   constexpr double kAmplitude = 20 * um, kPeriod = 400 * mm;
   constexpr double kOmega = 2.0 * std::numbers::pi / kPeriod;
   double before = 0.0;
@@ -176,7 +176,7 @@ TEST(Table, MovesTheAxesThatItIsAskedToMove) {
   EXPECT_LE(Y_over_Z.at(0.0, 0.0, from[2]).norm(), kSquaredAngles);
 }
 
-TEST(Lattice, EntersTheNcAsOtherTablesDo) {
+TEST(GridLayout, EntersTheNcAsOtherTablesDo) {
   const IdentifiedMachine identified = three_axes(trilinear_errors());
   const Made grid(identified, {});
   EXPECT_EQ(grid.part().entry().entry, EntryPoint::position_command);

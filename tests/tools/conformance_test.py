@@ -183,10 +183,10 @@ class Records(unittest.TestCase):
 
     def test_feed_modes(self):
         move = "STRAIGHT_FEED(1.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)"
-        told = records('COMMENT("interpreter: feed mode set to inverse time")', "SET_FEED_MODE(0, 0)", move,
+        found = records('COMMENT("interpreter: feed mode set to inverse time")', "SET_FEED_MODE(0, 0)", move,
                        'COMMENT("interpreter: feed mode set to units per revolution")', "SET_FEED_MODE(0, 1)", move,
                        'COMMENT("interpreter: feed mode set to units per minute")', "SET_FEED_MODE(0, 0)", move)
-        self.assertEqual([record["fmode"] for record in told], ["inv", "upr", "upm"])
+        self.assertEqual([record["fmode"] for record in found], ["inv", "upr", "upm"])
 
     def test_machine_coordinates_turn_after_the_shift(self):
         move, = records("SET_G5X_OFFSET(1, 10.0000, 20.0000, 0.0000, 0.0000, 0.0000, 0.0000)",
@@ -204,22 +204,22 @@ class Records(unittest.TestCase):
             self.assertEqual((move["end"][:3], move["plane"], move["center"], move["turns"]), (end, plane, [3.0, 4.0], 2))
 
     def test_prints_and_messages(self):
-        told = list(rs274.Canon().records('    1 N7 MESSAGE("  two   words")\nbare   text\n'))
-        self.assertEqual(told, [{"t": "msg", "line": 7, "text": "two words"}, {"t": "print", "text": "bare text"}])
+        found = list(rs274.Canon().records('    1 N7 MESSAGE("  two   words")\nbare   text\n'))
+        self.assertEqual(found, [{"t": "msg", "line": 7, "text": "two words"}, {"t": "print", "text": "bare text"}])
 
     def test_stops_of_a_standing_spindle_count_unless_an_end_or_a_tool_change_makes_them(self):
-        told = records("STOP_SPINDLE_TURNING(0)", "SET_SPINDLE_SPEED(0, 9.0000)", "START_SPINDLE_CLOCKWISE(0)", "START_CHANGE()",
+        found = records("STOP_SPINDLE_TURNING(0)", "SET_SPINDLE_SPEED(0, 9.0000)", "START_SPINDLE_CLOCKWISE(0)", "START_CHANGE()",
                        "STOP_SPINDLE_TURNING(0)", "CHANGE_TOOL(0)", "START_CHANGE()", "STOP_SPINDLE_TURNING(0)", "CHANGE_TOOL(0)",
                        "STOP_SPINDLE_TURNING(0)", "SET_SPINDLE_MODE(0 0.0000)", "PROGRAM_END()")
-        self.assertEqual([record.get("dir", record["t"]) for record in told], [0, "spindle", 1, 0, "tool", "tool", "end"])
+        self.assertEqual([record.get("dir", record["t"]) for record in found], [0, "spindle", 1, 0, "tool", "tool", "end"])
 
     def test_lines_are_not_known_under_cutter_compensation(self):
-        told = list(rs274.Canon().records("""    1 N5 COMMENT("interpreter: cutter radius compensation on left")
+        found = list(rs274.Canon().records("""    1 N5 COMMENT("interpreter: cutter radius compensation on left")
     2 N6 DWELL(1.0000)
     3 N7 COMMENT("interpreter: cutter radius compensation off")
     4 N7 DWELL(1.0000)
 """))
-        self.assertEqual([record.get("line") for record in told], [None, 7])
+        self.assertEqual([record.get("line") for record in found], [None, 7])
 
     def test_lines_get_n_words(self):
         program = b"%\n/ g0 x1\n\nn5.5 g1 (a)\n  o1 if [1]\nn12. x1\n%\n" + b"(" + b"a" * 251 + b"\n"

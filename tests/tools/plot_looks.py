@@ -82,7 +82,7 @@ class Looks(WithFiles):
 
 
 class Pictures(WithFiles):
-    PALETTE_TOL = 16   # of 255: colours of a few points and of a bar of colours are still told apart
+    PALETTE_TOL = 16   # of 255: colours of a few points and of a bar of colours are still distinguished
 
     def test_a_palette_leaves_rare_colours_what_they_are(self):
         style.set_up()

@@ -72,7 +72,7 @@ class Mistakes(WithFiles):
                 0, "figure9: not drawn, drawing it failed (LinAlgError: SVD did not converge)\n"))
             self.assertEqual(self.drawn(), ["side-figure6.png"])
             done = plot(self.side, "-o", self.out / "all")
-            self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [   # a failure is told unasked
+            self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [   # a failure is reported unasked
                 "figure9: not drawn, drawing it failed (LinAlgError: SVD did not converge)",
                 "16 other figures would need what the file does not hold; see --why"]))
 

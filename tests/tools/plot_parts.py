@@ -97,7 +97,7 @@ class Parts(WithFiles):
         self.assertEqual(self.crosses(figure.axes[0]), {style.MISSED.colour: at["top"]})
         self.assertEqual(self.crosses(figure.axes[1]), {})
 
-    def test_the_scale_of_the_part_follows_from_its_deviations_and_is_told(self):
+    def test_the_scale_of_the_part_follows_from_its_deviations_and_is_reported(self):
         self.assertEqual(self.drawn_of(self.block, parts.draw_plan).texts[0].get_text(),
                          "Part from above, minus nominal, × 1000: up to 9.1 µm")
         larger = self.out / "larger.h5"
@@ -109,20 +109,20 @@ class Parts(WithFiles):
         self.assertEqual(self.drawn_of(larger, parts.draw_plan).texts[0].get_text(),
                          "Part from above, minus nominal, × 100: up to 90.9 µm")
 
-    def test_what_a_figure_leaves_out_is_told(self):
+    def test_what_a_figure_leaves_out_is_reported(self):
         self.assertEqual([parts.not_shown(count, "case") for count in (0, 1, 2)],
                          ["", "; 1 more case not shown", "; 2 more cases not shown"])
-        self.assertEqual(parts.told_largest(np.array([np.nan, -9.06, 1.0])), "up to 9.1 µm")
-        self.assertEqual(parts.told_largest(np.array([np.nan])), "no point was met")
+        self.assertEqual(parts.largest_note(np.array([np.nan, -9.06, 1.0])), "up to 9.1 µm")
+        self.assertEqual(parts.largest_note(np.array([np.nan])), "no point was met")
 
     def test_probed_points_of_a_notch_are_counted_where_they_are_lost(self):
         with results.open_result(self.missed) as run:
             (found,) = [probed_points.notches(run)["as_it_is"]]
             self.assertEqual(list(found.missed), [1])
             self.assertTrue(np.isfinite(found.displacement).all())     # of the points that are left
-            self.assertEqual(probed_points.told(probed_points.notches(run)), "; crosses: probed, ±2σ; hollow: 1 missed")
+            self.assertEqual(probed_points.note(probed_points.notches(run)), "; crosses: probed, ±2σ; hollow: 1 missed")
         with results.open_result(self.block) as run:
-            self.assertEqual(probed_points.told(probed_points.notches(run)), "; crosses: probed, ±2σ")
+            self.assertEqual(probed_points.note(probed_points.notches(run)), "; crosses: probed, ±2σ")
 
 
 class Balls(WithFiles):
@@ -257,10 +257,10 @@ class LongRecordings(unittest.TestCase):
 
 
 class Headlines(unittest.TestCase):
-    def test_one_case_is_told_once(self):
+    def test_one_case_is_reported_once(self):
         looks = {name: style.Look(name, style.BLACK) for name in ("plain", "exact")}
-        self.assertEqual(five_axis.told_peaks({"plain": 2.5}, "plain", looks), "2.5 µm (plain)")
-        self.assertEqual(five_axis.told_peaks({"plain": 2.5, "exact": 0.125}, "plain", looks), "2.5 µm (plain), 0.12 µm (exact)")
+        self.assertEqual(five_axis.peaks_text({"plain": 2.5}, "plain", looks), "2.5 µm (plain)")
+        self.assertEqual(five_axis.peaks_text({"plain": 2.5, "exact": 0.125}, "plain", looks), "2.5 µm (plain), 0.12 µm (exact)")
 
     def message(self, **delays):
         class Sweep:
@@ -269,7 +269,7 @@ class Headlines(unittest.TestCase):
 
         return lag._message(Sweep(), {(name, "Y"): {"value": np.array(values)} for name, values in delays.items()})
 
-    def test_a_delay_that_varies_is_told_with_its_range(self):
+    def test_a_delay_that_varies_is_reported_with_its_range(self):
         self.assertEqual(self.message(table=[40.0, 40.2], gcode=[0.3, 0.2]),
                          "The delay is the same at every feed within 1 %: table 40.1 ms")
         self.assertEqual(self.message(table=[40.0, 40.2], gcode=[-0.4, 4.2]),

@@ -312,7 +312,7 @@ class Digits(unittest.TestCase):
 
 
 class Accepted(unittest.TestCase):
-    def test_is_told_by_meaning(self):
+    def test_is_reported_by_meaning(self):
         for one, text in ((row(), "1.5 to 2.5"), (row(tolerance=0.0), "2"), (row(meaning="below", tolerance=0.0), "magnitude <= 2"),
                           (row(meaning="above", tolerance=0.0), ">= 2"), (row(lacks="its unit"), ""),
                           (row(meaning="between", value=None, limits=(1.0, 3.0), tolerance=0.0), "1 to 3")):
@@ -349,8 +349,8 @@ class Report(WithResults):
         self.assertEqual(text.count("Not drawn: no results."), len(pictures.PICTURES))
 
     def test_figures_are_embedded(self):
-        told = []
-        drawn = pictures.draw_all(self.shared, self.folder / "figures", told.append)
+        reported = []
+        drawn = pictures.draw_all(self.shared, self.folder / "figures", reported.append)
         done = {one.picture.name() for one in drawn if one.file}
         self.assertEqual(done, {"L_3_1", "L_3_2", "L_3_3", "L_table_3_1"})
         self.assertEqual(report.page([], drawn, "").count("data:image/png;base64,"), len(done))

@@ -8,7 +8,7 @@ PROGRAMMED = style.Look("programmed", style.GREY, "-", "", 1.2)
 CORRECTED = style.Look("corrected, magnified", style.RED, "-", "", 1.4)
 POINTS = style.Look("ends of blocks", style.BLACK, "-", "o")
 SHARE = 0.05      # of the path's size: what the largest correction is magnified to
-MOST_POINTS = 400  # ends of blocks that can be told apart
+MOST_POINTS = 400  # ends of blocks that can be distinguished
 
 
 def draw(result):

@@ -43,7 +43,7 @@ def draw_air_and_cutting(run):
     air_look = style.Look("in air", style.GREY, style.DASH, "", 1.2)
     style.legend(strip, [*looks.values(), air_look])
     (oblique, over), (scale, tool) = grid
-    told, size, circle = {}, 0.0, run.names.section(CIRCLE)
+    printed, size, circle = {}, 0.0, run.names.section(CIRCLE)
     for name in PARTS:
         rows, rows_air = (one.samples([circle]) for one in (cutting[name], air[name + AIR]))
         if not len(rows) or not len(rows_air):
@@ -65,7 +65,7 @@ def draw_air_and_cutting(run):
         at_tool = (_tool_z(cutting[name], rows) - air[name + AIR].along(
             "tool_position_true", "Z", cutting[name].column("s")[rows])) * UM_PER_MM
         style.noisy_line(tool, angle, at_tool, looks[name], buckets=120)
-        told[name] = (np.abs(np.median(added)), np.abs(np.median(at_tool)))
+        printed[name] = (np.abs(np.median(added)), np.abs(np.median(at_tool)))
     oblique.set_title(f"(a) Circle seen obliquely, Z at the scale × {factor:.0f}")
     oblique.set_aspect("equal", adjustable="datalim")
     oblique.axis("off")
@@ -76,7 +76,7 @@ def draw_air_and_cutting(run):
         ax.set_ylabel("Z, µm")
         ax.margins(x=0.01)
         ax.set_xlabel("angle from the beginning of the circle, deg")
-    largest = [max(told[name][i] for name in PARTS) for i in (0, 1)]
+    largest = [max(printed[name][i] for name in PARTS) for i in (0, 1)]
     style.headline(figure, f"Cutting shifts Z along the circle by {style.number(largest[0])} µm at the scale and "
                            f"{style.number(largest[1])} µm at the tool (largest of the medians)")
     return figure
@@ -133,13 +133,13 @@ def draw_top_plane(run):
                  [style.Look("probed, ±σ", style.GREY, "", "x"), style.Look("least-squares plane", style.GREY, style.DASH, "")],
                  points=True)
     z_offset = run.scenario.get("program", {}).get("work_offset", {})
-    told = {}
+    printed = {}
     for column, name in enumerate(PARTS):
         one = features[top].get(cases[name].name)
         if one is None:
             raise NotInFile(f"case {cases[name].name} was not probed")
         plane = fitted_plane(one.nominal, one.mean)
-        told[name] = plane.rotations()
+        printed[name] = plane.rotations()
         rows = cases[name].samples([run.names.section(PLANE)])
         if not len(rows):
             raise run.no_motion([PLANE])
@@ -163,13 +163,13 @@ def draw_top_plane(run):
         about_x, about_y = (f"{angle:.5f}°".replace("-", "−") for angle in plane.rotations())
         grid[0][column].set_title(f"{looks[name].label}: about Y by {about_y}", fontsize=10.5)
         grid[1][column].set_title("\n".join([f"about X by {about_x}, flat within {np.ptp(plane.residual):.1f} µm",
-                                             *parts.told_missed([one])]), fontsize=10.5)
+                                             *parts.missed_note([one])]), fontsize=10.5)
     for row in grid:
         limits = [ax.get_ylim() for ax in row]
         for ax in row:
             ax.set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
     style.headline(figure, "Top plane, generated / compensated: turned by "
-                   f"{np.hypot(*told['generated']):.4f}° / {np.hypot(*told['compensated']):.5f}°")
+                   f"{np.hypot(*printed['generated']):.4f}° / {np.hypot(*printed['compensated']):.5f}°")
     return figure
 
 
@@ -182,7 +182,7 @@ class FittedPart:
     distance: np.ndarray    # (point) the same along the normal
     sigma: np.ndarray
     features: dict          # {name: slice of the points}
-    told_missed: list       # as of parts.told_missed
+    missed_note: list       # as of parts.missed_note
 
     def largest(self):
         return np.nanmax(np.linalg.norm(self.deviation, axis=1))
@@ -207,7 +207,7 @@ def best_fit(run, case):
     ends = np.cumsum([len(one.mean) for one in features.values()])
     slices = {name: np.s_[end - len(one.mean):end] for end, (name, one) in zip(ends, features.items())}
     return FittedPart(nominal[:, :2], place[:, :2], deviation[:, :2], (deviation * normal).sum(axis=1), sigma, slices,
-                      parts.told_missed(features.values()))
+                      parts.missed_note(features.values()))
 
 
 NOMINAL = style.Look("nominal geometry", parts.PALE, "-", "", 1.0)
@@ -235,7 +235,7 @@ def draw_quivers(run):
         ax.set_aspect("equal", adjustable="datalim")
         ax.margins(0.12)
         ax.set_title("\n".join([f"{look.label}: up to {style.number(one.largest())} µm (σ {np.nanmean(one.sigma):.2f} µm)",
-                                *one.told_missed]))
+                                *one.missed_note]))
         ax.set_xlabel("X of the part, mm")
     grid[0][0].set_ylabel("Y of the part, mm")
     style.headline(figure, f"Distances to the nominal part after best fit, × {factor:.0f}: up to {style.number(largest)} µm")
@@ -270,8 +270,8 @@ def draw_superposed(run):
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel("X of the part, mm")
     ax.set_ylabel("Y of the part, mm")
-    missed = [f"{looks[name].label}: {told}" for name, one in fitted.items() for told in one.told_missed]
+    missed = [f"{looks[name].label}: {printed}" for name, one in fitted.items() for printed in one.missed_note]
     ax.set_title("\n".join([f"Distances × {SUPERPOSED:.0f}, after best fit", *missed]))
     apart = np.abs(fitted["compensated"].distance - fitted["nominal"].distance)
-    style.headline(figure, f"Probed after best fit, nominal and compensated part: {parts.told_largest(apart)} apart")
+    style.headline(figure, f"Probed after best fit, nominal and compensated part: {parts.largest_note(apart)} apart")
     return figure

@@ -85,11 +85,11 @@ def draw(run):
     of_tip.tick_params(labelbottom=False)
     of_axis.set_xlabel("arc length, mm")
     peaks = {case.name: tip_deviation(case, rows[case.name]).max() for case in cases}
-    style.headline(figure, "Tip off by up to " + told_peaks(peaks, first.name, looks))
+    style.headline(figure, "Tip off by up to " + peaks_text(peaks, first.name, looks))
     return figure
 
 
-def told_peaks(peaks, worst, looks):
+def peaks_text(peaks, worst, looks):
     """"9.1 µm (none), 0.3 µm (gcode)": the case with the largest deviation and that with the smallest, if it is another."""
     best = min(peaks, key=peaks.get)
     return ", ".join(f"{style.number(peaks[name])} µm ({looks[name].label})" for name in dict.fromkeys((worst, best)))

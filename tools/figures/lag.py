@@ -76,7 +76,7 @@ def _proportional(ax, feed, values):
         ax.plot([0.0, feed[end]], [0.0, values[end]], color="#9a9a9a", linewidth=1.1, zorder=2)
 
 
-LAGS = 1.0        # ms: delays that are never larger are not told of
+LAGS = 1.0        # ms: delays that are never larger are not reported
 CONSTANT = 0.1    # of the mean: delays that vary by no more are one number
 
 

@@ -110,7 +110,7 @@ def draw_distribution(run):
              style.Look("model 4 a t (1 − t)", style.RED, style.DASH_DOT, "")]
     figure, strip, grid = style.panels([1.0, 0.55], (10.2, 5.6), columns=2)
     style.legend(strip, looks, points=True)
-    told = []
+    shares = []
     for column, (title, error) in enumerate(errors):
         size = np.linalg.norm(error, axis=1)
         top, bottom = grid[0][column], grid[1][column]
@@ -121,15 +121,15 @@ def draw_distribution(run):
             style.line(top, way, np.linalg.norm(model, axis=1), look)
             left = np.linalg.norm(error - model, axis=1)
             style.line(bottom, way, left, look)
-            told.append(100.0 * left.max() / size.max())
+            shares.append(100.0 * left.max() / size.max())
         top.set_title(f"{title}: {style.number(size.max())} µm")
         top.tick_params(labelbottom=False)
-        bottom.set_title(f"what is left: sine {told[-2]:.1f} %, parabola {told[-1]:.2g} %")
+        bottom.set_title(f"what is left: sine {shares[-2]:.1f} %, parabola {shares[-1]:.2g} %")
         bottom.set_xlabel("distance along the chord, mm")
     grid[0][0].set_ylabel("|error|, µm")
     grid[1][0].set_ylabel("|error − model|, µm")
-    style.headline(figure, f"Nonlinear error of one segment: of the tip, a sine leaves {told[0]:.1f} %, "
-                           f"a parabola {told[1]:.2g} %")
+    style.headline(figure, f"Nonlinear error of one segment: of the tip, a sine leaves {shares[0]:.1f} %, "
+                           f"a parabola {shares[1]:.2g} %")
     return figure
 
 

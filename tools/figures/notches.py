@@ -78,7 +78,7 @@ def draw(run):
             points.draw(axes[0], points.displacement, one.look)
             points.draw(axes[1], points.residual, one.look, shift)
 
-    axes[0].set_title("(a) Notch positions minus nominal, and what was imposed" + probed_points.told(probed))
+    axes[0].set_title("(a) Notch positions minus nominal, and what was imposed" + probed_points.note(probed))
     axes[0].set_ylabel("X displacement, µm")
     axes[1].set_title("(b) Difference to the imposed curve"
                       + (f" on the scale of the paper's bound of ±{bound:g} µm" if bound else ""))

@@ -102,13 +102,13 @@ def minus(run, base):
     return f", minus {style.look_of(run, base).label}" if base else ""
 
 
-def told_missed(features):
+def missed_note(features):
     """["3 of 41 points missed"] of some features of a case, or nothing."""
     missed = sum(int(one.missed().sum()) for one in features)
     return [f"{missed} of {sum(len(one.mean) for one in features)} points missed"] if missed else []
 
 
-def told_largest(values):
+def largest_note(values):
     """"up to 9.1 µm" of all that was met."""
     met = np.abs(values)[np.isfinite(values)]
     return f"up to {style.number(met.max())} µm" if len(met) else "no point was met"
@@ -141,7 +141,7 @@ def draw_deviations(run):
     rows[-1][0].set_xlabel(rows[-1][0].get_xlabel() + f"   (bars: ±{COVERAGE:g} standard deviations of a repetition{crosses}"
                            f"{not_shown(len(features) - len(shown), 'feature')})")
     every = np.concatenate([one.mean for cases in features.values() for one in cases.values()])
-    style.headline(figure, f"Part on the CMM{minus(run, base)}: {told_largest(every)} along the normals")
+    style.headline(figure, f"Part on the CMM{minus(run, base)}: {largest_note(every)} along the normals")
     return figure
 
 
@@ -150,7 +150,7 @@ def _draw_feature(ax, cases, looks, with_imposed):
     first = next(iter(cases.values()))
     x, label = along(first)
     shift = 0.12 * np.ptp(x) / max(len(x), 8)
-    told = []
+    notes = []
     if with_imposed:
         _curve(ax, first.kind, x, first.imposed, style.IMPOSED, linewidth=1.6)
     for number, (case, one) in enumerate(cases.items()):
@@ -160,11 +160,11 @@ def _draw_feature(ax, cases, looks, with_imposed):
         ax.errorbar(at, one.mean, yerr=COVERAGE * one.sigma, color=look.colour, marker=look.marker, markersize=3.5,
                     markerfacecolor=style.face(look), linestyle="none", elinewidth=1.0, capsize=1.8, zorder=3)
         style.missed_below(ax, at[one.missed()], look)
-        told += [f"{look.label}: {missed}" for missed in told_missed([one])]
+        notes += [f"{look.label}: {missed}" for missed in missed_note([one])]
     ax.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.5)
     ax.set_ylabel("deviation, µm")
     ax.set_xlabel(label)
-    return told
+    return notes
 
 
 def _curve(ax, kind, x, y, look, **more):
@@ -203,10 +203,10 @@ def draw_plan(run):
             draw_arrows(ax, one.nominal[:, :2], one.mean[:, None] * one.normal[:, :2] * scale / UM_PER_MM, looks[case])
         ax.set_aspect("equal", adjustable="datalim")
         ax.margins(0.12)
-        ax.set_title(", ".join([looks[case].label, *told_missed(features)]))
+        ax.set_title(", ".join([looks[case].label, *missed_note(features)]))
         ax.set_xlabel("X of the part, mm")
         ax.set_ylabel("Y of the part, mm")
-    style.headline(figure, f"Part from above{minus(run, base_of(run))}, × {scale:.0f}: {told_largest(means)}"
+    style.headline(figure, f"Part from above{minus(run, base_of(run))}, × {scale:.0f}: {largest_note(means)}"
                    + not_shown(len(every) - len(of_case), "case"))
     return figure
 
@@ -249,13 +249,13 @@ def draw_planes(run):
                        edgecolors=style.BLACK, linewidths=0.5, zorder=3)
             style.missed(ax, one.nominal[~met, i], one.nominal[~met, j], style.MISSED)
             ax.margins(0.06)
-            ax.set_title(", ".join([feature, look.label, *told_missed([one])]))
+            ax.set_title(", ".join([feature, look.label, *missed_note([one])]))
             ax.set_xlabel(f"{'XYZ'[i]} of the part, mm")
             ax.set_ylabel(f"{'XYZ'[j]}, mm")
     bar = figure.colorbar(matplotlib.cm.ScalarMappable(norm, "RdBu_r"), ax=axes, shrink=0.85)
     bar.set_label("deviation along the normal, µm")
     crosses = " (crosses: nothing met)" if np.isnan(values).any() else ""
-    style.headline(figure, f"Probed planes{minus(run, base_of(run))}: {told_largest(values)}{crosses}"
+    style.headline(figure, f"Probed planes{minus(run, base_of(run))}: {largest_note(values)}{crosses}"
                    + not_shown(len(every) - len(looks), "case"))
     return figure
 

@@ -7,7 +7,7 @@ from figures import parts, style
 from figures.results import NotInFile
 
 COVERAGE = parts.COVERAGE
-MOST_SHOWN = 31     # bars of a feature, so that they can be told apart
+MOST_SHOWN = 31     # bars of a feature, so that they can be distinguished
 
 
 @dataclasses.dataclass
@@ -79,7 +79,7 @@ def _mean(values):
     return good.mean() if len(good) else np.nan
 
 
-def told(probed):
+def note(probed):
     """For a title, where there are points."""
     missed = sum(int(points.missed.sum()) for points in probed.values())
     return f"; crosses: probed, ±{COVERAGE:g}σ" + (f"; hollow: {missed} missed" if missed else "") if probed else ""

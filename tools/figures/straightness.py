@@ -90,7 +90,7 @@ def draw(run, axis, section):
             if ax is axes[1] or one in group and _fit(points, group):
                 points.draw(ax, points.residual, one.look)
 
-    axes[0].set_title(f"(a) Trajectory of {axis} minus nominal, and what was imposed" + probed_points.told(probed))
+    axes[0].set_title(f"(a) Trajectory of {axis} minus nominal, and what was imposed" + probed_points.note(probed))
     axes[1].set_title("(b) What is missing: difference to the imposed curve")
     axes[0].set_ylabel(f"{axis} displacement, µm")
     for letter, ax, group in zip("cdefgh", axes[2:], groups[1:]):

@@ -25,7 +25,7 @@ namespace {
 constexpr auto kPatience = std::chrono::milliseconds(200);
 
 sem_t wanted;
-std::atomic<bool> told = false;
+std::atomic<bool> reported = false;
 std::mutex kept_mutex;
 std::function<std::string()> what_is_kept;
 std::string kept_when_thrown;  // what an interrupt that went through as an exception has left
@@ -108,7 +108,7 @@ void print_interrupted() {
 }
 
 void print_interrupted(const std::string& kept) {
-  if (told.exchange(true)) return;
+  if (reported.exchange(true)) return;
   write_to_stderr(kept.empty() ? "interrupted\n" : "interrupted; " + kept + "\n");
 }
 

@@ -21,7 +21,7 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-constexpr double kTellFrom = 0.005;  // share done from which on the rest can be told
+constexpr double kTellFrom = 0.005;  // share done from which on the rest can be estimated
 
 std::string time_left(double seconds) {
   constexpr double kMinute = 60.0, kHour = 3600.0;

@@ -118,7 +118,7 @@ int run_command(const Arguments& arguments) {
   control.scratch_folder = std::filesystem::absolute(path).parent_path().string();
   control.progress = [&](double share) { bar.show(share); };
   Kept kept(scenario);
-  const KeptWhenInterrupted told([&kept] { return kept.said(); });
+  const KeptWhenInterrupted when_interrupted([&kept] { return kept.said(); });
   control.case_done = [&](const sim::CaseOutput& one) {
     store->add(one);
     kept.add(one);

@@ -151,7 +151,7 @@ int sweep_command(const Arguments& arguments) {
                    left == kNotCounted ? "its complete points"
                                        : fmt::format("{} complete points of {}", all - left, all));
   };
-  const KeptWhenInterrupted told(said);
+  const KeptWhenInterrupted when_interrupted(said);
   sim::SweepTable table(out, force, sweep.base(), sim::columns_of(sweep.base()), selection);
   is_complete = table.is_complete();
   if (options.has("retry-failed")) table.forget(sim::PointStatus::failed);

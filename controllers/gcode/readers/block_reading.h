@@ -36,7 +36,7 @@ struct ReadingOptions {
   std::function<const PossibleReaders*()> possible_readers = {};
 };
 
-/// Told once in a program.
+/// Reported once in a program.
 struct ReadingNote {
   int column = 0;
   std::string text;

@@ -36,7 +36,7 @@ constexpr std::string_view kHeader = "(servomill compensate:";  // of corrected 
 namespace fs = std::filesystem;
 using strategies::DisplacedAxes;
 
-constexpr double kTipTold = 0.1e-6, kAxisTold = 1e-6;  // m, rad: of less nothing is said
+constexpr double kReportedTip = 0.1e-6, kReportedAxis = 1e-6;  // m, rad: of less nothing is said
 
 using ErrorModels = std::map<std::string, plant::ErrorModel>;
 
@@ -62,7 +62,7 @@ const plant::ErrorModel& model_of(const ErrorModels& models, const CompensateReq
                                             did_you_mean(name, names), there_are));
 }
 
-// What the result relies on.
+// Assumptions that the result relies on.
 std::vector<std::string> assumptions(const CompensateRequest& request, const WorkKnowledge& known,
                                      const Summary& summary, const JointLayout& layout) {
   std::vector<std::string> out;
@@ -110,10 +110,10 @@ std::vector<Fault> warnings_of(const CompensateRequest& request, const Summary& 
   }
   const bool turns = request.axes == DisplacedAxes::all;
   std::vector<std::string> left;
-  if (summary.left.tip > kTipTold) {
+  if (summary.left.tip > kReportedTip) {
     left.push_back(fmt::format("{:.2f} um of the tip", summary.left.tip / um));
   }
-  if (summary.left.axis > kAxisTold) {
+  if (summary.left.axis > kReportedAxis) {
     left.push_back(fmt::format("{:.1f} urad of the tool axis", summary.left.axis / urad));
   }
   if (!left.empty() && summary.most_left) {
@@ -248,7 +248,7 @@ std::string path_line(const CompensateRequest& request, const ProgramWriter& wri
   return rounding.empty() ? line : fmt::format("{}, positions rounded to {}", line, rounding);
 }
 
-// What a request amounts to before its program is read.
+// Values of a request before its program is read.
 struct Preparation {
   explicit Preparation(const CompensateRequest& request)
       : described(read_machine_description(request.machine_file, request.changes)),
@@ -329,7 +329,7 @@ void refuse_too_many_blocks(const CompensateRequest& request,
         way += move->s_end - move->s_begin;
     }
   } catch (const InputError&) {
-    return;  // told when the program is corrected
+    return;  // reported when the program is corrected
   }
   if (way <= kMostBlocks * request.max_block) return;
   throw InputError({"--max-block"},

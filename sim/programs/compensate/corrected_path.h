@@ -20,7 +20,7 @@
 
 namespace servomill::sim {
 
-/// Where work coordinates lie in the machine: machine = R work + offset.
+/// Work coordinates in the machine: machine = R work + offset.
 struct WorkFrame {
   double cos = 1.0, sin = 0.0;           // of the rotation about Z
   AxisWords offset = AxisWords::Zero();  // m, rad

@@ -9,7 +9,7 @@
 namespace servomill::sim {
 namespace {
 
-const double kSingular = std::sin(1.0 * deg);  // as the strategies have it unless told otherwise
+const double kSingular = std::sin(1.0 * deg);  // the strategies' default
 
 strategies::IdentifiedMachine identified_of(const plant::MachineChain& chain,
                                             const plant::ErrorModel& errors) {

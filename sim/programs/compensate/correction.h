@@ -1,4 +1,4 @@
-/// Where the axes have to stand so that the tool is where the program wants it: what a compensated
+/// Positions of the axes that put the tool where the program wants it: what a compensated
 /// program adds to the programmed position.
 #pragma once
 
@@ -18,7 +18,7 @@ namespace servomill::sim {
 /// Directions of travel, one for each axis word: 1 up, -1 down, 0 unknown.
 using Directions = std::array<int, kAxisWords>;
 
-/// What is identified of a machine's errors, with the tool that works.
+/// Identified errors of a machine, with the tool that works.
 class Correction {
  public:
   Correction(const plant::MachineChain& chain, const plant::ErrorModel& errors,
@@ -43,11 +43,11 @@ class Correction {
   /// Displacement of the tip between both directions of one axis at a place (m).
   double reversal_at(const AxisWords& machine, Axis axis);
 
-  /// What to add to the machine coordinates of the program (6; m, rad), so that the machine with
-  /// the identified errors puts the tool where the ideal one would: F_ni(Q + d) = F_i(Q).
+  /// Correction added to the machine coordinates of the program (6; m, rad), so that the machine
+  /// with the identified errors puts the tool where the ideal one would: F_ni(Q + d) = F_i(Q).
   AxisWords at(const AxisWords& machine) const;
 
-  /// What stays then.
+  /// Residual after that correction.
   strategies::Residual residual(const AxisWords& machine) const;
 
  private:

@@ -26,14 +26,14 @@ namespace {
 
 constexpr const char* kUnknownCode = "?";
 
-// Whether a feed of the block moves rotary axes and no linear one.
+// Tells if a feed of the block moves rotary axes and no linear one.
 bool turns_alone(const ExecutedBlock& block) {
   return std::any_of(block.moves.begin(), block.moves.end(), [](const Move& move) {
     return move.kind == MoveKind::feed && !(move.s_end > move.s_begin);
   });
 }
 
-// What means something else in a program without subroutines, or where the axes stand elsewhere.
+// Refuses words that mean something else without subroutines, or where the axes are elsewhere.
 void refuse_what_changes_its_meaning(const ExecutedBlock& block) {
   const controllers::Request& request = *block.request;
   const auto fail = [&](Group group, std::string message) {
@@ -198,7 +198,7 @@ void LinuxCncWriter::write(const Block& given) {
   if (!compensates_cutter_) release_until(0);
 }
 
-// Where the machine stands is another place now: what says it has to say so.
+// The machine is in another place now: words that state the place have to follow.
 void LinuxCncWriter::shift_position(const Block& block, WovenLine& line) const {
   const int code = block.request->code(Group::g_non_modal);
   const int L = static_cast<int>(std::lround((*block.request)['L']));

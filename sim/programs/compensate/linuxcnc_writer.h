@@ -22,7 +22,7 @@ struct WovenLine;
 /// - Moves of canned cycles run under G61, as the cycles do (interp_cycles.cc, convert_cycle);
 /// behind
 ///   them the mode of the program is restored.
-/// - G92 and G10 L10, L11, L20 say where the machine is: they are told where it now stands.
+/// - G92 and G10 L10, L11, L20 state the position of the machine: they get the corrected one.
 /// - A line that starts with '/' and moves or changes modes is refused: what follows relies on it.
 ///   One that the interpreter leaves out becomes a comment.
 /// - Rotary axes alone keep their time where X, Y and Z now move by micrometres (G93 for

@@ -23,7 +23,7 @@ class MotionPrinter {
   MotionWords print(const FittedBlock& block, bool is_rapid, const AxisWords& at);
   /// Adds F, unless the line has it already.
   void feed(MotionWords& words, double F) const;
-  /// Where the printed numbers lead.
+  /// End of the move as the printed numbers give it.
   const AxisWords& end() const { return end_; }
 
  private:

@@ -1,4 +1,4 @@
-/// What compensating a program changed.
+/// Summary of a compensated program.
 #pragma once
 
 #include <map>
@@ -41,7 +41,7 @@ struct Summary {
   std::map<int, double> tools;       // m, length of each tool that worked
   std::vector<std::string> assumed;  // one sentence each
 
-  /// What a reader wants to know, one line each.
+  /// Lines of the report.
   std::vector<std::string> report(const JointLayout& layout) const;
   /// The same as one JSON object.
   std::string json(const JointLayout& layout) const;

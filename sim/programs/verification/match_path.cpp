@@ -63,7 +63,7 @@ double ReplayComparison::path_tolerance(bool is_arc) const {
   return limits_.tolerance + (kRounding + (is_arc ? 1.0 : 0.0)) * limits_.grid;
 }
 
-// Where the correction of these changes, it waits for their next move.
+// A change of the correction of these axes waits for their next move.
 AxisFlags6 ReplayComparison::unmoved_axes(const OriginalAction& action) {
   AxisFlags6 out = action.changed();
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = !out[i] && !action.is_named[i];
@@ -164,7 +164,7 @@ void ReplayComparison::check_feed(const OriginalAction& action, const CorrectedC
   const double tolerance = path_tolerance(false);
   const double size =
       curve.length() > 0.0 ? curve.length() / tolerance : curve.angle() / limits_.grid_turn;
-  if (share * size <= 4.0) return;  // too short for a feed to be told from rounding
+  if (share * size <= 4.0) return;  // too short to distinguish a feed from rounding
   const bool is_per_revolution = move.feed_mode == FeedMode::units_per_revolution;
   if (is_per_revolution || one.feed_mode == FeedMode::units_per_revolution) {
     if (one.feed_mode != move.feed_mode) fail("a feed per revolution and one per minute");

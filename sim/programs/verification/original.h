@@ -1,4 +1,4 @@
-/// What a program asks of the machine, action by action: what a written program is held against.
+/// Actions of the original program: the reference for a written program.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace servomill::sim {
 
 using AxisFlags6 = std::array<bool, kAxisWords>;
 
-/// What spindle and coolant do, as far as the program has set it.
+/// State of spindle and coolant, as far as the program has set it.
 struct AuxiliaryState {
   std::optional<int> direction;  // of the spindle
   double speed = 0.0;            // rad/s
@@ -51,7 +51,7 @@ controllers::ActionKind kind_of(MoveKind kind);
 struct OriginalOptions {
   AxisFlags6 is_start_known{};
   JointLayout layout;
-  /// Whether tool changes and stops leave positions unknown (true for all controls but LinuxCNC).
+  /// True if tool changes and stops leave positions unknown (all controls but LinuxCNC).
   bool forgets_positions = false;
 };
 

@@ -54,7 +54,7 @@ class Verifier {
   }
 
  private:
-  // Whether a block may be skipped by the operator's switch.
+  // Tells if the operator's switch may skip a block.
   static bool has_slash(std::string_view text) {
     return text.starts_with('/') || text.find("\n/") != std::string_view::npos;
   }
@@ -77,7 +77,7 @@ class Verifier {
     }
   }
 
-  // Where the operator's switch decides.
+  // Remedy for programs that the operator's switch changes.
   std::string remedy(bool skips_blocks) const {
     if (!decides_) return {};
     return fmt::format("; that is with the blocks with '/' {}: {}",

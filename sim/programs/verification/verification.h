@@ -36,7 +36,7 @@ struct VerificationReport {
   std::string text() const;
 };
 
-/// What the operator enters: work offsets, lengths of the tools and the start.
+/// Values that the operator enters: work offsets, lengths of the tools and the start.
 /// @param is_work_system_known  of 9
 controllers::ControlSetup control_setup(const controllers::ProgramSetup& setup,
                                         const std::array<bool, 9>& is_work_system_known,

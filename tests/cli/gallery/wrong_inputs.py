@@ -482,7 +482,7 @@ POST = [
           write={"part.cls": "FEDRAT/600\n" + "GOTO/0,0,10,0,0,1.1\n" * 23}, about="23 tool axes of length 1.1"),
     typed("a tool axis and a place that the machine does not have", POST_T,
           write={"part.cls": RIGHT + "GOTO/0,0,0,0,1,1\nGOTO/9999,0,0,0,0,1\n"}),
-    typed("a place that the machine does not have behind an odd tool axis, of which it is told, too", POST_T,
+    typed("a place that the machine does not have behind an odd tool axis, which is reported, too", POST_T,
           write={"part.cls": "FEDRAT/600\nGOTO/0,0,10,0,0,2\nGOTO/9999,0,0\n"}),
     typed("no feed", POST_T, write={"part.cls": "GOTO/0,0,10\nGOTO/0,0,0\n"}),
     typed("a tool that the table lacks", POST_IT + " --tools tools.tbl", write={"part.cls": "LOADTL/7\n" + RIGHT,

@@ -132,7 +132,7 @@ TEST(FanucReader, SettingsOfControls) {
             "EVO=0 TOS=0 LRP=0 TLB=0 IS-B C ROA=1");
 }
 
-// What a control does not have is not in force, and its code is an alarm.
+// A function that a control does not have is not in force, and its code is an alarm.
 TEST(FanucReader, FunctionsThatTheControlDoesNotHave) {
   FanucSettings bare;
   bare.LRP = true;

@@ -55,7 +55,7 @@ std::string centre(const MachineAction& action) {
   return text + fmt::format(" turns {}", action.turns);
 }
 
-std::string told(const MachineAction& action) {
+std::string described(const MachineAction& action) {
   const std::string where = action.is_to_reference       ? " limit"
                             : action.is_machine_position ? " M91"
                                                          : "";
@@ -122,7 +122,7 @@ std::string describe(const std::vector<MachineAction>& actions, int frame_lines)
   for (const MachineAction& action : actions) {
     if (action.line <= frame_lines) continue;
     if (frame_lines > 0 && action.kind == ActionKind::end) continue;
-    text += fmt::format("{} {}\n", action.line - frame_lines, told(action));
+    text += fmt::format("{} {}\n", action.line - frame_lines, described(action));
   }
   return text;
 }

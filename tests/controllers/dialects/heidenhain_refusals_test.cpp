@@ -1,4 +1,4 @@
-// What the reader of Heidenhain programs refuses, with the whole message.
+// Refusals of the reader of Heidenhain programs, with the whole message.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

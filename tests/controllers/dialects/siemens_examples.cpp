@@ -27,7 +27,7 @@ bool counts_turns(const SiemensSettings& s) { return !s.is_modulo[2]; }
 bool is_modulo(const SiemensSettings& s) { return s.is_modulo[2] && !s.G90_is_shortest; }
 bool is_shortest(const SiemensSettings& s) { return s.is_modulo[2] && s.G90_is_shortest; }
 
-// What has to be said again after a tool change.
+// Words that are restated after a tool change.
 #define TOOL_1 "T1 M6\nG17 G40 G90 G94 G710 G54\nTRANS\n"
 
 std::vector<SiemensExample> offsets() {

@@ -30,7 +30,7 @@ std::vector<SiemensSettings> siemens_example_settings();
 /// X1 Y2 Z3; tool 1 is 50 long, tool 2 80.
 ControlSetup siemens_example_setup();
 
-/// What is expected, as action_text.h writes it. An InputError becomes its message.
+/// Expected actions, as action_text.h writes it. An InputError becomes its message.
 std::vector<std::string> siemens_actions(const SiemensExample& example,
                                          const SiemensSettings& settings,
                                          const SiemensRules& rules = {});

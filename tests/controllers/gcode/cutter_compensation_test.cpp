@@ -50,7 +50,7 @@ void expect_point(const Vector2d& found, const Vector2d& wanted) {
 constexpr Cutter kLeft = {0.002, true};
 constexpr Cutter kRight = {0.002, false};
 
-// Of each corner its mirror image is checked, too, with the tool on the other side.
+// Checks the mirror image of each corner, too, with the tool on the other side.
 void expect_corner(const PlaneMove& before, const PlaneMove& next, CornerKind kind,
                    const Vector2d& point) {
   const Corner left = corner_between(kLeft, before, next);

@@ -8,7 +8,7 @@
 namespace servomill::controllers::flow_control_test {
 namespace {
 
-// What a program says with (PRINT,...), blank-separated.
+// Texts of (PRINT,...) in a program, blank-separated.
 std::string said(const std::string& text, const ProgramSetup& setup = usual_setup()) {
   std::string out;
   for (const Move& move : moves_of(text, setup)) {

@@ -359,7 +359,7 @@ TEST(Post, ChordsAndRoundingTogetherKeepToTheTolerance) {
   EXPECT_LT(worst, options.tolerance.tip);
 }
 
-TEST(Post, TimesThatAskTooMuchOfAnAxisAreTold) {
+TEST(Post, TimesThatAskTooMuchOfAnAxisAreReported) {
   PostOptions options = usual_options();
   options.v_max << 1.0, 1.0, 1.0, 10.0, 20.0;
   // 10 mm past the vertical at 0.01: C turns by 174 deg, most of it within 0.2 mm
@@ -382,7 +382,7 @@ TEST(Post, TimesThatAskTooMuchOfAnAxisAreTold) {
       << warning.message;
 }
 
-TEST(Post, WhatClassicalPostsBendIsTold) {
+TEST(Post, WhatClassicalPostsBendIsReported) {
   PostOptions options = usual_options();
   options.mode = PostMode::locations;
   const PostProcessed made = post(cl("GOTO/10,0,0,0,-0.1,1\nGOTO/30,0,0,0.3,-0.3,1\nGOTO/30,1,0\n"),

@@ -1,4 +1,4 @@
-// What is read beyond LinuxCNC's rules: each rule with a program that needs it and one that does
+// Rules beyond LinuxCNC's: each rule with a program that needs it and one that does
 // not and means the same; nothing is read in silence, and nothing that two controls read
 // differently.
 #include "controllers/gcode/reader.h"

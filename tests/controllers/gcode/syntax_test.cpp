@@ -73,7 +73,7 @@ TEST(Syntax, ALineIsMadeOfPieces) {
   EXPECT_EQ(pieces_of(" % "), (std::vector<Shown>{{percent, "%"}}));
 }
 
-// Of fragments of programs, so that most lines can be read, and of some that cannot.
+// Lines made of fragments of programs, so that most lines can be read, and of some that cannot.
 TEST(Syntax, RandomLinesPrintAsTheyWereRead) {
   const std::vector<std::string> fragments = {
       " ",        "\t",          "G1",  "g 0",   "X",        "-1.5",  "+.5",        "Y[#1+2]",

@@ -158,22 +158,22 @@ TEST(TiltedPlane, ACutWithoutG53_1IsToldOnceAPlane) {
     }
     return out;
   };
-  using Told = std::vector<std::string>;
+  using Texts = std::vector<std::string>;
   const ProgramSetup table = table_machine().setup();
-  const Told told = {
+  const Texts expected = {
       "p.nc:4:1 the tool stands 35.0000 deg off Z of the tilted work plane; G53.1 "
       "turns it there"};
-  EXPECT_EQ(warnings(table, "G68.2 I25 J35\nG0 X0\nG1 X1 Y0 F100\nG2 X5 I2\nG69\nG1 X3"), told);
-  EXPECT_EQ(warnings(usual_setup(), "G68.2 I25 J35\nG0 X0 Y0\nG2 X5 I2.5 F100"), told);
-  EXPECT_EQ(warnings(table, "G68.2 I25 J35\nG0 X0\nG53.1\nG1 X1 F100"), Told{});
-  EXPECT_EQ(warnings(table, "G68.2 X3 K20\nG1 X1 F100"), Told{}) << "a plane that is not tilted";
-  EXPECT_EQ(warnings(table, "G68.2 J35\nG0 X1"), Told{}) << "nothing is cut";
+  EXPECT_EQ(warnings(table, "G68.2 I25 J35\nG0 X0\nG1 X1 Y0 F100\nG2 X5 I2\nG69\nG1 X3"), expected);
+  EXPECT_EQ(warnings(usual_setup(), "G68.2 I25 J35\nG0 X0 Y0\nG2 X5 I2.5 F100"), expected);
+  EXPECT_EQ(warnings(table, "G68.2 I25 J35\nG0 X0\nG53.1\nG1 X1 F100"), Texts{});
+  EXPECT_EQ(warnings(table, "G68.2 X3 K20\nG1 X1 F100"), Texts{}) << "a plane that is not tilted";
+  EXPECT_EQ(warnings(table, "G68.2 J35\nG0 X1"), Texts{}) << "nothing is cut";
   EXPECT_EQ(warnings(table, "G68.2 J35\nG1 X1 F1\nG69\nG68.2 J5\nG1 X1").size(), 2U);
-  EXPECT_EQ(warnings(table, "G68.2 J35\nG43.4 H1\nG1 X1 F1"), Told{}) << "G43.4 turns by words";
+  EXPECT_EQ(warnings(table, "G68.2 J35\nG43.4 H1\nG1 X1 F1"), Texts{}) << "G43.4 turns by words";
   TipMachine three = table_machine();
   three.chain = plant::make_chain(plant::parse_structure("[w X' b Y Z t]"));
   EXPECT_EQ(warnings(three.setup(), "G68.2 J35\nG1 X1 F1"),
-            Told{"p.nc:3:1 the tool stands 35.0000 deg off Z of the tilted work plane"});
+            Texts{"p.nc:3:1 the tool stands 35.0000 deg off Z of the tilted work plane"});
 }
 
 TEST(TiltedPlane, EndsWhereTheAxesStand) {

@@ -64,7 +64,7 @@ TEST(Phase, HasNoStepWhereItsFormulaChanges) {
   }
 }
 
-TEST(Quicken, KeepsTheLimitsAndIsQuicker) {
+TEST(TimeOptimalLaw, KeepsTheLimitsAndIsQuicker) {
   const SmoothPath path = wave(20 * mm, 2 * mm, 400);
   const std::vector<double> v_top(path.pieces.size(), 100 * mm);
   const TimeLaw slow = slow_law(path), law = refine_time_law(slow, path, v_top, limits());
@@ -89,7 +89,7 @@ TEST(Quicken, KeepsTheLimitsAndIsQuicker) {
   EXPECT_GE(used, 0.9);
 }
 
-TEST(Quicken, EveryPhaseEndsWhereTheNextBegins) {
+TEST(TimeOptimalLaw, EveryPhaseEndsWhereTheNextBegins) {
   const SmoothPath path = wave(20 * mm, 2 * mm, 400);
   const std::vector<double> v_top(path.pieces.size(), 100 * mm);
   const TimeLaw law = refine_time_law(slow_law(path), path, v_top, limits());
@@ -101,7 +101,7 @@ TEST(Quicken, EveryPhaseEndsWhereTheNextBegins) {
   }
 }
 
-TEST(Quicken, LeavesALawThatCannotBeImproved) {
+TEST(TimeOptimalLaw, LeavesALawThatCannotBeImproved) {
   SmoothPath line;
   CubicPiece piece;
   piece.c0 = piece.c2 = piece.c3 = Joints::Zero();

@@ -49,16 +49,17 @@ std::vector<Story> random_stories(unsigned first, unsigned count) {
 }
 
 // Final state of a lane, and its states on the way.
-struct Told : LaneState {
+struct Recorded : LaneState {
   std::vector<double> at_stops;  // m
 };
 
 // All stories in one bank.
-std::vector<Told> told_together(const std::vector<Story>& stories, SimdLevel level = simd_level()) {
+std::vector<Recorded> recorded_together(const std::vector<Story>& stories,
+                                        SimdLevel level = simd_level()) {
   std::vector<FeedDriveParams> drives;
   for (const Story& s : stories) drives.push_back(s.drive);
   const DriveBank bank(drives, kTick, kSteps, nullptr, level, kStretches);
-  std::vector<Told> lanes(drives.size());
+  std::vector<Recorded> lanes(drives.size());
   std::vector<LaneArray> positions(3 * blocks_of(drives.size()));
   DriveState state = bank.at_rest(std::vector<double>(drives.size(), 0.1));
   DriveInput input(drives.size());
@@ -102,17 +103,17 @@ void expect_equal(const LaneState& a, const LaneState& b, std::size_t lane) {
   EXPECT_EQ(a.control.unresolved, b.control.unresolved);
 }
 
-void expect_equal(const Told& a, const Told& b, std::size_t lane) {
+void expect_equal(const Recorded& a, const Recorded& b, std::size_t lane) {
   expect_equal(static_cast<const LaneState&>(a), static_cast<const LaneState&>(b), lane);
   EXPECT_EQ(a.at_stops, b.at_stops) << lane;
 }
 
 TEST(DriveLanes, MoveAmongOthersAsTheyDoAlone) {
   const std::vector<Story> stories = random_stories(1, 29);
-  const std::vector<Told> together = told_together(stories);
+  const std::vector<Recorded> together = recorded_together(stories);
   int moved = 0;
   for (std::size_t l = 0; l < stories.size(); ++l) {
-    expect_equal(told_together({stories[l]}).front(), together[l], l);
+    expect_equal(recorded_together({stories[l]}).front(), together[l], l);
     if (std::abs(together[l].x - 0.1) > 1e-6) ++moved;
   }
   EXPECT_GE(moved, 20);
@@ -125,7 +126,7 @@ TEST(DriveLanes, MoveTheSameInEveryPlace) {
   std::shuffle(order.begin(), order.end(), std::mt19937(7));
   std::vector<Story> shuffled;
   for (const std::size_t l : order) shuffled.push_back(stories[l]);
-  const auto here = told_together(stories), there = told_together(shuffled);
+  const auto here = recorded_together(stories), there = recorded_together(shuffled);
   for (std::size_t l = 0; l < order.size(); ++l) expect_equal(here[order[l]], there[l], l);
 }
 
@@ -137,8 +138,8 @@ TEST(DriveLanes, MoveTheSameWithAvx2AndAvx512) {
     for (Story& story : stories) {
       if (same) story.drive = stories.front().drive;
     }
-    const auto wide = told_together(stories, SimdLevel::avx512);
-    const auto narrow = told_together(stories, SimdLevel::avx2);
+    const auto wide = recorded_together(stories, SimdLevel::avx512);
+    const auto narrow = recorded_together(stories, SimdLevel::avx2);
     for (std::size_t l = 0; l < stories.size(); ++l) expect_equal(wide[l], narrow[l], l);
   }
 }
@@ -147,9 +148,9 @@ TEST(DriveLanes, EightTimesTheSameDriveMoveAsOne) {
   for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U}) {
     std::vector<Story> stories = random_stories(seed, 8);
     for (Story& story : stories) story.drive = stories.front().drive;
-    const auto together = told_together(stories);
+    const auto together = recorded_together(stories);
     for (const std::size_t l : {0U, 7U}) {
-      expect_equal(told_together({stories[l]}).front(), together[l], l);
+      expect_equal(recorded_together({stories[l]}).front(), together[l], l);
     }
   }
 }
@@ -157,7 +158,7 @@ TEST(DriveLanes, EightTimesTheSameDriveMoveAsOne) {
 TEST(DriveLanes, AnInactiveLaneStaysAsItIs) {
   Story story = random_story(3);
   std::fill(story.active.begin(), story.active.end(), false);
-  const Told still = told_together({random_story(1), story})[1];
+  const Recorded still = recorded_together({random_story(1), story})[1];
   const DriveBank bank(std::vector{story.drive}, kTick, kSteps);
   const LaneState rest = bank.at_rest(std::vector{0.1}).lane(0);
   expect_equal(static_cast<const LaneState&>(still), rest, 1);
@@ -169,10 +170,10 @@ TEST(DriveLanes, DifferBetweenInstructionSetsByRounding) {
   constexpr double kPositionTol = 1e-15;  // m, after 24 ms
   constexpr double kSpeedTol = 1e-12;     // m/s
   const std::vector<Story> stories = random_stories(1, 29);
-  const auto best = told_together(stories, simd_levels().back());
+  const auto best = recorded_together(stories, simd_levels().back());
   double largest = 0.0;
   for (const SimdLevel level : simd_levels()) {
-    const auto other = told_together(stories, level);
+    const auto other = recorded_together(stories, level);
     for (std::size_t l = 0; l < stories.size(); ++l) {
       EXPECT_LE(std::abs(other[l].x - best[l].x), kPositionTol) << name_of(level) << ' ' << l;
       EXPECT_LE(std::abs(other[l].v - best[l].v), kSpeedTol) << name_of(level) << ' ' << l;

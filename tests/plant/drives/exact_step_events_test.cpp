@@ -219,7 +219,7 @@ TEST(Backlash, AReversalLosesTheGap) {
   FeedDriveParams p = x_axis_with(FrictionKind::set_valued);
   p.gap = 20e-6;
   p.friction.Fs_positive = p.friction.Fs_negative = 450;
-  p.J = 1e12;  // turns as told
+  p.J = 1e12;  // rotates as commanded
   const ExactStep drive(p, kTick, 100);
   LaneState s = at_rest(p, 0.0);
   s.w = 1e-3 / p.r;

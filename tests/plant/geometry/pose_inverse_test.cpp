@@ -128,7 +128,7 @@ TEST(PoseInverse, AtTheSingularDirectionOfTheTrueMachineKeepsTheFreeAngle) {
   EXPECT_NEAR(found.Q[4], 2.0 + 1e-5, 1e-7);
 }
 
-// Near there, what the machine did is found again, or the way that is left is told.
+// Near there, what the machine did is found again, or the remaining path is reported.
 TEST(PoseInverse, NearASingularDirectionMeetsThePoseOrSaysByWhatItMisses) {
   Uniform random(95);
   int missed = 0;

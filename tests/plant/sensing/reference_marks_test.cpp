@@ -178,7 +178,7 @@ TEST(MarkMonitor, ComplainsWhenTheDisplacementChangesByMoreThanHalfAPeriod) {
   }
 }
 
-TEST(MarkMonitor, AllowsAsManyPeriodsAsItIsTold) {
+TEST(MarkMonitor, AllowsAsManyPeriodsAsItIsReported) {
   const ReferenceMarks marks = metre();
   const auto ramp = [](double x) { return 3.4 * kPeriod * x / (10 * mm); };  // 3.4 in 10 mm
   MarkMonitor strict(marks, 2), lenient(marks, 4);

@@ -242,15 +242,15 @@ TEST_F(RTest, RecoversEightLocationErrors) {
                                                     "EC0B", "EX0C"}));
 }
 
-// The model that the other cases believe in holds the numbers of this run, as it prints them.
-TEST_F(RTest, GivesTheModelThatCompensationBelievesIn) {
+// The model that the other cases compensate holds the numbers of this run, as it prints them.
+TEST_F(RTest, GivesTheModelThatCompensationUses) {
   for (const ComparisonRow& row : rows) {
     if (row.quantity != "location_error" || std::isnan(row.value)) continue;
     EXPECT_NEAR(in_unit("identified", row), row.value, 0.06) << row.axis << ": one decimal";
   }
 }
 
-TEST_F(RTest, IsClearedByTheCompensationThatBelievesIt) {
+TEST_F(RTest, IsClearedByTheCompensationThatUsesIt) {
   EXPECT_GT(largest("none", "_ball_deviation"), 10.0);
   EXPECT_LT(largest("feedback_lead", "_ball_deviation"), 0.2);
 }

@@ -30,7 +30,7 @@ TEST(Statistic, IsNoneWithoutValuesOrIfOneIsNone) {
   }
 }
 
-TEST(Statistic, IsThatOfAllValuesOfWhichSomeAreTold) {
+TEST(Statistic, IsThatOfAllValuesOfWhichSomeAreReported) {
   for (const auto& [name, wanted] :
        {std::pair{"max", 4.0}, {"range", 7.0}, {"mean", 0.0}, {"rms", std::sqrt(39.0 / 6.0)}}) {
     Statistic statistic(name);

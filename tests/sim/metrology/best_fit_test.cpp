@@ -140,7 +140,7 @@ TEST(BestFitToMesh, FindsTheWayBackFrom10DegAnd10Mm) {
 }
 
 // A quarter turn is another place of the square and the circle, and the diamond's; a start helps.
-TEST(BestFitToMesh, BeginsWhereItIsTold) {
+TEST(BestFitToMesh, BeginsWhereItIsReported) {
   Random random(5);
   const TriangleMesh mesh = m1_part();
   const auto points = points_on(mesh, 300, random);

@@ -42,13 +42,13 @@ const std::string kCorner =
 
 const std::string kBegin = "G17 G90 T1 M6\nG43 H1\nS4775 M3\n";
 
-TEST(PlanCutting, rapid_moves_through_material_are_told_with_their_depth) {
+TEST(PlanCutting, rapid_moves_through_material_are_reported_with_their_depth) {
   EXPECT_EQ(notes_of(kBegin + "G0 X-30 Y0\nG1 Z-0.1 F1394\nG0 X30\nM30\n", kTool),
             Notes{"small.ngc:6: warning: case cut: rapid move through material, 0.1 mm deep"});
 }
 
 // Straight down nothing is cut by the flank.
-TEST(PlanCutting, rapid_moves_into_material_are_told_with_their_depth) {
+TEST(PlanCutting, rapid_moves_into_material_are_reported_with_their_depth) {
   EXPECT_EQ(notes_of(kBegin + "G0 X-30 Y0\nZ3\nX0\nZ-5\nG1 X1 F1394\nM30\n", kTool),
             Notes{"small.ngc:7: warning: case cut: rapid move through material, 5 mm deep"});
   EXPECT_EQ(
@@ -62,7 +62,7 @@ TEST(PlanCutting, rapid_moves_into_material_are_told_with_their_depth) {
 }
 
 // The stock stays; once for all feeds, and not where all is as the work_offset has it.
-TEST(PlanCutting, shifted_programs_are_told_that_the_stock_stays) {
+TEST(PlanCutting, shifted_programs_are_warned_that_the_stock_stays) {
   const std::string there = "G0 X-30 Y0\nZ-2\nG1 X30 F1394\nX-30\nM30\n";
   EXPECT_EQ(notes_of(kBegin + "G52 X5\n" + there, kTool),
             Notes{"small.ngc:7: warning: feeds in coordinates shifted by G52, G92, G10 or another "
@@ -75,7 +75,7 @@ TEST(PlanCutting, shifted_programs_are_told_that_the_stock_stays) {
 }
 
 // Flutes of 2 mm in slots as deep as they are, deeper, and deeper in two steps.
-TEST(PlanCutting, shanks_that_rub_are_told_with_their_depth) {
+TEST(PlanCutting, shanks_that_rub_are_reported_with_their_depth) {
   const std::string tool = kTool + "flute_length_mm = 2.0\n";
   const auto slots = [](const std::vector<double>& depths) {
     std::string out = kBegin + "G0 X-30 Y0\n";

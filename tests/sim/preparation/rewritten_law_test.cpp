@@ -71,7 +71,7 @@ const Shop& shop() {
   return kShop;
 }
 
-/// A strategy with what it believes.
+/// A strategy with its identified model.
 struct Rewriting {
   std::unique_ptr<strategies::Strategy> strategy;
   bool has_errors = false;

@@ -74,13 +74,13 @@ TEST(PostFile, ShippedScenariosShowTheNumbersOfThePaper) {
     EXPECT_NEAR(left["uncompensated"], peak, kPeakTol);
     EXPECT_NEAR(left["harmonic"] / peak, 0.056, kShareTol);
     EXPECT_NEAR(left["parabolic"] / peak, 0.0015, kShareTol);
-    EXPECT_NEAR(left["harmonic_posted"] / peak, 1.0, 0.01);
+    EXPECT_NEAR(left["harmonic_post_processed"] / peak, 1.0, 0.01);
   }
   auto left = tool_differences("example1.toml");
   EXPECT_NEAR(left["uncompensated"], 156.0, 0.1);
   EXPECT_NEAR(left["harmonic"] / left["uncompensated"], 0.057, kShareTol);
   EXPECT_NEAR(left["parabolic"] / left["uncompensated"], 0.0053, kShareTol);
-  EXPECT_GT(left["harmonic_posted"], 2000.0);  // near the singular direction it does harm
+  EXPECT_GT(left["harmonic_post_processed"], 2000.0);  // near the singular direction it does harm
 }
 
 TEST(PostFile, HeaderSaysWhatTheNcMustKnow) {

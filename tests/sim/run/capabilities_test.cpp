@@ -147,7 +147,7 @@ TEST(FeedbackHardware, IsInAllCasesAsSoonAsOneNeedsIt) {
   EXPECT_TRUE(run(scenario("stranger")).comparison[0].note.empty());
 }
 
-TEST(FeedbackHardware, ThatSomeCasesLackIsTold) {
+TEST(FeedbackHardware, ThatSomeCasesLackIsReported) {
   const Scenario uneven = scenario("stranger", "", "[feedback_hardware]\nconnected = false\n");
   EXPECT_FALSE(uneven.cases[0].feedback_hardware);
   const RunOutput out = run(uneven);

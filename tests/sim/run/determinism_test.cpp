@@ -98,8 +98,7 @@ TEST(RunScenario, KeepsTheLastTicksOfALoopThatDiverges) {
   ASSERT_GT(last.rows(), 10U);
   EXPECT_LE(last.rows(), 2000U);
   const auto error = [&](std::size_t row) {
-    return std::abs(last.at(row, *last.column("cmd", 'X')) -
-                    last.at(row, *last.column("fb", 'X')));
+    return std::abs(last.at(row, *last.column("cmd", 'X')) - last.at(row, *last.column("fb", 'X')));
   };
   for (std::size_t row = 0; row + 1 < last.rows(); ++row) EXPECT_LE(error(row), 0.3e-3);
   EXPECT_GT(error(last.rows() - 1), 0.3e-3);

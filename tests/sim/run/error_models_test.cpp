@@ -1,4 +1,4 @@
-/// Error models that differ from others: identified_machines with stated identification errors.
+/// Error models that differ from others: identified models with stated identification errors.
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/units.h"
@@ -86,9 +86,9 @@ TEST(ErrorModels, DifferFromAnotherThatIsComplete) {
       "itself\n");
 }
 
-// With a identified that is off by 2 um along X the tip ends up 2 um off, and nowhere else: the C
-// axis has turned half about, so that its place counts twice.
-TEST(ErrorModels, LeaveTheirDifferenceWhenTheyAreBelieved) {
+// With an identified model that is off by 2 um along X the tip ends up 2 um off, and nowhere else:
+// the C axis has turned half about, so that its place counts twice.
+TEST(ErrorModels, LeaveTheirDifferenceWhenTheyAreCompensated) {
   const auto left = [](const std::string& difference) {
     const Scenario scenario = small_scenario(
         "G21 G90 G94\nG0 X20 C180\nG1 X30 F1000\nM2\n",

@@ -123,7 +123,7 @@ TEST(FiveAxes, ReportWhatASingularDirectionLeaves) {
   EXPECT_LT(left.tip, 1e-4);
   EXPECT_GT(left.axis, 1.0);
   EXPECT_LT(left.axis, without.axis);
-  // told at the identified worst place
+  // reported at the identified worst place
   const CaseOutput out = run_case(scenario, "feedback");
   ASSERT_EQ(out.notes.size(), 1U);
   EXPECT_NE(out.notes.front().find("small.ngc:5: warning: case feedback: strategy feedback cannot "

@@ -176,7 +176,7 @@ TEST(Hysteresis, ChangesOverWithoutAJump) {
 }
 
 // Strategies know the mean: it is corrected, half the width stays on either side.
-TEST(Hysteresis, LeavesHalfItsWidthToACorrectionThatBelievesTheMean) {
+TEST(Hysteresis, LeavesHalfItsWidthToACorrectionByTheMean) {
   const std::string corrected =
       "[[case]]\nname = \"feedback\"\nservo = \"ideal\"\n[[case.strategy]]\ntype = \"feedback\"\n"
       "model = \"machine\"\naction = \"compensate\"\n";

@@ -96,7 +96,7 @@ TEST_F(ThinnedRun, ComparesAsAllRowsDo) {
   }
 }
 
-TEST_F(ThinnedRun, IsEstimatedAndTold) {
+TEST_F(ThinnedRun, IsEstimatedAndReported) {
   const RunEstimate takes = check_scenario(thinned);
   EXPECT_TRUE(takes.is_thinned);
   EXPECT_EQ(takes.file, 0.25e6);

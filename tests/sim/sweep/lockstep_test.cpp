@@ -166,26 +166,26 @@ TEST(RunBatch, TellsOfPointsAsSoonAsTheyHaveEnded) {
   points[5] = scenario_with({"machine.nc.Kv=5000"});  // refused before anything runs
   StopFlag stop = false;
   std::atomic<float> progress = 0.0F;
-  std::vector<std::vector<std::size_t>> told;
+  std::vector<std::vector<std::size_t>> reported;
   run_batch(points, stop, progress, [&](std::vector<EndedPoint>&& ended) {
-    told.emplace_back();
-    for (const EndedPoint& one : ended) told.back().push_back(one.place);
-    stop = told.size() == 2;  // what has ended by then is kept, the others are never told of
+    reported.emplace_back();
+    for (const EndedPoint& one : ended) reported.back().push_back(one.place);
+    stop = reported.size() == 2;  // what has ended by then is kept, the others are never reported
   });
-  EXPECT_EQ(told, (std::vector<std::vector<std::size_t>>{{5}, {0, 1, 2, 3, 4, 6, 7, 8}}));
+  EXPECT_EQ(reported, (std::vector<std::vector<std::size_t>>{{5}, {0, 1, 2, 3, 4, 6, 7, 8}}));
 }
 
 TEST(RunBatch, HoldsNoMoreRowsAtOnceThanItMay) {
   const std::vector<Scenario> points(3, scenario_with({}));
   const StopFlag never = false;
   std::atomic<float> progress = 0.0F;
-  std::vector<std::size_t> told;
+  std::vector<std::size_t> reported;
   const auto tell = [&](std::vector<EndedPoint>&& ended) {
     ASSERT_EQ(ended.size(), 1U);
-    told.push_back(ended.front().place);
+    reported.push_back(ended.front().place);
   };
   run_batch(points, never, progress, tell, {.rows = 1.0});
-  EXPECT_EQ(told, (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_EQ(reported, (std::vector<std::size_t>{0, 1, 2}));
   EXPECT_EQ(progress, 1.0F);
 }
 

@@ -1,7 +1,7 @@
 // LinuxCNC loads the file that is written for it, and then the axis is where it should be. The
 // rules of loading and of use are those of LinuxCNC's sources (usrmotLoadComp in
 // src/emc/motion/usrmotintf.cc, EMCMOT_SET_JOINT_COMP in command.c, compute_screw_comp and
-// output_to_hal in control.c), told again in the words of this test.
+// output_to_hal in control.c), restated by this test.
 #include <gtest/gtest.h>
 
 #include <algorithm>

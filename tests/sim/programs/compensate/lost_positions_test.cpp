@@ -52,7 +52,7 @@ TEST(LostPositions, AxesAreRestatedBeforeZGoesDownBehindAToolChange) {
                   .ends_with("X15.\nY10.\nG43 H2 Z3.\nG1 Z-1. F100.\nG0 Z3.\n"));
 }
 
-// Where an axis has been sent in machine coordinates, no work offset may come in.
+// After a move in machine coordinates no work offset may come in.
 TEST(LostPositions, AxesAreRestatedInTheCoordinatesThatTheyWereWrittenIn) {
   EXPECT_TRUE(body(Dialect::fanuc, kStart + "G0 X10 Y10 Z5\nG53 G0 X5\nT2 M6\nG43 H2\nS800 M3\n"
                                             "G55\nG0 Z5\nM2\n")

@@ -52,7 +52,7 @@ struct Trial {
   Compensated run() const { return compensate(request); }
 };
 
-/// What is left of the header, which is all comments at the top.
+/// Program without its header, which is all comments at the top.
 inline std::string without_header(const std::string& text) {
   std::string out;
   bool in_header = true;

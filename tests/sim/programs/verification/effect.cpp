@@ -45,7 +45,7 @@ class Observer {
     effect_.order.push_back(text);
     feed_.clear();
   }
-  // What spindle and coolant do when something else happens: their order between is no matter.
+  // State of spindle and coolant when something else happens: their order between is no matter.
   void put_switches() {
     if (spindle_ != seen_spindle_) put(spindle_);
     if (coolant_ != seen_coolant_) put(coolant_);

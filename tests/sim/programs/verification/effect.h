@@ -1,4 +1,4 @@
-/// What a control makes of a text, as far as it can be seen at the machine.
+/// Effect of a text on a control, as far as it can be seen at the machine.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,7 +31,7 @@ std::vector<Effect> effects_of(const std::string& text, Dialect dialect,
 std::vector<Effect> linuxcnc_effects_of(const std::string& text, controllers::ProgramSetup setup,
                                         const JointLayout& layout);
 
-/// Whether both go along the same paths within `tolerance` (m), and do the same otherwise.
+/// Tells if both go along the same paths within `tolerance` (m), and do the same otherwise.
 bool is_within(const std::vector<Effect>& a, const std::vector<Effect>& b, double tolerance);
 
 }  // namespace servomill::sim

@@ -38,7 +38,7 @@ bool is_comment(const std::string& line) {
 
 namespace {
 
-// Where the number of a word begins whose letter is one of these; npos: there is none.
+// Start of the number of a word whose letter is one of these; npos: there is none.
 std::size_t number_at(const std::string& line, std::string_view letters) {
   for (std::size_t i = begin_of(line); i + 1 < line.size(); ++i) {
     const char next = line[i + 1];
@@ -143,7 +143,7 @@ bool rapid_for_feed(Lines& lines, std::size_t i) {
   return replace(lines[i], "G0 ", "G1 ");
 }
 
-// Whether a rapid is in force in a line of ISO codes, or of the line itself.
+// Tells if a rapid is in force in a line of ISO codes, or of the line itself.
 bool is_rapid_line(const Lines& lines, std::size_t i) {
   if (lines[i].find(" L ") != std::string::npos) return lines[i].find("FMAX") != std::string::npos;
   for (std::size_t k = i + 1; k > 0; --k) {
@@ -193,7 +193,7 @@ bool repeat_line(Lines& lines, std::size_t i) {
   return true;
 }
 
-// What is in force before a tool change, kept over it: the restated modes go.
+// Keeps the modes in force before a tool change over it: the restated ones go.
 bool keep_state_over_M6(Lines& lines, std::size_t i) {
   const bool is_retract = lines[i].find("M91") != std::string::npos;
   if (!is_retract && replace(lines[i], " R0", "")) return true;

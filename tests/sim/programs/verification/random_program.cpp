@@ -346,7 +346,7 @@ void RandomProgram::path_mode() {
                     : "G64");
 }
 
-// What the operator's switch leaves out.
+// Block that the operator's switch leaves out.
 void RandomProgram::slash() {
   const unsigned which = pick(6);
   if (which == 0) return line("/M8");

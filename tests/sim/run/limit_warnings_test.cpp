@@ -5,7 +5,7 @@
 #include "sim/preparation/preparation_cache.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::told_limits_test {
+namespace servomill::sim::limit_warnings_test {
 namespace {
 
 // Y is 1 um off for each mm of X: 60 um at the end of line 3, 20 um and less in line 4.
@@ -138,4 +138,4 @@ TEST(RewrittenProgram, KeepsTheErrorsOfThePlaceThatItWasRewrittenFor) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::told_limits_test
+}  // namespace servomill::sim::limit_warnings_test
