@@ -69,12 +69,13 @@ void FeedbackLanes::observe(Together& together) {
 
 std::vector<strategies::Saturation> FeedbackLanes::drop(std::size_t run) {
   Together& together = of(run);
-  if (together.waiting > 0) act(together);  // its own: periods that have passed
+  if (together.waiting > 0)
+    apply_virtual_displacements(together);  // its own: periods that have passed
   use(together, run - first_, false);
   return together.part->saturations(run - first_);
 }
 
-void FeedbackLanes::advance() {
+void FeedbackLanes::evaluate_error_models() {
   bool are_read = false;
   for (Together& together : all_) {
     if (together.count == 0) continue;
@@ -93,14 +94,14 @@ void FeedbackLanes::advance() {
 void FeedbackLanes::wait(Together& one) {
   const Joints Q_meas = axes_.Q_meas(first_ + one.last);
   for (int j = 0; j < kJoints; ++j) one.Q_waiting[j][one.waiting] = Q_meas[j];
-  if (++one.waiting == kLaneWidth) act(one);
+  if (++one.waiting == kLaneWidth) apply_virtual_displacements(one);
 }
 
-void FeedbackLanes::act() {
-  for (Together& together : all_) act(together);
+void FeedbackLanes::apply_virtual_displacements() {
+  for (Together& together : all_) apply_virtual_displacements(together);
 }
 
-void FeedbackLanes::act(Together& together) {
+void FeedbackLanes::apply_virtual_displacements(Together& together) {
   if (together.d != nullptr) {
     axes_.displace(*together.d, together.lanes, together.strategy->displaces_rotary(), first_);
     together.d = nullptr;

@@ -34,9 +34,9 @@ class FeedbackLanes {
   /// Why the strategy of a run cannot go on; empty while it can.
   std::string_view failure(std::size_t run);
   /// To be called once a model period, after ServoAxes::read_scales.
-  void advance();
-  /// To be called before ServoAxes::take_readings: what acts now acts on the axes.
-  void act();
+  void evaluate_error_models();
+  /// To be called before ServoAxes::sample_position_feedback: what acts now acts on the axes.
+  void apply_virtual_displacements();
 
  private:
   struct Together {
@@ -52,7 +52,7 @@ class FeedbackLanes {
   void use(Together& together, std::size_t lane, bool used);
   void wait(Together& one);
   void observe(Together& together);
-  void act(Together& together);
+  void apply_virtual_displacements(Together& together);
 
   ServoAxes& axes_;
   std::size_t first_;

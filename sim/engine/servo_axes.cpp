@@ -1,7 +1,5 @@
 #include "sim/engine/servo_axes.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <utility>
@@ -9,85 +7,6 @@
 #include "plant/vocabulary/units.h"
 
 namespace servomill::sim {
-namespace {
-
-std::string_view name_of(controllers::AxisFaultKind fault) {
-  switch (fault) {
-    case controllers::AxisFaultKind::following_error:
-      return "following error";
-    case controllers::AxisFaultKind::standstill:
-      return "position at standstill";
-    case controllers::AxisFaultKind::encoder_difference:
-      break;
-  }
-  return "difference of scale and motor encoder";
-}
-
-std::string overspeed(std::string_view name, const plant::Encoder& encoder, double velocity) {
-  constexpr double kHzPerkHz = 1e3;
-  return fmt::format("signals of the {} at {:.4g} kHz, beyond the {:.4g} kHz of the input", name,
-                     encoder.signal_frequency(velocity) / kHzPerkHz,
-                     encoder.frequency_limit() / kHzPerkHz);
-}
-
-}  // namespace
-
-std::vector<Rate> loop_rates(const LoopPeriods& p, Tick reading_delay) {
-  const Tick phase = (p.position - reading_delay % p.position) % p.position;
-  return {{kSample, p.position, phase},
-          {kPositionLoop, p.position, 0},
-          {kVelocityLoop, p.velocity, 0},
-          {kCurrentLoop, p.current, 0}};
-}
-
-namespace {
-
-// Matrices are prepared for each stop of each: beyond that, steps are taken as they come.
-constexpr std::size_t kMostStretches = 32;
-
-// Number of a stretch with stops among those of the way, which it joins if it is new; -1 if there
-// are too many.
-int number_of(const plant::Stretch& stretch, DriveWay& way) {
-  const auto known = std::find(way.stretches.begin(), way.stretches.end(), stretch);
-  const auto number = static_cast<int>(known - way.stretches.begin());
-  if (known != way.stretches.end()) return number;
-  if (way.stretches.size() == kMostStretches) return -1;
-  way.most_stops = std::max(way.most_stops, stretch.stops.size());
-  way.stretches.push_back(stretch);
-  return number;
-}
-
-}  // namespace
-
-DriveWay drive_way(const std::vector<Instant>& schedule, std::size_t most_stops) {
-  DriveWay way;
-  const auto add_step = [&](Tick step) {
-    way.legs.push_back({step});
-    way.steps.push_back(step);
-  };
-  for (const Instant& instant : schedule) {
-    std::vector<Tick> places = instant.stops;
-    places.push_back(instant.step);
-    Tick begin = 0;
-    for (std::size_t first = 0; first < places.size();) {
-      const std::size_t last = std::min(first + most_stops, places.size() - 1);
-      plant::Stretch stretch{.step = places[last] - begin};
-      for (std::size_t n = first; n < last; ++n) stretch.stops.push_back(places[n] - begin);
-      const int number = stretch.stops.empty() ? -1 : number_of(stretch, way);
-      if (number >= 0) {
-        way.legs.push_back({stretch.step, number});
-      } else {
-        for (std::size_t n = first; n <= last; ++n) {
-          add_step(places[n] - (n == first ? begin : places[n - 1]));
-        }
-      }
-      begin = places[last];
-      first = last + 1;
-    }
-  }
-  return way;
-}
-
 namespace {
 
 std::vector<plant::FeedDriveParams> params_of(const std::vector<const MachineSettings*>& machines,
@@ -117,13 +36,14 @@ ServoAxes::ServoAxes(std::vector<const MachineSettings*> machines, std::vector<i
       in_a_row_(machines_.size() == 1 && joints_.size() == kJoints),
       blocks_of_joint_(fills_blocks() && joints_.size() == kJoints ? runs() / kLaneWidth : 0),
       params_(params_of(machines_, joints_)),
-      way_(machines_[0]->integrator == Integrator::exact ? drive_way(schedule)
-                                                         : drive_way(schedule, 0)),
-      last_leg_(way_.legs.empty() ? 0 : way_.legs.size() - 1),
-      positions_(way_.most_stops * blocks_of(params_.size())),
-      drives_(params_, machines_[0]->nc.periods.base,
-              machines_[0]->integrator == Integrator::exact ? way_.steps : std::vector<Tick>(),
-              kept, simd_level(), way_.stretches),
+      drive_steps_(machines_[0]->integrator == Integrator::exact ? drive_steps(schedule)
+                                                                 : drive_steps(schedule, 0)),
+      last_leg_(drive_steps_.legs.empty() ? 0 : drive_steps_.legs.size() - 1),
+      positions_(drive_steps_.most_stops * blocks_of(params_.size())),
+      drives_(
+          params_, machines_[0]->nc.periods.base,
+          machines_[0]->integrator == Integrator::exact ? drive_steps_.steps : std::vector<Tick>(),
+          kept, simd_level(), drive_steps_.stretches),
       blocks_(blocks_of(params_.size())),
       state_(params_.size()),
       input_(params_.size()),
@@ -178,11 +98,11 @@ void ServoAxes::describe(std::size_t l) {
       std::min(machine.scale[j].fastest(),
                rigid ? params_[l].r * machine.motor[j].fastest() : controllers::kNoLimit));
   set(&ServoBlock::most_motor_speed, rigid ? controllers::kNoLimit : machine.motor[j].fastest());
-  always_looked_at_.push_back(supervision.standstill < controllers::kNoLimit ||
-                              supervision.encoder_difference < controllers::kNoLimit ||
-                              machine.marks[j].has_value());
+  always_checked_lanes_.push_back(supervision.standstill < controllers::kNoLimit ||
+                                  supervision.encoder_difference < controllers::kNoLimit ||
+                                  machine.marks[j].has_value());
 
-  watched_ |= always_looked_at_.back() || !params_[l].is_linear();
+  always_checked_ |= always_checked_lanes_.back() || !params_[l].is_linear();
   if (!machine.motor[j].is_plain() || !machine.screw[j].is_zero()) own_motor_reading_.push_back(l);
   if (!machine.scale[j].is_plain()) own_scale_reading_.push_back(l);
   if (machine.marks[j]) marked_.push_back(l);
@@ -245,12 +165,13 @@ void ServoAxes::settle(std::size_t l, double Q, double d) {
 
 void ServoAxes::displace(const Joints& displacement, std::size_t run) {
   if (in_a_row_) {
-    row(&ServoBlock::displacement) = displacement;
+    row(&ServoBlock::virtual_displacement) = displacement;
     return;
   }
   for (std::size_t j = 0; j < kJoints; ++j) {
     const Place& p = places_[run][j];
-    if (p.present) servos_[p.block].displacement[p.place] = displacement[static_cast<int>(j)];
+    if (p.present)
+      servos_[p.block].virtual_displacement[p.place] = displacement[static_cast<int>(j)];
   }
 }
 
@@ -263,7 +184,7 @@ void ServoAxes::displace(const JointLanes& displacement, const LaneFlags& lanes,
   }
   each_of_eight(first, [&](std::size_t n, std::size_t j, const Place& p) {
     if ((rotary || j < kLinearJoints) && lanes[n]) {
-      servos_[p.block].displacement[p.place] = displacement[j][n];
+      servos_[p.block].virtual_displacement[p.place] = displacement[j][n];
     }
   });
 }
@@ -365,19 +286,19 @@ void ServoAxes::read_own_scales_at(const LaneArray* positions, Tick now) {
   }
 }
 
-void ServoAxes::take_readings() {
+void ServoAxes::sample_position_feedback() {
   read_scales();
   read_motors();
-  kernel_.take_readings(servos_.data(), blocks_);
+  kernel_.sample_position_feedback(servos_.data(), blocks_);
   for (const std::size_t l : marked_) {
     Functions& own = functions_[l];
     if (own.mark_fault) continue;
     const double x = state_.blocks[block(l)].x[place(l)];
-    own.mark_fault = own.marks->advance(x, x + at(&ServoBlock::displacement, l));
+    own.mark_fault = own.marks->advance(x, x + at(&ServoBlock::virtual_displacement, l));
   }
 }
 
-void ServoAxes::run_position_loops() {
+void ServoAxes::close_position_loops() {
   for (const std::size_t l : with_backlash_) {
     const AxisFunctions& functions =
         machine_of(l).nc.functions[static_cast<std::size_t>(axes_[l].joint)];
@@ -391,14 +312,14 @@ void ServoAxes::run_position_loops() {
       at(&ServoBlock::v_add, l) = ramp.rate;
     }
   }
-  suspects_ = kernel_.position_loops(servos_.data(), state_.blocks.data(), blocks_);
+  beyond_limits_ = kernel_.position_loops(servos_.data(), state_.blocks.data(), blocks_);
 }
 
-void ServoAxes::run_current_loops() {
+void ServoAxes::latch_current_commands() {
   kernel_.current_loops(servos_.data(), state_.blocks.data(), input_.blocks.data(), blocks_);
 }
 
-void ServoAxes::run_velocity_loops() {
+void ServoAxes::close_velocity_loops() {
   for (const std::size_t l : with_friction_) {
     const NcSettings& nc = machine_of(l).nc;
     const auto j = static_cast<std::size_t>(axes_[l].joint);
@@ -433,55 +354,6 @@ Joints ServoAxes::measured_speed(std::size_t run) const {
 
 Joints ServoAxes::speed_error(std::size_t run) const {
   return each_joint(run, [&](const Place& p) { return servos_[p.block].cascade_state.e[p.place]; });
-}
-
-std::optional<ServoAxes::Fault> ServoAxes::supervise(std::size_t run) {
-  for (const int j : joints_) {
-    const std::size_t l = lane(run, j);
-    if (!always_looked_at_[l] && at(&ServoBlock::suspect, l) == 0.0 &&
-        plant::DriveBank::unresolved(state_, l) == 0) {
-      continue;
-    }
-    if (auto reason = fault_of(l)) return Fault{j, std::move(*reason)};
-  }
-  return std::nullopt;
-}
-
-std::optional<std::string> ServoAxes::fault_of(std::size_t l) {
-  const MachineSettings& machine = machine_of(l);
-  const auto j = static_cast<std::size_t>(axes_[l].joint);
-  const bool linear = axes_[l].joint < kLinearJoints;
-  const double unit = linear ? mm : deg;
-  const std::string_view unit_name = linear ? "mm" : "deg";
-  Functions& own = functions_[l];
-  const auto fault = controllers::supervise(
-      machine.nc.functions[j].supervision, own.supervision,
-      {at(&ServoBlock::Q_cmd, l), at(&ServoBlock::dQ_ff, l), at(&ServoBlock::Q_fb, l),
-       at(&ServoBlock::y_motor, l), at(&ServoBlock::y_scale, l)});
-  if (fault) {
-    return fmt::format("{} beyond {:g} {}", name_of(fault->fault), fault->limit / unit, unit_name);
-  }
-  if (own.mark_fault) {
-    const plant::MarkFault& mark = *own.mark_fault;
-    if (mark.from == mark.to) {
-      return fmt::format(
-          "counted {} signal periods until the reference mark at {:.3f} {} came again",
-          mark.counted, mark.from / unit, unit_name);
-    }
-    return fmt::format(
-        "counted {} signal periods instead of {} between the reference marks at {:.3f} and {:.3f} "
-        "{}",
-        mark.counted, mark.expected, mark.from / unit, mark.to / unit, unit_name);
-  }
-  if (plant::DriveBank::unresolved(state_, l) > 0) {
-    return "friction too stiff for the exact step; use integrator = \"cvode\"";
-  }
-  const plant::DriveBlock& state = state_.blocks[block(l)];
-  const double v = state.v[place(l)];
-  const double w = params_[l].is_rigid() ? v / params_[l].r : state.w[place(l)];
-  if (machine.scale[j].too_fast(v)) return overspeed("scale", machine.scale[j], v);
-  if (machine.motor[j].too_fast(w)) return overspeed("motor encoder", machine.motor[j], w);
-  return std::nullopt;
 }
 
 }  // namespace servomill::sim

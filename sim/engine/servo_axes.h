@@ -13,31 +13,12 @@
 #include "plant/drives/cvode_bank.h"
 #include "plant/drives/drive_bank.h"
 #include "plant/vocabulary/joint_lanes.h"
+#include "sim/engine/drive_steps.h"
 #include "sim/engine/servo_kernel.h"
 #include "sim/model/machine.h"
 #include "sim/model/schedule.h"
 
 namespace servomill::sim {
-
-/// When the loops of a machine are due.
-/// @param reading_delay  ticks from the scale to what the position loop reads; kSample is due so
-///                       much before the position loop
-std::vector<Rate> loop_rates(const LoopPeriods& periods, Tick reading_delay);
-
-/// Way of the drives through a schedule: from one instant to the next in one leg, past its stops,
-/// or in several, each of which ends at a stop or at the next instant.
-struct DriveWay {
-  struct Leg {
-    Tick step;
-    int stretch = -1;  // with stops on the way; -1: none
-  };
-  std::vector<Leg> legs;
-  std::vector<plant::Stretch> stretches;
-  std::vector<Tick> steps;     // of the legs without stops
-  std::size_t most_stops = 0;  // of a stretch
-};
-/// @param most_stops  on a stretch; 0: each stop ends a leg
-DriveWay drive_way(const std::vector<Instant>& schedule, std::size_t most_stops = 8);
 
 /// Setpoints of the position loops, for all joints.
 struct AxisSetpoint {
@@ -96,21 +77,21 @@ class ServoAxes {
 
   /// kErrorModel and kRecord need this first: the position encoders are read.
   void read_scales();
-  /// kSample: the reading that the next position period will use.
-  void take_readings();
+  /// kFeedbackSample: the reading that the next position period will use.
+  void sample_position_feedback();
   /// kPositionLoop
-  void run_position_loops();
+  void close_position_loops();
   /// kCurrentLoop
-  void run_current_loops();
+  void latch_current_commands();
   /// kVelocityLoop
-  void run_velocity_loops();
+  void close_velocity_loops();
   /// Moves the drives to the next instant. @pre step is that of the schedule
   /// @param at_stop  called at each stop on the way, when the scales have been read there. Nothing
   ///                 else is known of a stop: it may ask for Q_meas and displace, no more
   template <class AtStop>
   void advance(Tick step, AtStop at_stop) {
     for (const Tick end = now_ + step;;) {
-      const DriveWay::Leg& leg = way_.legs[leg_];
+      const DriveSteps::Leg& leg = drive_steps_.legs[leg_];
       leg_ = leg_ == last_leg_ ? 0 : leg_ + 1;
       assert(now_ + leg.step <= end);
       if (leg.stretch < 0) {
@@ -158,7 +139,7 @@ class ServoAxes {
   };
   std::optional<Fault> supervise(std::size_t run = 0);
   /// After the position loops: supervise() has nothing to say of any run.
-  bool all_well() const { return !watched_ && !suspects_; }
+  bool within_limits() const { return !always_checked_ && !beyond_limits_; }
 
   /// Visits what of one axis of the first run changes with time, as double&: drive, loops, reading.
   /// States that cannot move (no integral part, no current lag, ...) are left out.
@@ -253,7 +234,7 @@ class ServoAxes {
   void move_past_stops(std::size_t stretch, AtStop at_stop) {
     drives_.advance_with_stops(state_, input_, stretch, positions_);
     const LaneArray* positions = positions_.data();
-    for (const Tick stop : way_.stretches[stretch].stops) {
+    for (const Tick stop : drive_steps_.stretches[stretch].stops) {
       kernel_.read_scales_at(servos_.data(), positions, blocks_);
       if (!own_scale_reading_.empty()) read_own_scales_at(positions, now_ + stop);
       positions += blocks_;
@@ -278,7 +259,7 @@ class ServoAxes {
   bool in_a_row_ = false;  // one run only, and all joints take part: they lie side by side
   std::size_t blocks_of_joint_ = 0;             // if the runs fill blocks and all joints take part
   std::vector<plant::FeedDriveParams> params_;  // by lane
-  DriveWay way_;
+  DriveSteps drive_steps_;
   std::size_t leg_ = 0, last_leg_;    // the next one, the last of a round
   std::vector<LaneArray> positions_;  // at the stops of a stretch
   plant::DriveBank drives_;
@@ -289,9 +270,9 @@ class ServoAxes {
   std::vector<ServoBlock> servos_;
   std::vector<Functions> functions_;  // by lane
   // lanes that need more than the kernel does
-  std::vector<bool> always_looked_at_;  // by supervision
-  bool watched_ = false;                // of some lane the kernel cannot tell that all is well
-  bool suspects_ = false;               // some lane is suspect
+  std::vector<bool> always_checked_lanes_;  // by supervision
+  bool always_checked_ = false;             // of some lane the kernel cannot tell that all is well
+  bool beyond_limits_ = false;              // some lane is beyond a limit
   std::vector<std::size_t> own_motor_reading_, own_scale_reading_, marked_, with_backlash_,
       with_friction_;
   const ServoKernel& kernel_;

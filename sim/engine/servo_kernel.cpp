@@ -34,10 +34,11 @@ void read_scales_at(ServoBlock* servos, const LaneArray* positions, std::size_t 
   for (std::size_t n = 0; n < count; ++n) read_scale(servos[n], positions[n]);
 }
 
-void take_readings(ServoBlock* servos, std::size_t count) {
+void sample_position_feedback(ServoBlock* servos, std::size_t count) {
   for (std::size_t n = 0; n < count; ++n) {
     ServoBlock& s = servos[n];
-    const Number y_scale = Number(s.scale) + Number(s.displacement) + Number(s.added_reading);
+    const Number y_scale =
+        Number(s.scale) + Number(s.virtual_displacement) + Number(s.added_reading);
     const Number y_motor = Number(s.r) * Number(s.phi);
     put(s.y_scale, y_scale);
     put(s.y_motor, y_motor);
@@ -50,18 +51,18 @@ void take_readings(ServoBlock* servos, std::size_t count) {
 }
 
 bool position_loops(ServoBlock* servos, const DriveBlock* drives, std::size_t count) {
-  bool suspects = false;
+  bool any_beyond = false;
   for (std::size_t n = 0; n < count; ++n) {
     ServoBlock& s = servos[n];
     const auto fine = (abs(Number(s.Q_cmd) - Number(s.Q_fb)) <= Number(s.most_following_error)) &
                       (abs(Number(drives[n].v)) <= Number(s.most_speed)) &
                       (abs(Number(drives[n].w)) <= Number(s.most_motor_speed));  // false with NaN
-    put(s.suspect, select(fine, Number(0.0), Number(1.0)));
-    suspects |= !fine.all();
+    put(s.beyond_limits, select(fine, Number(0.0), Number(1.0)));
+    any_beyond |= !fine.all();
     controllers::position_loop(s.cascade, s.cascade_state, Number(s.Q_cmd), Number(s.Q_fb),
                                Number(s.dQ_ff), Number(s.ddQ_ff), Number(s.v_add));
   }
-  return suspects;
+  return any_beyond;
 }
 
 void velocity_loops(ServoBlock* servos, std::size_t count) {
@@ -100,7 +101,7 @@ void displace(ServoBlock* servos, std::size_t stride, const int* joints, std::si
   for (std::size_t n = 0; n < kLaneWidth; ++n) bits |= (lanes[n] ? 1U : 0U) << n;
   const auto mask = Number::Mask::of(bits);
   for (std::size_t n = 0; n < count; ++n) {
-    LaneArray& at = servos[n * stride].displacement;
+    LaneArray& at = servos[n * stride].virtual_displacement;
     put(at, select(mask, Number(displacement[joints[n]]), Number(at)));
   }
 }
@@ -109,8 +110,9 @@ void displace(ServoBlock* servos, std::size_t stride, const int* joints, std::si
 
 template <>
 ServoKernel make_servo_kernel<SERVOMILL_LEVEL>() {
-  return {&read_motors,    &read_scales,   &read_scales_at, &take_readings, &position_loops,
-          &velocity_loops, &current_loops, &get_scales,     &displace};
+  return {&read_motors,    &read_scales,    &read_scales_at, &sample_position_feedback,
+          &position_loops, &velocity_loops, &current_loops,  &get_scales,
+          &displace};
 }
 
 }  // namespace servomill::sim

@@ -13,7 +13,7 @@ namespace servomill::sim {
 
 /// Eight axes (m, rad as for their drives). Lanes without an axis hold zeros.
 struct ServoBlock {
-  // what they are
+  // constants
   LaneArray r, per_r;                    // m/rad, 1/r
   LaneArray motor_step, per_motor_step;  // rad
   LaneArray scale_step, per_scale_step;  // m or rad
@@ -27,13 +27,13 @@ struct ServoBlock {
   controllers::CascadeLanes cascade;
   controllers::CurrentLoopLanes current;
 
-  // what they are told
+  // inputs
   LaneArray Q_cmd, dQ_ff, ddQ_ff;  // setpoint
   LaneArray v_add, tau_add;        // m/s, N m: compensation of backlash and friction
-  LaneArray displacement;          // m: a virtual encoder adds it to the scale
+  LaneArray virtual_displacement;  // m: a virtual encoder adds it to the scale
   LaneArray added_velocity, added_current, added_reading;  // injected from outside
 
-  // what they read and compute
+  // state
   LaneArray phi;               // rad, motor encoder, read last
   LaneArray scale;             // m or rad, position encoder, read last
   LaneArray y_motor, y_scale;  // m or rad, as the position loop got them
@@ -41,7 +41,7 @@ struct ServoBlock {
   LaneArray Q_fb;              // what the position loop reads
   controllers::CascadeLanesState cascade_state;
   controllers::CurrentLoopLanesState current_state;
-  LaneArray suspect;  // 1: beyond one of the above
+  LaneArray beyond_limits;  // 1: beyond one of the above
 };
 
 /// Each function treats `count` blocks; drives[n] and inputs[n] belong to servos[n].
@@ -52,8 +52,8 @@ struct ServoKernel {
   void (*read_scales)(ServoBlock* servos, const plant::DriveBlock* drives, std::size_t count);
   void (*read_scales_at)(ServoBlock* servos, const LaneArray* positions, std::size_t count);
   /// Q_fb from phi and scale.
-  void (*take_readings)(ServoBlock* servos, std::size_t count);
-  /// Also marks suspects; whether there are any.
+  void (*sample_position_feedback)(ServoBlock* servos, std::size_t count);
+  /// Also marks lanes beyond a limit; true if there are any.
   bool (*position_loops)(ServoBlock* servos, const plant::DriveBlock* drives, std::size_t count);
   void (*velocity_loops)(ServoBlock* servos, std::size_t count);
   /// The command that was computed before acts from now on.

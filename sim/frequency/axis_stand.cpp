@@ -10,7 +10,7 @@ namespace {
 std::vector<Rate> stand_rates(const LoopPeriods& periods, Tick reading_delay, PositionLoop loop) {
   std::vector<Rate> rates = loop_rates(periods, reading_delay);
   if (loop == PositionLoop::open) {
-    std::erase_if(rates, [](const Rate& rate) { return rate.due & (kSample | kPositionLoop); });
+    std::erase_if(rates, [](const Rate& rate) { return rate.due & (kFeedbackSample | kPositionLoop); });
   }
   rates.push_back({kRecord, 1, 0});
   return rates;
@@ -70,16 +70,16 @@ bool AxisStand::at_current_limit() {
 
 void AxisStand::run_loops(std::uint8_t due, const StandInput& in) {
   axes_.inject(joint_, in.added);
-  if (due & kSample) axes_.take_readings();
+  if (due & kFeedbackSample) axes_.sample_position_feedback();
   if (due & kPositionLoop) {
     set_.Q_ref[joint_] = set_.Q_cmd[joint_] = in.q;
     set_.dQ_ff[joint_] = in.dq;
     set_.ddQ_ff[joint_] = in.ddq;
     axes_.follow(set_);
-    axes_.run_position_loops();
+    axes_.close_position_loops();
   }
-  if (due & kCurrentLoop) axes_.run_current_loops();
-  if (due & kVelocityLoop) axes_.run_velocity_loops();
+  if (due & kCurrentLoop) axes_.latch_current_commands();
+  if (due & kVelocityLoop) axes_.close_velocity_loops();
 }
 
 AxisSignals AxisStand::signals() const {

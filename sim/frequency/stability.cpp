@@ -45,10 +45,10 @@ double spectral_radius(const MachineSettings& machine, int joint, Tick reading_d
     int k = 0;
     axes.each_state(joint, [&](double& x) { x = k++ == column ? 1.0 : 0.0; });
     for (const Instant& instant : schedule) {
-      if (instant.due & kSample) axes.take_readings();
-      if (instant.due & kPositionLoop) axes.run_position_loops();
-      if (instant.due & kCurrentLoop) axes.run_current_loops();
-      if (instant.due & kVelocityLoop) axes.run_velocity_loops();
+      if (instant.due & kFeedbackSample) axes.sample_position_feedback();
+      if (instant.due & kPositionLoop) axes.close_position_loops();
+      if (instant.due & kCurrentLoop) axes.latch_current_commands();
+      if (instant.due & kVelocityLoop) axes.close_velocity_loops();
       axes.advance(instant.step);
     }
     int row = 0;

@@ -171,7 +171,7 @@ class Problem {
   /// @param machines  one a run; must outlive this
   explicit Problem(const std::vector<const sim::MachineSettings*>& machines)
       : schedule_(sim::make_schedule({{sim::kErrorModel, kVolumetric, 0},
-                                      {sim::kSample, kPosition, 0},
+                                      {sim::kFeedbackSample, kPosition, 0},
                                       {sim::kPositionLoop, kPosition, 0},
                                       {sim::kVelocityLoop, kVelocity, 0},
                                       {sim::kCurrentLoop, kCurrent, 0},
@@ -202,7 +202,7 @@ class Problem {
 
  private:
   void advance_feedback() {
-    for (sim::FeedbackLanes& feedback : feedbacks_) feedback.advance();
+    for (sim::FeedbackLanes& feedback : feedbacks_) feedback.evaluate_error_models();
   }
 
   // The velocity loop before the current loop, which uses its result at once.
@@ -217,12 +217,12 @@ class Problem {
       set_.dQ_ff = setpoint_.dQ();
       set_.ddQ_ff = setpoint_.ddQ();
       for (std::size_t run = 0; run < axes_.runs(); ++run) axes_.follow(set_, run);
-      for (sim::FeedbackLanes& feedback : feedbacks_) feedback.act();
-      axes_.take_readings();
-      axes_.run_position_loops();
+      for (sim::FeedbackLanes& feedback : feedbacks_) feedback.apply_virtual_displacements();
+      axes_.sample_position_feedback();
+      axes_.close_position_loops();
     }
-    if (due & sim::kVelocityLoop) axes_.run_velocity_loops();
-    if (due & sim::kCurrentLoop) axes_.run_current_loops();
+    if (due & sim::kVelocityLoop) axes_.close_velocity_loops();
+    if (due & sim::kCurrentLoop) axes_.latch_current_commands();
   }
 
   std::vector<sim::Instant> schedule_;

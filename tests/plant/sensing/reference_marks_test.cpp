@@ -16,7 +16,7 @@ namespace servomill::plant::reference_marks_test {
 namespace {
 
 constexpr double kPeriod = 20 * um;   // LS 486C
-constexpr double kSample = 0.5 * mm;  // travel between samples in most tests
+constexpr double kFeedbackSample = 0.5 * mm;  // travel between samples in most tests
 constexpr double kRounding = 1e-15;   // m, of coordinates below 2 m
 
 ReferenceMarks metre() { return ReferenceMarks(marks_of_scale(kPeriod, 1000, -0.5, 0.5)); }
@@ -110,7 +110,7 @@ TEST(Decode, FindsEveryPairOfARotaryEncoder) {
 // Drives straight from a to b with the displacement d(x); the first fault, if any.
 template <typename Displacement>
 std::optional<MarkFault> drive(MarkMonitor& monitor, double a, double b, Displacement d,
-                               double sample = kSample) {
+                               double sample = kFeedbackSample) {
   const int steps = static_cast<int>(std::ceil(std::abs(b - a) / sample));
   std::optional<MarkFault> first;
   for (int n = 1; n <= steps; ++n) {

@@ -36,62 +36,6 @@ Scenario standing(const std::string& axis_keys) {
   return small_scenario(kStand, kIdealEncoders + axis_keys + "[[case]]\nname = \"alone\"\n");
 }
 
-// Instants at which the error model is due every `model` ticks, the current loop every `current`.
-std::vector<Instant> schedule_of(Tick current, Tick model) {
-  return make_schedule({{kCurrentLoop, current, 0}, {kErrorModel, model, 0}});
-}
-
-TEST(DriveWay, LeadsPastInstantsOfTheErrorModelAlone) {
-  const DriveWay way = drive_way(schedule_of(10, 6));  // 0 6 10 12 18 20 24 (30)
-  const std::vector<plant::Stretch> wanted = {{10, {6}}, {10, {2, 8}}, {10, {4}}};
-  EXPECT_EQ(way.stretches, wanted);
-  EXPECT_TRUE(way.steps.empty());
-  EXPECT_EQ(way.most_stops, 2U);
-  const std::vector<std::pair<Tick, int>> legs = {{10, 0}, {10, 1}, {10, 2}};
-  ASSERT_EQ(way.legs.size(), legs.size());
-  for (std::size_t n = 0; n < legs.size(); ++n) {
-    EXPECT_EQ(std::pair(way.legs[n].step, way.legs[n].stretch), legs[n]) << n;
-  }
-}
-
-TEST(DriveWay, StopsWhereAnythingElseIsDue) {
-  for (const Due due : {kSample, kPositionLoop, kVelocityLoop, kCurrentLoop, kRecord}) {
-    const DriveWay way = drive_way(make_schedule({{kErrorModel, 10, 0}, {due, 5, 0}}));
-    EXPECT_TRUE(way.stretches.empty());
-    EXPECT_EQ(way.steps, (std::vector<Tick>{5, 5}));
-  }
-  // what nobody is due at may be looked at
-  EXPECT_TRUE(drive_way({{kCurrentLoop, 5}, {0, 5}}).stretches.empty());
-}
-
-TEST(DriveWay, HasEightStopsOnAStretchAtMost) {
-  const std::vector<plant::Stretch> one = {{9, {1, 2, 3, 4, 5, 6, 7, 8}}};
-  EXPECT_EQ(drive_way(schedule_of(9, 1)).stretches, one);
-  const DriveWay longer = drive_way(schedule_of(10, 1));
-  EXPECT_EQ(longer.stretches, one);
-  EXPECT_EQ(longer.steps, std::vector<Tick>{1});  // the tenth
-}
-
-TEST(DriveWay, EndsALegAtEachStopIfAsked) {  // as CVODE needs it
-  const DriveWay way = drive_way(schedule_of(10, 6), 0);
-  EXPECT_TRUE(way.stretches.empty());
-  EXPECT_EQ(way.steps, (std::vector<Tick>{6, 4, 2, 6, 2, 4, 6}));
-}
-
-TEST(DriveWay, HasThirtyTwoStretchesAtMost) {
-  for (const Tick current : {32, 33, 34, 37}) {
-    // 1 tick later in each period of the current loop: stops at 1, 2, ... current - 1 after it
-    const DriveWay way = drive_way(schedule_of(current, current + 1));
-    const Tick stretches = std::min<Tick>(current - 1, 32);
-    EXPECT_EQ(way.stretches.size(), static_cast<std::size_t>(stretches));
-    const Tick others = current - 1 - stretches;  // in two steps each; two periods have no stop
-    EXPECT_EQ(way.steps.size(), static_cast<std::size_t>(2 + 2 * others)) << current;
-    Tick total = 0;
-    for (const DriveWay::Leg& leg : way.legs) total += leg.step;
-    EXPECT_EQ(total, current * (current + 1));
-  }
-}
-
 TEST(ServoAxes, BeginWhereAnIntegralPartHoldsTheLoad) {
   const auto [low, high] = following_error(standing("Z.gravity_load = \"2000 N\"\n"), 'Z');
   EXPECT_NEAR(low, 0.0, kStandTol);

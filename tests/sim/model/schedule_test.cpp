@@ -51,7 +51,7 @@ TEST(Schedule, VisitsEveryRateAtItsMultiples) {
                                        {kVelocityLoop, 20, 0},
                                        {kCurrentLoop, 10, 0},
                                        {kErrorModel, 6, 0},
-                                       {kSample, 20, 19},
+                                       {kFeedbackSample, 20, 19},
                                        {kRecord, 100, 0}});
 }
 
@@ -59,7 +59,7 @@ TEST(Schedule, VisitsEveryRateAtItsMultiplesForRandomPeriods) {
   std::mt19937 random(23);
   for (int n = 0; n < 200; ++n) {
     std::vector<Rate> rates = {{kPositionLoop, static_cast<Tick>(1 + random() % 12), 0}};
-    for (const std::uint8_t due : {kErrorModel, kSample, kVelocityLoop, kCurrentLoop, kRecord}) {
+    for (const std::uint8_t due : {kErrorModel, kFeedbackSample, kVelocityLoop, kCurrentLoop, kRecord}) {
       const auto period = static_cast<Tick>(1 + random() % 12);
       rates.push_back({due, period, static_cast<Tick>(random()) % period});
     }
@@ -70,14 +70,14 @@ TEST(Schedule, VisitsEveryRateAtItsMultiplesForRandomPeriods) {
 // CC424 with a reading that is taken one tick before the position loop.
 TEST(Schedule, TakesOneStepOverWhatNobodyNeeds) {
   const std::vector<Rate> rates = {
-      {kPositionLoop, 20, 0}, {kCurrentLoop, 10, 0}, {kSample, 20, 19}};
+      {kPositionLoop, 20, 0}, {kCurrentLoop, 10, 0}, {kFeedbackSample, 20, 19}};
   const std::vector<Instant> schedule = make_schedule(rates);
   ASSERT_EQ(schedule.size(), 3U);
   EXPECT_EQ(schedule[0].due, kPositionLoop | kCurrentLoop);
   EXPECT_EQ(schedule[0].step, 10);
   EXPECT_EQ(schedule[1].due, kCurrentLoop);
   EXPECT_EQ(schedule[1].step, 9);
-  EXPECT_EQ(schedule[2].due, kSample);
+  EXPECT_EQ(schedule[2].due, kFeedbackSample);
   EXPECT_EQ(schedule[2].step, 1);
 }
 

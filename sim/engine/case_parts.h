@@ -1,0 +1,89 @@
+/// Parts of a case that cascade and ideal axes share: travel, cut, outcome, standstill.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "plant/geometry/travel_memory.h"
+#include "sim/engine/cutting.h"
+#include "sim/engine/recorder.h"
+#include "sim/engine/simulate.h"
+
+namespace servomill::sim {
+
+/// Period of the error model of the feedback hardware (s).
+double model_period_of(const CaseInputs& in);
+
+/// Outcome of a case that is stopped from outside.
+Outcome interrupted(double time);
+
+/// Outcome of a case whose strategy cannot go on.
+Outcome failed(std::string_view why, double time, int line);
+
+/// Directions in which the axes of the actual machine travelled.
+class TravelDirections {
+ public:
+  TravelDirections(const plant::VolumetricModel& machine_errors, const Joints& Q)
+      : memory_(machine_errors.plays(), Q), directions_(memory_.size()) {}
+  /// False on most machines: none of their errors depends on the direction of travel.
+  bool matters() const { return !memory_.empty(); }
+  void go_to(const Joints& Q) { memory_.travel(Q); }
+  /// Directions at Q, which is not remembered: recording changes nothing.
+  std::span<const double> at(const Joints& Q) {
+    memory_.directions(Q, directions_);
+    return directions_;
+  }
+
+ private:
+  plant::TravelMemory memory_;
+  std::vector<double> directions_;
+};
+
+/// Cutting along the path of a case; its force acts on the drives once a position period.
+class CutAlongPath {
+ public:
+  explicit CutAlongPath(const CaseInputs& in)
+      : in_(in), load_(*in.cutting, in.wear, in.machine.chain, in.machine.structural_compliance) {}
+
+  void start(const controllers::Trajectory::Sample& reference) { load_.start(reference.s); }
+  void advance(const controllers::Trajectory::Sample& reference) {
+    const NcSettings& nc = in_.machine.nc;
+    const int tool = in_.path.tool_offset(in_.pieces[reference.move]);
+    if (tool != tool_) p_ST_ = in_.tips.at(tool);
+    tool_ = tool;
+    load_.advance(reference.s, nc.periods.seconds(nc.periods.position), reference.Q_ref, p_ST_);
+  }
+  const Joints& load() const { return load_.load(); }
+  void note(Snapshot& now) const {
+    now.cutting_force = load_.force();
+    now.deflection = load_.deflection();
+  }
+
+ private:
+  const CaseInputs& in_;
+  CuttingLoad load_;
+  int tool_ = 0;
+  Eigen::Vector3d p_ST_ = Eigen::Vector3d::Zero();
+};
+
+/// Position at standstill: Q + d(Q) = Q_cmd, a contraction by the slope of the errors.
+struct Standstill {
+  Joints Q;                   // (5; m, rad)
+  Joints d = Joints::Zero();  // virtual displacement there (5; m, rad)
+};
+
+/// @param displacement  d(Q), (5; m, rad)
+template <class Displacement>
+Standstill at_standstill(const Joints& Q_cmd, Displacement displacement) {
+  Standstill out{Q_cmd};
+  for (int k = 0; k < 50; ++k) {
+    const Joints before = out.Q;
+    out.d = displacement(before);
+    out.Q = Q_cmd - out.d;
+    if (out.Q == before) break;
+  }
+  return out;
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,111 @@
+#include "sim/engine/case_run.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+namespace servomill::sim {
+
+CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::size_t run,
+                 References& references)
+    : in_(in),
+      nc_(in.machine.nc),
+      axes_(axes),
+      feedback_(feedback),
+      run_(run),
+      setpoint_(nc_, in.reference, std::move(in.setpoints)),
+      reference_(references.of(in.reference, 0.0)),
+      recorded_(references.of(in.reference, setpoint_.delay())),
+      recorder_(in.machine, in.machine_errors, in.imposed, in.path, in.tips, in.format,
+                in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
+                in.keeping),
+      travel_(in.machine_errors, Joints::Zero()),
+      last_ticks_(in.machine.joints()) {
+  end_ =
+      static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
+  recorder_.expect(static_cast<std::size_t>(end_ / in.record_period + 1));
+  initialise_at_rest();
+}
+
+bool CaseRun::command_axes(Tick n) {
+  const double t = nc_.periods.seconds(n);
+  const auto& reference = reference_.at(t);
+  set_ = setpoint_.advance(reference, t, axes_.Q_fb(run_));
+  if (in_.feedback) feedback_.set_reference(run_, set_, reference.s);
+  last_ticks_.keep(nc_.periods.seconds(n), set_.Q_cmd, axes_.Q_fb(run_), axes_.Q_true(run_),
+                   axes_.current(run_));
+  axes_.follow(set_, run_);
+  if (cut_) apply_cutting_force(n);
+  std::string_view failure = setpoint_.failure();
+  if (failure.empty() && in_.feedback) failure = feedback_.failure(run_);
+  if (!failure.empty())
+    result_.outcome = failed(failure, t, in_.path.line(in_.pieces[reference.move]));
+  return result_.outcome.finished;
+}
+
+bool CaseRun::supervise(Tick n) {
+  const auto fault = axes_.supervise(run_);
+  if (!fault || !result_.outcome.finished) return result_.outcome.finished;
+  Outcome& outcome = result_.outcome;
+  outcome.finished = false;
+  outcome.axis = in_.machine.chain.layout.letter_of(fault->joint);
+  outcome.time = nc_.periods.seconds(n);
+  outcome.reason =
+      fmt::format("axis {}: {} at {:.4f} s", outcome.axis, fault->reason, outcome.time);
+  return false;
+}
+
+void CaseRun::record(Tick n) {
+  // The reference of this very instant: between position periods the held one is older than
+  // Q_true.
+  const auto& reference = recorded_.at(nc_.periods.seconds(n));
+  Snapshot now;
+  now.time = nc_.periods.seconds(n);
+  now.s = reference.s;
+  now.piece = in_.pieces[reference.move];
+  now.Q_ref = reference.Q_ref;
+  now.Q_cmd = set_.Q_cmd;
+  now.Q_fb = axes_.Q_fb(run_);
+  now.Q_meas = axes_.Q_meas(run_);
+  now.Q_true = axes_.Q_true(run_);
+  now.dQ_true = axes_.dQ_true(run_);
+  now.current = axes_.current(run_);
+  for (const int j : axes_.joints()) {
+    now.torque[j] = in_.machine.drives[static_cast<std::size_t>(j)].Kt * now.current[j];
+  }
+  if (cut_) cut_->note(now);
+  recorder_.record(now, travel_.at(now.Q_true));
+}
+
+void CaseRun::interrupt(Tick n) { result_.outcome = interrupted(nc_.periods.seconds(n)); }
+
+CaseResult CaseRun::finish(Tick n) {
+  if (in_.feedback) result_.saturations = feedback_.drop(run_);
+  axes_.end(run_);
+  result_.simulated_time = nc_.periods.seconds(n);
+  result_.servo = recorder_.take();
+  if (!result_.outcome.finished) result_.last_ticks = last_ticks_.series(in_.machine.chain.layout);
+  return std::move(result_);
+}
+
+void CaseRun::apply_cutting_force(Tick n) {
+  cut_->advance(recorded_.at(nc_.periods.seconds(n)));
+  axes_.load(cut_->load(), run_);
+}
+
+// In steady state at the start: position feedback agrees with the setpoint.
+void CaseRun::initialise_at_rest() {
+  set_ = setpoint_.settle();
+  Standstill rest{set_.Q_cmd};
+  if (in_.feedback) {
+    feedback_.add(run_, *in_.feedback, model_period_of(in_));
+    feedback_.set_reference(run_, set_, reference_.at(0.0).s);
+    rest = at_standstill(set_.Q_cmd, [&](const Joints& Q) { return feedback_.settle(run_, Q); });
+  }
+  axes_.settle(rest.Q, rest.d, run_);
+  if (in_.cutting != nullptr) cut_.emplace(in_).start(recorded_.at(0.0));
+  travel_ = {in_.machine_errors, axes_.Q_true(run_)};
+}
+
+}  // namespace servomill::sim

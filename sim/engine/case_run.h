@@ -1,0 +1,61 @@
+/// Run of one case on cascade loops, in lockstep with others.
+#pragma once
+
+#include <optional>
+
+#include "sim/engine/case_parts.h"
+#include "sim/engine/feedback_lanes.h"
+#include "sim/engine/last_ticks.h"
+#include "sim/engine/recorder.h"
+#include "sim/engine/reference.h"
+#include "sim/engine/servo_axes.h"
+#include "sim/engine/setpoint.h"
+
+namespace servomill::sim {
+
+/// One case among those that run in lockstep: setpoint, feedback hardware, recorder.
+class CaseRun {
+ public:
+  /// @param in  all but `setpoints` must outlive this
+  CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::size_t run,
+          References& references);
+
+  /// Last tick of the case.
+  Tick end() const { return end_; }
+  bool goes_on_at(Tick n) const { return n <= end_ && result_.outcome.finished; }
+
+  /// Interpolates the setpoint of this position period and commands the axes. False if a strategy
+  /// cannot go on.
+  bool command_axes(Tick n);
+  /// False if the machine stops: an axis is beyond one of its limits.
+  bool supervise(Tick n);
+  void record(Tick n);
+
+  bool remembers_travel() const { return travel_.matters(); }
+  void track_axis_reversals() { travel_.go_to(axes_.Q_true(run_)); }
+  void interrupt(Tick n);
+
+  /// Result of the case, which ends before tick n.
+  CaseResult finish(Tick n);
+
+ private:
+  void apply_cutting_force(Tick n);
+  void initialise_at_rest();
+
+  CaseInputs& in_;
+  const NcSettings& nc_;
+  ServoAxes& axes_;
+  FeedbackLanes& feedback_;
+  std::size_t run_;
+  Setpoint setpoint_;
+  Reference &reference_, &recorded_;
+  Recorder recorder_;
+  TravelDirections travel_;
+  LastTicks last_ticks_;
+  std::optional<CutAlongPath> cut_;
+  Tick end_ = 0;
+  AxisSetpoint set_;
+  CaseResult result_;
+};
+
+}  // namespace servomill::sim

@@ -1,0 +1,105 @@
+#include "sim/engine/ideal_run.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace servomill::sim {
+
+IdealRun::IdealRun(CaseInputs& in)
+    : in_(in),
+      periods_(in.machine.nc.periods),
+      setpoint_(in.machine.nc, in.reference, std::move(in.setpoints)),
+      feedback_(in.feedback ? in.feedback->feedback(model_period_of(in)) : nullptr),
+      recorder_(in.machine, in.machine_errors, in.imposed, in.path, in.tips, in.format,
+                in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
+                in.keeping),
+      travel_(in.machine_errors, Joints::Zero()) {}
+
+CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
+  CaseResult result;
+  const double end = in_.reference.duration() + in_.settle_time;
+  recorder_.expect(static_cast<std::size_t>(end / periods_.seconds(in_.record_period) + 1.0));
+  Tick n = 0;
+  AxisSetpoint set = setpoint_.settle();
+  travel_ = {in_.machine_errors, Q_true_of(set)};
+  if (in_.cutting != nullptr) cut_.emplace(in_).start(reference_at(0));
+  for (; periods_.seconds(n) <= end; n += periods_.position) {
+    progress.store(static_cast<float>(periods_.seconds(n) / end), std::memory_order_relaxed);
+    if (stop.load(std::memory_order_relaxed)) {
+      result.outcome = interrupted(periods_.seconds(n));
+      break;
+    }
+    const double t = periods_.seconds(n);
+    const auto sample = in_.reference.at(t, cursor_);
+    set = setpoint_.advance(sample, t, set.Q_cmd);
+    now_ = {t, sample.s, set.Q_ref, set.dQ_ff, set.ddQ_ff};
+    if (!goes_on(in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
+    if (cut_) cut_->advance(reference_at(n));
+    const bool is_recorded = n % in_.record_period == 0;
+    if (!is_recorded && !travel_.matters()) continue;
+    const Joints Q_true = Q_true_of(set);
+    travel_.go_to(Q_true);
+    if (is_recorded) record(n, set, Q_true);
+  }
+  result.simulated_time = periods_.seconds(n);
+  result.servo = recorder_.take();
+  result.saturations = std::move(saturations_);
+  return result;
+}
+
+controllers::Trajectory::Sample IdealRun::reference_at(Tick n) {
+  return in_.reference.at(periods_.seconds(n) - setpoint_.delay(), record_cursor_);
+}
+
+// False if a strategy cannot go on.
+bool IdealRun::goes_on(int line, Outcome& outcome) const {
+  std::string_view failure = setpoint_.failure();
+  if (failure.empty() && feedback_) failure = feedback_->failure(0);
+  if (!failure.empty()) outcome = failed(failure, now_.t, line);
+  return failure.empty();
+}
+
+// Adds the saturations of a recorded instant.
+void IdealRun::add_saturations(double time) {
+  if (!feedback_) return;
+  for (const strategies::Saturation& now : feedback_->saturations(0)) {
+    auto known = std::find_if(saturations_.begin(), saturations_.end(),
+                              [&](const auto& one) { return one.joint == now.joint; });
+    if (known == saturations_.end()) {
+      known = saturations_.insert(known, now);
+      known->first = time;
+      known->time = 0.0;
+    }
+    known->time += periods_.seconds(in_.record_period);
+  }
+}
+
+void IdealRun::record(Tick n, const AxisSetpoint& set, const Joints& Q_true) {
+  Snapshot now;
+  now.time = periods_.seconds(n);
+  const auto reference = reference_at(n);
+  now.s = reference.s;
+  now.piece = in_.pieces[reference.move];
+  now.Q_ref = set.Q_ref;
+  now.Q_cmd = now.Q_fb = set.Q_cmd;
+  now.Q_meas = now.Q_true = Q_true;
+  now.dQ_true = set.dQ_ff;
+  if (cut_) cut_->note(now);
+  recorder_.record(now, travel_.at(now.Q_true));
+  add_saturations(now.time);
+}
+
+Joints IdealRun::Q_true_of(const AxisSetpoint& set) {
+  if (!feedback_) return set.Q_cmd;
+  return at_standstill(set.Q_cmd,
+                       [&](const Joints& Q) {
+                         if (feedback_->observes()) {
+                           now_.Q_fb = Q;
+                           feedback_->observe(now_, 0);
+                         }
+                         return feedback_->settle(Q);
+                       })
+      .Q;
+}
+
+}  // namespace servomill::sim

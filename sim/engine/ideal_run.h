@@ -1,0 +1,44 @@
+/// Run of one case on ideal axes: actual position equals commanded position. The residual is the
+/// strategy's own error.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "controllers/path/trajectory.h"
+#include "sim/engine/case_parts.h"
+#include "sim/engine/recorder.h"
+#include "sim/engine/setpoint.h"
+#include "sim/engine/simulate.h"
+
+namespace servomill::sim {
+
+class IdealRun {
+ public:
+  /// @param in  all but `setpoints` must outlive this
+  explicit IdealRun(CaseInputs& in);
+
+  CaseResult run(const StopFlag& stop, std::atomic<float>& progress);
+
+ private:
+  controllers::Trajectory::Sample reference_at(Tick n);
+  bool goes_on(int line, Outcome& outcome) const;
+  void add_saturations(double time);
+  void record(Tick n, const AxisSetpoint& set, const Joints& Q_true);
+  Joints Q_true_of(const AxisSetpoint& set);
+
+  CaseInputs& in_;
+  const LoopPeriods& periods_;
+  Setpoint setpoint_;
+  std::unique_ptr<strategies::FeedbackPart> feedback_;
+  strategies::Reading now_;
+  Recorder recorder_;
+  TravelDirections travel_;
+  std::optional<CutAlongPath> cut_;
+  std::vector<strategies::Saturation> saturations_;
+  controllers::Trajectory::Cursor cursor_, record_cursor_;
+};
+
+}  // namespace servomill::sim

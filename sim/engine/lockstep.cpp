@@ -1,0 +1,123 @@
+#include "sim/engine/lockstep.h"
+
+namespace servomill::sim {
+namespace {
+
+std::vector<const MachineSettings*> machines_of(std::span<CaseInputs* const> together) {
+  std::vector<const MachineSettings*> machines;
+  for (const CaseInputs* in : together) machines.push_back(&in->machine);
+  return machines;
+}
+
+}  // namespace
+
+std::vector<Rate> rates_of(const CaseInputs& in) {
+  const Tick delay =
+      in.machine.scale_delay + (in.hardware.connected ? in.hardware.signal_delay : 0);
+  std::vector<Rate> rates = loop_rates(in.machine.nc.periods, delay);
+  rates.push_back({kRecord, in.record_period, 0});
+  if (in.feedback) rates.push_back({kErrorModel, in.hardware.model_period, 0});
+  return rates;
+}
+
+Lockstep::Lockstep(std::span<CaseInputs* const> together, plant::PreparedDrives* kept)
+    : schedule_(make_schedule(rates_of(*together.front()))),
+      axes_(machines_of(together), together.front()->machine.joints(), schedule_, kept) {
+  for (std::size_t first = 0; first < together.size(); first += kLaneWidth) {
+    feedbacks_.emplace_back(axes_, first);
+  }
+  for (std::size_t run = 0; run < together.size(); ++run) {
+    CaseInputs& in = *together[run];
+    runs_.push_back(
+        std::make_unique<CaseRun>(in, axes_, feedbacks_[run / kLaneWidth], run, references_));
+    longest_ = std::max(longest_, runs_.back()->end());
+    any_remembers_travel_ |= runs_.back()->remembers_travel();
+  }
+}
+
+std::vector<CaseResult> Lockstep::run(const StopFlag& stop, std::atomic<float>& progress) {
+  std::vector<CaseResult> results(runs_.size());
+  for (Tick n = 0;;) {  // until the last has ended
+    progress.store(static_cast<float>(n) / static_cast<float>(longest_), std::memory_order_relaxed);
+    if (stop.load(std::memory_order_relaxed)) {
+      each([&](CaseRun& run) { run.interrupt(n); });
+      next_end_ = n;
+    }
+    for (const Instant& instant : schedule_) {
+      if (take_out_those_done(n, results)) return results;
+      tick(instant.due, n);
+      axes_.advance(instant.step, [&] { evaluate_error_models(); });
+      n += instant.step;
+    }
+  }
+}
+
+// One instant: encoders, virtual encoder, NC loops (each sees the one before), recorder; then the
+// drives move on.
+void Lockstep::tick(std::uint8_t due, Tick n) {
+  if (due & (kErrorModel | kRecord)) axes_.read_scales();
+  if (due & kErrorModel) evaluate_error_models();  // acts one model period later
+  if (due & kFeedbackSample) {                     // scale + virtual displacement
+    apply_virtual_displacements();
+    axes_.sample_position_feedback();
+  }
+  if (due & kPositionLoop) {  // interpolator, setpoint corrections, position loop
+    command_axes(n);
+    axes_.close_position_loops();
+    if (!axes_.within_limits()) stop_faulty_axes(n);
+  }
+  if (due & kCurrentLoop) axes_.latch_current_commands();  // of the velocity period before
+  if (due & kVelocityLoop) {
+    axes_.close_velocity_loops();
+    track_axis_reversals();
+  }
+  if (due & kRecord) record(n);
+}
+
+void Lockstep::evaluate_error_models() {
+  for (FeedbackLanes& feedback : feedbacks_) feedback.evaluate_error_models();
+}
+
+void Lockstep::apply_virtual_displacements() {
+  for (FeedbackLanes& feedback : feedbacks_) feedback.apply_virtual_displacements();
+}
+
+void Lockstep::command_axes(Tick n) {
+  each([&](CaseRun& run) {
+    if (!run.command_axes(n)) next_end_ = n;
+  });
+}
+
+void Lockstep::stop_faulty_axes(Tick n) {
+  each([&](CaseRun& run) {
+    if (!run.supervise(n)) next_end_ = n;
+  });
+}
+
+void Lockstep::track_axis_reversals() {
+  if (any_remembers_travel_) each([](CaseRun& run) { run.track_axis_reversals(); });
+}
+
+void Lockstep::record(Tick n) {
+  each([&](CaseRun& run) { run.record(n); });
+}
+
+// Takes out the runs that end before n; true if none is left.
+bool Lockstep::take_out_those_done(Tick n, std::vector<CaseResult>& results) {
+  if (n < next_end_) return false;
+  next_end_ = std::numeric_limits<Tick>::max();
+  bool none_left = true;
+  for (std::size_t run = 0; run < runs_.size(); ++run) {
+    if (!runs_[run]) continue;
+    if (runs_[run]->goes_on_at(n)) {
+      next_end_ = std::min(next_end_, runs_[run]->end() + 1);
+      none_left = false;
+      continue;
+    }
+    results[run] = runs_[run]->finish(n);
+    runs_[run].reset();
+  }
+  return none_left;
+}
+
+}  // namespace servomill::sim
