@@ -14,10 +14,11 @@
 
 namespace servomill::controllers {
 
-inline constexpr int kWorkSystems = 9;       // G54 ... G59.3
-inline constexpr int kOtherToolOffset = -1;  // `Move::tool_offset` of G43.1 and G43.2
-inline constexpr int kPrintMessage = 1;      // `Move::number` of (PRINT, ...); else 0
-inline constexpr int kMist = 1, kFlood = 2;  // bits of `Move::number` of a coolant move
+inline constexpr int kWorkSystems = 9;          // G54 ... G59.3
+inline constexpr int kOtherToolOffset = -1;     // `Move::tool_offset` of G43.1 and G43.2
+inline constexpr int kPrintMessage = 1;         // `Move::number` of (PRINT, ...); else 0
+inline constexpr double kSlowestInverse = 0.1;  // mm, inch or deg per minute under G93: LinuxCNC
+inline constexpr int kMist = 1, kFlood = 2;     // bits of `Move::number` of a coolant move
 
 /// Cutter compensation in force, and the moves that wait until the next one is known.
 struct Compensation {

@@ -18,8 +18,7 @@ namespace {
 
 constexpr double kSpiralLimit = 0.5 * mm, kSpiralShare = 0.05;  // between the radii of an arc
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTurnsTol = 1e-3;       // as LinuxCNC, for P of an arc
-constexpr double kSlowestInverse = 0.1;  // mm, inch or deg per minute; as LinuxCNC
+constexpr double kTurnsTol = 1e-3;  // as LinuxCNC, for P of an arc
 
 }  // namespace
 

@@ -22,6 +22,7 @@ class Grid {
  public:
   explicit Grid(int decimals) : decimals_(decimals), scale_(std::pow(10.0, decimals)) {}
   double step_count(double x) const { return std::round(x * scale_); }
+  double value(double steps) const { return steps / scale_; }
   bool is_zero(double x) const { return step_count(x) == 0.0; }
   std::string text(double steps) const { return fixed_text(steps / scale_, decimals_); }
 
@@ -89,6 +90,7 @@ class Printer {
         return print_motion(move);
       case MoveKind::dwell:
         print_modes(move);
+        print_feed_mode(move.feed_mode);
         return line(dwell_block(move.value));
       case MoveKind::tool:
         return line(fmt::format("T{} M6", move.number));
@@ -140,7 +142,7 @@ class Printer {
     coolant_ = wanted;
   }
 
-  // Prints the modes of motion: work system, tool offset, path control, feed mode.
+  // Prints the modes of motion: work system, tool offset, path control.
   void print_modes(const Move& move) {
     change(work_, work_system_code(move.work_offset), true);
     if (move.tool_offset == kOtherToolOffset) {
@@ -149,7 +151,10 @@ class Printer {
     }
     change(tool_, tool_code(move.tool_offset), true);
     change(path_, path_code(move), false);
-    if (change(feed_mode_, feed_mode_code(move.feed_mode), false)) F_.clear();
+  }
+
+  void print_feed_mode(FeedMode mode) {
+    if (change(feed_mode_, feed_mode_code(mode), false)) F_.clear();
   }
 
   static std::string feed_mode_code(FeedMode mode) {
@@ -237,9 +242,33 @@ class Printer {
     return move.feed / (moves_xyz ? mm_per_min : deg_per_min);
   }
 
-  std::string feed_word(const Move& move) {
-    const std::string F = significant_text(feed_value(move));
-    if (move.feed_mode != FeedMode::inverse_time && F == F_) return {};
+  // mm of X, Y and Z where they move, else deg of the rotary axes: as printed.
+  double printed_length(const Move& move, const Steps& steps) const {
+    AxisWords moved = move.end_machine - machine_before_;
+    moved.head<3>() /= mm;
+    moved.tail<3>() /= deg;
+    for (int i = 0; steps_ && i < kAxisWords; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      moved[i] = (i < kLinearJoints ? linear_ : rotary_).value(steps[k] - (*steps_)[k]);
+    }
+    const double own = moved.head<3>().norm();
+    return own > 0.0 ? own : moved.tail<3>().norm();
+  }
+
+  // Under G93 nothing runs slower than kSlowestInverse, whatever F is. A displaced block that
+  // must, since its rotary axes take their time while X, Y and Z hardly move, runs under G94.
+  // @return F under G94; nullopt where the move keeps its own mode
+  std::optional<double> slow_feed(const Move& move, const Steps& steps) const {
+    constexpr double kDigits = 1e-9;  // relative
+    if (move.feed_mode != FeedMode::inverse_time || move.kind != MoveKind::feed) return {};
+    const double feed = feed_value(move) * printed_length(move, steps);
+    const bool is_slow = feed > 0.0 && feed < kSlowestInverse * (1.0 - kDigits);
+    return is_slow ? std::optional(feed) : std::nullopt;
+  }
+
+  std::string feed_word(double feed) {
+    const std::string F = significant_text(feed);
+    if (feed_mode_ != "G93" && F == F_) return {};
     F_ = F;
     return " F" + F;
   }
@@ -255,6 +284,8 @@ class Printer {
     }
     print_modes(move);
     const Steps steps = steps_of(move.end);
+    const std::optional<double> slow = slow_feed(move, steps);
+    print_feed_mode(slow ? FeedMode::units_per_minute : move.feed_mode);
     const bool is_arc = move.kind == MoveKind::arc && !vanishes(move, steps);
     if (is_arc) {
       static constexpr std::array<std::string_view, 3> kPlanes = {"G19", "G18", "G17"};
@@ -271,7 +302,7 @@ class Printer {
     } else if (words.empty()) {
       text += " X" + linear_.text(steps[0]);  // a motion without axis words would be none
     }
-    if (move.kind != MoveKind::rapid) text += feed_word(move);
+    if (move.kind != MoveKind::rapid) text += feed_word(slow.value_or(feed_value(move)));
     const bool is_absolute = is_arc && !steps_;
     if (is_absolute) line("G90.1");
     line(text);

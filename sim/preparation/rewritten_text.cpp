@@ -92,7 +92,10 @@ bool is_same_feed(const Action& wanted, const Action& read) {
   const Move &a = *wanted.move, &b = *read.move;
   const bool stands = (a.end_machine - wanted.begin).cwiseAbs().maxCoeff() <= kPrinted;
   if (a.kind == MoveKind::rapid || (stands && a.kind == MoveKind::feed)) return true;
-  if (a.feed_mode != b.feed_mode) return false;
+  // blocks that are too slow for G93 are written under G94
+  const bool is_slow =
+      a.feed_mode == FeedMode::inverse_time && b.feed_mode == FeedMode::units_per_minute;
+  if (a.feed_mode != b.feed_mode && !is_slow) return false;
   if (a.feed_mode == FeedMode::units_per_revolution) return is_close(a.value, b.value);
   if (a.feed_mode == FeedMode::units_per_minute) return is_close(a.feed, b.feed);
   const double rounding = kShortTime * kPrinted / a.feed;
