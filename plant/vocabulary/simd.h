@@ -29,7 +29,7 @@ std::string_view name_of(SimdLevel level);
 
 /// make.operator()<level>(), for tables of functions that exist once for each level.
 template <class Make>
-auto at_simd_level(SimdLevel level, Make make) {
+auto at_simd_level([[maybe_unused]] SimdLevel level, Make make) {
 #ifdef SERVOMILL_X86
   if (level == SimdLevel::avx512) return make.template operator()<SimdLevel::avx512>();
   if (level == SimdLevel::avx2) return make.template operator()<SimdLevel::avx2>();
