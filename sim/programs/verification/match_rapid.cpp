@@ -220,6 +220,19 @@ void ReplayComparison::match_place(const OriginalAction& action) {
   match_rapid(action);
 }
 
+bool ReplayComparison::is_return(const Action& one) const {
+  const bool is_height = limits_.retract && commands_only_Z(one) && one.end[kZ] &&
+                         std::abs(*one.end[kZ] - *limits_.retract) <= limits_.grid;
+  return one.kind == ActionKind::rapid && one.is_machine_position &&
+         (one.is_to_reference || is_height);
+}
+
+// A retract written where Z is there already moves nothing.
+bool ReplayComparison::is_at_height_of_frames() const {
+  return is_retracted_ && at_[kZ] && limits_.retract &&
+         std::abs(*at_[kZ] - *limits_.retract) <= limits_.grid;
+}
+
 // G28, G30: another control's reference position, or the height of the frames.
 void ReplayComparison::match_reference(const OriginalAction& action) {
   AxisFlags6 remaining = action.is_named;
@@ -229,11 +242,14 @@ void ReplayComparison::match_reference(const OriginalAction& action) {
     if (!correction_.layout().joint_of(kAllAxes[i])) remaining[i] = false;
   }
   while (std::any_of(remaining.begin(), remaining.end(), [](bool one) { return one; })) {
+    const Action* next = peek();
+    const bool returns = next != nullptr && is_return(*next);
+    if (!returns && remaining[kZ] && is_at_height_of_frames()) {
+      remaining[kZ] = false;
+      continue;
+    }
     const Action& one = need("a return to the reference position");
-    const bool is_height = limits_.retract && commands_only_Z(one) && one.end[kZ] &&
-                           std::abs(*one.end[kZ] - *limits_.retract) <= limits_.grid;
-    if (one.kind != ActionKind::rapid || !one.is_machine_position ||
-        !(one.is_to_reference || is_height)) {
+    if (!is_return(one)) {
       fail("a return to the reference position must come here, and another action comes");
     }
     for (std::size_t i = 0; i < remaining.size(); ++i) {

@@ -82,6 +82,8 @@ class ReplayComparison {
   void match_place(const OriginalAction& action);
   void skip_via(const OriginalAction& action);
   void match_reference(const OriginalAction& action);
+  bool is_return(const Action& one) const;
+  bool is_at_height_of_frames() const;
   void match_rapid(const OriginalAction& action);
   void check_rapid_block(const OriginalAction& action, const Targets& targets, const Action& one);
   Targets targets_of(const OriginalAction& action);

@@ -67,5 +67,15 @@ TEST(UnsafeOrder, AxesRestatedElsewhereThanTheOriginalHasThem) {
             "moves X, which the original leaves where it is");
 }
 
+// The second moves nothing; without the first Z stays down.
+TEST(UnsafeOrder, ReferenceMovesWhereZIsThereAlready) {
+  const std::string program = kStart + "G1 Z-5 F200\nG91\nG28 Z0\nG28 Z0\nG90\nG4 P1.5\nM2\n";
+  const std::string twice = "SUPA G0 Z-2 D0\nSUPA G0 Z-2 D0\n";
+  EXPECT_EQ(verified(program, twice, twice), "taken");
+  EXPECT_EQ(verified(program, twice, "SUPA G0 Z-2 D0\n"), "taken");
+  EXPECT_EQ(verified(program, twice, ""),
+            "a return to the reference position must come here, and another action comes");
+}
+
 }  // namespace
 }  // namespace servomill::sim::unsafe_order_test
