@@ -231,7 +231,9 @@ void DialectWriter::write_other(const Move& move, const Block& block, std::size_
       const int M = code(Group::m_coolant);
       coolant_ = move.number;
       if (ends && M < 0) return;
-      known_coolant_ = coolant_;
+      // where the state is lost, one code says nothing about the other
+      const int own = M == 70 ? controllers::kMist : M == 80 ? controllers::kFlood : coolant_;
+      if (known_coolant_ || coolant_ == own) known_coolant_ = coolant_;
       skipped_coolant_ = coolant_;
       return printer_->coolant(M == 70 || M == 80 ? M / 10 : 9);
     }

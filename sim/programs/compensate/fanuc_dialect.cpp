@@ -103,7 +103,9 @@ class Fanuc final : public IsoDialect {
   }
 
   bool reference_Z() override {
-    put("G91 G28 Z0.");
+    // the macro of a tool change may leave any motion code behind
+    put(modes_.code ? "G91 G28 Z0." : "G0 G91 G28 Z0.");
+    if (!modes_.code) modes_.code = "G0";
     put("G90");
     modes_.length.reset();
     return true;

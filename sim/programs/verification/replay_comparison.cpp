@@ -231,6 +231,7 @@ void ReplayComparison::match_other(const OriginalAction& action) {
   const bool is_pallet = kind == ActionKind::stop && action.move.number == kPalletStop;
   if (kind == ActionKind::tool || is_pallet) unmoved_ = {};
   is_behind_pallets_ = is_pallet;
+  if (kind == ActionKind::tool) has_moved_since_stop_ = false;
   const bool is_stop = kind == ActionKind::stop && !limits_.is_linuxcnc;
   if (kind == ActionKind::tool || is_stop) is_lost_.fill(true);
   if (kind == ActionKind::tool) {

@@ -77,5 +77,28 @@ TEST(UnsafeOrder, ReferenceMovesWhereZIsThereAlready) {
             "a return to the reference position must come here, and another action comes");
 }
 
+// Nothing moves between them: the next motion brings the coolant back.
+TEST(UnsafeOrder, AStopRightBehindAToolChange) {
+  const std::string program =
+      kStart + "M8\nG1 Z-5 F200\nG0 Z20\nT2 M6\nG43 H2\nS800 M3\nM1\nG0 X20 Y15\nZ5\nM2\n";
+  EXPECT_EQ(
+      verified(program, "S800 M3\nM1\nM3\nM8\nG0 X20 Y15\n", "S800 M3\nM1\nM3\nM8\nG0 X20 Y15\n"),
+      "taken");
+}
+
+// M7 says nothing about the flood that the original has still on.
+TEST(UnsafeOrder, AnotherCoolantRightBehindAToolChange) {
+  const std::string program =
+      kStart + "M8\nG1 Z-5 F200\nG0 Z20\nT2 M6\nG43 H2\nS800 M3\nM7\nG0 X20 Y15\nZ5\nM2\n";
+  EXPECT_EQ(verified(program, "M7\nM7\nM8\n", "M7\nM7\nM8\n"), "taken");
+}
+
+// The macro of the tool change leaves no motion code that is known.
+TEST(UnsafeOrder, AReferenceMoveRightBehindAToolChange) {
+  const std::string program = kStart + "X20 Z20\nT2 M6\nG43 H2\nG91 G28 Z0\nG90\nM2\n";
+  const std::string text = dialect_trial(Dialect::fanuc, program).run().program;
+  EXPECT_NE(text.find(" G0 G91 G28 Z0.\n"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace servomill::sim::unsafe_order_test
