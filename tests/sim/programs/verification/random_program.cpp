@@ -14,6 +14,14 @@ constexpr double kInch = 25.4;
 
 RandomProgram::RandomProgram(std::uint32_t seed, const Options& options)
     : random_(seed), options_(options) {
+  const std::vector<Step> steps = options.is_interrupted ? interrupted_steps() : mixed_steps();
+  begin();
+  for (int i = 0; i < options.steps; ++i)
+    (this->*steps[pick(static_cast<unsigned>(steps.size()))])();
+  end();
+}
+
+std::vector<RandomProgram::Step> RandomProgram::mixed_steps() {
   std::vector<Step> steps = {
       &RandomProgram::rapid,       &RandomProgram::feed,       &RandomProgram::feed,
       &RandomProgram::arc,         &RandomProgram::arc,        &RandomProgram::helix,
@@ -58,15 +66,12 @@ RandomProgram::RandomProgram(std::uint32_t seed, const Options& options)
                                     &RandomProgram::optional_cut,
                                     &RandomProgram::spelling};
   for (int i = 0; i < 3; ++i) steps.push_back(seldom[pick(static_cast<unsigned>(seldom.size()))]);
-  if (options.has_rotary_axes) {
+  if (options_.has_rotary_axes) {
     for (int i = 0; i < 3; ++i) steps.push_back(&RandomProgram::rotate);
     steps.push_back(&RandomProgram::rotate_far);
     steps.push_back(&RandomProgram::rotate_with_all);
   }
-  begin();
-  for (int i = 0; i < options.steps; ++i)
-    (this->*steps[pick(static_cast<unsigned>(steps.size()))])();
-  end();
+  return steps;
 }
 
 double RandomProgram::uniform(double low, double high) {

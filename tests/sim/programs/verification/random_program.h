@@ -10,10 +10,13 @@
 namespace servomill::sim {
 
 /// Tools 1 and 2 (diameters 6 and 8 mm), all work systems; rotary axes A and C on request.
+/// Interrupted programs consist of little else than optional blocks ('/'), stops, reference moves
+/// and tool changes, each next to each.
 class RandomProgram {
  public:
   struct Options {
     bool has_rotary_axes = false;
+    bool is_interrupted = false;
     int steps = 18;
   };
 
@@ -31,6 +34,8 @@ class RandomProgram {
   std::string word(char letter, double mm_value) const;
   std::string axis(int i, double to);
   void line(const std::string& text) { text_ += text + "\n"; }
+  std::vector<Step> mixed_steps();
+  std::vector<Step> interrupted_steps();
 
   // blocks
   void begin();
@@ -87,6 +92,16 @@ class RandomProgram {
   void optional_cut();
   void rotate_far();
   void rotate_with_all();
+
+  // interrupted programs (random_program_interrupted.cpp)
+  void optional_block();
+  void optional_reference();
+  void bare_stop();
+  void bare_reference();
+  void reference_of_all();
+  void bare_tool_change();
+  void single_axis();
+  void naming();
 
   std::mt19937 random_;
   Options options_;
