@@ -23,6 +23,7 @@ class Siemens final : public IsoDialect {
       const auto& start = settings.rotary_start[i];
       if (start) counts_[i] = {*start / deg, 0.0};
     }
+    skipped_counts_ = counts_;
   }
 
   void begin(const std::vector<std::string>& header) override {
@@ -98,7 +99,7 @@ class Siemens final : public IsoDialect {
     assume("T selects the tool and M6 changes it");
     forget_modes();
     stops_at_ends_ = false;
-    counts_.fill({});
+    forget_counts();
     modes_.feed_mode = FeedMode::units_per_minute;
     modes_.work_system = system;
     put(fmt::format("G17 G40 G64 G90 G94 G710 {}", system_code(system)));
@@ -106,17 +107,15 @@ class Siemens final : public IsoDialect {
   }
   void stop(int code) override {
     IsoDialect::stop(code);
-    counts_.fill({});
+    forget_counts();
   }
   void begin_optional() override {
     IsoDialect::begin_optional();
-    counts_before_ = counts_;
+    is_optional_ = true;
   }
   void end_optional() override {
     IsoDialect::end_optional();
-    for (std::size_t i = 0; i < counts_.size(); ++i) {
-      if (counts_[i] != counts_before_[i]) counts_[i].reset();
-    }
+    is_optional_ = false;
   }
   void dwell(double seconds) override { put("G4 F" + rate(seconds, 4, "dwell")); }
 
@@ -204,11 +203,22 @@ class Siemens final : public IsoDialect {
     const std::string text = fixed_text(value, decimals(axis));
     const double count = std::stod(text), offset = offset_of(i);
     const std::optional<Count> known = counts_[i];
+    const std::optional<Count> skipped = is_optional_ ? known : skipped_counts_[i];
+    const bool is_doubtful = known != skipped;
     counts_[i] = {count + offset, offset};
+    if (!is_optional_) skipped_counts_[i] = counts_[i];
     const auto is_angle = [](double angle) { return angle >= 0.0 && angle < 360.0; };
     const double before = known ? known->machine - offset : 0.0;
-    if (is_angle(count) && (!known || is_angle(before))) {
+    const auto has_angle = [&](const auto& one) { return !one || is_angle(one->machine - offset); };
+    if (is_angle(count) && has_angle(known) && has_angle(skipped)) {
       return fmt::format("{}=AC({})", letter(axis), text);
+    }
+    if (is_doubtful) {
+      throw Unsayable{
+          fmt::format("rotates {0} to {1}, while it may be a modulo axis, whose absolute positions "
+                      "are from 0 to 360 deg, and the operator decides by blocks with '/' where it "
+                      "comes from; name {0} without '/' between 0 and 360 deg before",
+                      letter(axis), text)};
     }
     if (!known) return letter(axis) + text;
     if (is_of_machine_ || known->offset != offset) {
@@ -219,6 +229,11 @@ class Siemens final : public IsoDialect {
                       is_of_machine_ ? "of the machine" : "behind a change of its work offset")};
     }
     return fmt::format("{}=IC({})", letter(axis), fixed_text(count - before, decimals(axis)));
+  }
+
+  void forget_counts() {
+    counts_.fill({});
+    if (!is_optional_) skipped_counts_.fill({});
   }
 
   static int edge(const DialectMotion& motion) {
@@ -247,8 +262,9 @@ class Siemens final : public IsoDialect {
     double machine = 0.0, offset = 0.0;  // deg; of the work system that it was written in
     bool operator==(const Count&) const = default;
   };
-  // of A, B, C as written last; before '/'
-  std::array<std::optional<Count>, 3> counts_{}, counts_before_{};
+  // of A, B, C as written last; the second without the blocks with '/'
+  std::array<std::optional<Count>, 3> counts_{}, skipped_counts_{};
+  bool is_optional_ = false;
   bool is_of_machine_ = false;
   bool stops_at_ends_ = false;                         // G60
   Eigen::Vector3d through_ = Eigen::Vector3d::Zero();  // of an arc outside XY, half way along

@@ -100,5 +100,19 @@ TEST(UnsafeOrder, AReferenceMoveRightBehindAToolChange) {
   EXPECT_NE(text.find(" G0 G91 G28 Z0.\n"), std::string::npos) << text;
 }
 
+// Brought back behind '/', C is where it was for both positions of the switch.
+TEST(UnsafeOrder, AnEndlessAxisBehindAnOptionalStop) {
+  Trial trial =
+      dialect_trial(Dialect::siemens,
+                    "G21 G90 G17 G54\nT1 M6\nS600 M3\nG0 X1 Y2\nG0 A-8.161 C64.698\nG43 H1 Z9\n"
+                    "/M1\nG0 X5\nY6\nZ8\nG0 A20 C-54.96\nM2\n");
+  trial.request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/generic_trunnion_ac.toml";
+  trial.request.inputs.parameter_file.clear();
+  trial.request.work_offsets = {"X=0,Y=0,Z=-90,A=0,C=0"};
+  const std::string text = trial.run().program;
+  EXPECT_NE(text.find(" A-8.161 C=AC(64.698)\n"), std::string::npos) << text;
+  EXPECT_NE(text.find(" A20 C=IC(-119.658)\n"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace servomill::sim::unsafe_order_test
