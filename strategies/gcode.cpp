@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -170,7 +169,7 @@ class Rewriter {
     const Eigen::Vector3d e =
         model.error(Q, identified_.p_ST, directions_).dp_W - model.error(Q, identified_.p_ST).dp_W;
     const Eigen::Matrix3d J = plant::linear_jacobian(model.chain(), Q);
-    const Eigen::Vector3d d = J.completeOrthogonalDecomposition().solve(e);
+    const Eigen::Vector3d d = plant::least_squares(J, e).x;
     return params_.action == Action::impose ? d : Eigen::Vector3d(-d);
   }
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -12,6 +10,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/metrology/dense_solver.h"
 
 namespace servomill::sim {
 namespace {
@@ -23,9 +22,6 @@ using Vector6 = Eigen::Vector<double, 6>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Columns3 = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 using Columns6 = Eigen::Matrix<double, 6, Eigen::Dynamic>;
-
-// of one size, so that it is compiled once: it takes g++ its time
-using Symmetric = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
 constexpr int kMostSteps = 200;   // Gauss-Newton takes about five, point to point some dozens
 constexpr double kNoGain = 1e-9;  // of the sum of squares
@@ -75,9 +71,9 @@ std::string in_words(const Vector3d& v) {
 // Free motions (shift, rotation about `centre` times `size`; columns, orthonormal) in words.
 std::string free_motions(const Columns6& motions, const Vector3d& centre, double size) {
   const Columns3 rotations = motions.bottomRows(3);
-  const Symmetric eigen(rotations.transpose() * rotations);
-  const Eigen::Index turning = (eigen.eigenvalues().array() > 0.01).count();
-  const Columns6 sorted = motions * eigen.eigenvectors().rowwise().reverse();  // those come first
+  const SymmetricEigen eigen = symmetric_eigen(rotations.transpose() * rotations);
+  const Eigen::Index turning = (eigen.values.array() > 0.01).count();
+  const Columns6 sorted = motions * eigen.vectors.rowwise().reverse();  // those come first
   std::vector<std::string> words;
   const Columns3 shifts = tidy(sorted.topRows(3).rightCols(motions.cols() - turning));
   for (const auto& shift : shifts.colwise()) words.push_back("a shift along " + in_words(shift));
@@ -106,12 +102,12 @@ Isometry3d closed_form(Points3 from, Points3 to) {
   for (std::size_t i = 0; i < from.size(); ++i) {
     covariance += (to[i] - mean_to) * (from[i] - mean_from).transpose();
   }
-  const Eigen::JacobiSVD<Matrix3d, Eigen::NoQRPreconditioner> svd(
-      covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const SingularValues svd = singular_values(covariance);
+  const Matrix3d U = svd.U, V = svd.V;
   Matrix3d no_mirror = Matrix3d::Identity();
-  no_mirror(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  no_mirror(2, 2) = (U * V.transpose()).determinant() < 0.0 ? -1.0 : 1.0;
   Isometry3d motion = Isometry3d::Identity();
-  motion.linear() = svd.matrixU() * no_mirror * svd.matrixV().transpose();
+  motion.linear() = U * no_mirror * V.transpose();
   motion.translation() = mean_to - motion.linear() * mean_from;
   return motion;
 }
@@ -154,13 +150,13 @@ struct Linear {
         free;  // orthonormal motions that change distances by less than kUnnoticed of themselves
   };
   Step step() const {
-    const Symmetric eigen(normal);
+    const SymmetricEigen eigen = symmetric_eigen(normal);
     Eigen::Index free = 0;
-    for (const double value : eigen.eigenvalues()) free += value < kUnnoticed * kUnnoticed ? 1 : 0;
-    const Columns6 noticed = eigen.eigenvectors().rightCols(6 - free);
-    const Eigen::VectorXd strength = eigen.eigenvalues().tail(6 - free);
+    for (const double value : eigen.values) free += value < kUnnoticed * kUnnoticed ? 1 : 0;
+    const Columns6 noticed = eigen.vectors.rightCols(6 - free);
+    const Eigen::VectorXd strength = eigen.values.tail(6 - free);
     const Eigen::VectorXd along = (noticed.transpose() * right).cwiseQuotient(strength);
-    return {noticed * along, eigen.eigenvectors().leftCols(free)};
+    return {noticed * along, eigen.vectors.leftCols(free)};
   }
 
   Isometry3d motion(const Vector6& step) const {

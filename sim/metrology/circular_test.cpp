@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/metrology/dense_solver.h"
 
 namespace servomill::sim {
 namespace {
@@ -68,7 +68,7 @@ ParallelLines lines_through(const std::vector<RadialError>& arcs) {  // theta: p
     normal += row * row.transpose();
     right += row * dr;
   }
-  const Vector3d x = normal.ldlt().solve(right);
+  const Vector3d x = solve_symmetric(normal, right);
   return {x[0], x[1], x[2]};
 }
 
@@ -119,7 +119,7 @@ double squareness_of(const std::vector<RadialError>& curve, double radius) {
     normal += row * row.transpose();
     right += row * dr;
   }
-  const Row x = normal.ldlt().solve(right);
+  const Row x = solve_symmetric(normal, right);
   return 2.0 * x[4] / radius;
 }
 

@@ -1,12 +1,12 @@
 #include "sim/metrology/cylinder_fit.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <vector>
 
+#include "sim/metrology/dense_solver.h"
 #include "sim/metrology/round_fit.h"
 
 namespace servomill::sim {
@@ -57,7 +57,7 @@ struct LinearFit {
   Vector5 step(double damping) const {
     Matrix5 damped = normal;
     damped.diagonal() *= 1.0 + damping;
-    return damped.ldlt().solve(right);
+    return solve_symmetric(damped, right);
   }
 
   Cylinder moved(const Cylinder& cylinder, const Vector5& x) const {
@@ -66,7 +66,7 @@ struct LinearFit {
   }
 
   bool determined() const {
-    const auto strength = Eigen::SelfAdjointEigenSolver<Matrix5>(normal).eigenvalues();
+    const Eigen::VectorXd strength = symmetric_eigen(normal).values;
     return strength[0] > kFree * strength[4];
   }
 };

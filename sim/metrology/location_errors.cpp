@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 
 #include "plant/geometry/volumetric.h"
+#include "sim/metrology/dense_solver.h"
 
 namespace servomill::sim {
 namespace {
@@ -84,8 +84,6 @@ struct Basis {
   }
 };
 
-using Svd = Eigen::JacobiSVD<MatrixXd, Eigen::NoQRPreconditioner>;
-
 // Columns of length 1, or 0 for those that do nothing.
 MatrixXd normalized(const MatrixXd& A, VectorXd& length) {
   length = A.colwise().norm();
@@ -100,37 +98,34 @@ MatrixXd normalized(const MatrixXd& A, VectorXd& length) {
 struct Solved {
   VectorXd length;  // of the columns, 0 for those left out
   MatrixXd scaled;
-  Svd svd;
+  SingularValues svd;
+  Eigen::Index rank;
 
   Solved(const MatrixXd& A, const std::vector<Eigen::Index>& columns) {
     MatrixXd kept = MatrixXd::Zero(A.rows(), A.cols());
     for (const Eigen::Index j : columns) kept.col(j) = A.col(j);
     scaled = normalized(kept, length);
-    svd.setThreshold(kOwnShare * kOwnShare);
-    svd.compute(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    svd = singular_values(scaled);
+    rank = svd.rank(kOwnShare * kOwnShare);
   }
-  double condition() const {
-    return svd.singularValues()[0] / svd.singularValues()[svd.rank() - 1];
-  }
+  double condition() const { return svd.s[0] / svd.s[rank - 1]; }
+  VectorXd solve(const VectorXd& b) const { return svd.solve(b, rank); }
   // diagonal of (A^T A)^-1, root
   double spread(Eigen::Index column) const {
-    const Eigen::Index k = svd.rank();
-    const VectorXd v = svd.matrixV().row(column).head(k).transpose();
-    return v.cwiseQuotient(svd.singularValues().head(k)).norm() / length[column];
+    const VectorXd v = svd.V.row(column).head(rank).transpose();
+    return v.cwiseQuotient(svd.s.head(rank)).norm() / length[column];
   }
 };
 
 int rank_of(const MatrixXd& A) {
   VectorXd length;
-  Svd svd(normalized(A, length));
-  svd.setThreshold(kOwnShare * kOwnShare);
-  return static_cast<int>(svd.rank());
+  return static_cast<int>(singular_values(normalized(A, length)).rank(kOwnShare * kOwnShare));
 }
 
 // Finds the unknowns kept that have the same effect as one left out.
 void explain(LocationEstimate& estimate, const VectorXd& effect, const Solved& solved,
              const Basis& basis, int set_up_unknowns, const std::vector<ErrorName>& names) {
-  const VectorXd share = solved.svd.solve(effect);  // each of the size of what it does
+  const VectorXd share = solved.solve(effect);  // each of the size of what it does
   for (const Eigen::Index column : basis.columns) {
     if (!(std::abs(share[column]) > kOwnShare * effect.norm())) continue;
     if (column < set_up_unknowns) {
@@ -156,8 +151,7 @@ LocationFit fit(const plant::MachineChain& chain, const std::vector<SensorReadin
   for (std::size_t i = 0; i < readings.size(); ++i) {
     Ab(static_cast<Eigen::Index>(i), unknowns) = readings[i].d;
   }
-  const Eigen::HouseholderQR<MatrixXd> qr(Ab);
-  const MatrixXd R = qr.matrixQR().topRows(unknowns + 1).triangularView<Eigen::Upper>();
+  const MatrixXd R = triangular_factor(Ab);
   const MatrixXd A = R.topLeftCorner(unknowns, unknowns);
   const VectorXd b = R.col(unknowns).head(unknowns);
   const double beyond = R(unknowns, unknowns);
@@ -170,7 +164,7 @@ LocationFit fit(const plant::MachineChain& chain, const std::vector<SensorReadin
     is_kept[static_cast<std::size_t>(j)] = A.col(j).norm() > nothing && basis.add(A, j);
   }
   const Solved solved(A, basis.columns);
-  const VectorXd effect = solved.svd.solve(b);
+  const VectorXd effect = solved.solve(b);
 
   LocationFit out;
   out.rank = rank_of(A);

@@ -1,7 +1,8 @@
 #include "sim/metrology/points.h"
 
-#include <Eigen/Dense>
 #include <cassert>
+
+#include "sim/metrology/dense_solver.h"
 
 namespace servomill::sim {
 namespace {
@@ -19,9 +20,9 @@ PrincipalAxes<N> axes_of(std::span<const Eigen::Vector<double, N>> points) {
   out.mean = points.front() + out.mean / n;
   Eigen::Matrix<double, N, N> covariance = Eigen::Matrix<double, N, N>::Zero();
   for (const auto& p : points) covariance += (p - out.mean) * (p - out.mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> eigen(covariance / n);
-  out.axes = eigen.eigenvectors().rowwise().reverse();
-  out.extent = eigen.eigenvalues().reverse().cwiseMax(0.0).cwiseSqrt();
+  const SymmetricEigen eigen = symmetric_eigen(covariance / n);
+  out.axes = eigen.vectors.rowwise().reverse();
+  out.extent = eigen.values.reverse().cwiseMax(0.0).cwiseSqrt();
   return out;
 }
 
