@@ -97,20 +97,22 @@ class Observer {
   std::string spindle_, coolant_, seen_spindle_, seen_coolant_, feed_;
 };
 
-double distance(const Vector3d& p, const std::vector<Vector3d>& path) {
-  double best = 1e9;
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    const Vector3d a = path[i - 1], e = path[i] - a;
-    const double n = e.squaredNorm();
-    const double t = n > 0.0 ? std::clamp((p - a).dot(e) / n, 0.0, 1.0) : 0.0;
-    best = std::min(best, (p - a - t * e).norm());
-  }
-  return best;
+double distance(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
+  const Vector3d e = b - a;
+  const double n = e.squaredNorm();
+  const double t = n > 0.0 ? std::clamp((p - a).dot(e) / n, 0.0, 1.0) : 0.0;
+  return (p - a - t * e).norm();
 }
 
 bool is_near(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b, double tolerance) {
-  return std::all_of(a.begin(), a.end(),
-                     [&](const Vector3d& p) { return distance(p, b) <= tolerance; });
+  std::size_t found =
+      1;  // end of the line that the point before is near to: the search begins there
+  return std::all_of(a.begin(), a.end(), [&](const Vector3d& p) {
+    for (std::size_t k = 1; k < b.size(); ++k, found = found + 1 < b.size() ? found + 1 : 1) {
+      if (distance(p, b[found - 1], b[found]) <= tolerance) return true;
+    }
+    return false;
+  });
 }
 
 }  // namespace
