@@ -60,7 +60,7 @@ def may_include(name, included):
 def linked_rooms(room):
     """What the library of a room of sim/ is linked with, by its CMakeLists.txt, but plant."""
     text = (root / "sim" / room / "CMakeLists.txt").read_text()
-    found = re.search(rf"^servomill_room\({room} SEES ([a-z ]+) SOURCES$", text, re.MULTILINE)
+    found = re.search(rf"^servomill_room\({room} (?:COLD )?SEES ([a-z ]+) SOURCES$", text, re.MULTILINE)
     return set(found[1].split()) - {"plant"} if found else None
 
 
