@@ -3,70 +3,15 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
 
 #include "controllers/gcode/printer.h"
 #include "controllers/path/trajectory.h"
-#include "tests/controllers/gcode/program.h"
+#include "tests/controllers/gcode/cutter_locations.h"
 
 namespace servomill::controllers::post_processor_test {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kPrintTol = 1e-9;  // m, rad: seven decimals of mm and deg, seen from 0.3 m
-const char* const kTableTable = "[w C' A' b X Y Z t]";
-const std::array<const char*, 4> kStructures = {kTableTable, "[w C' B' X b Y Z (C1) t]",
-                                                "[w C' X' b Y Z B t]", "[w X' b Y Z C A t]"};
-
-plant::InverseKinematics machine(const char* structure, double a_lower = -2.0) {
-  plant::InverseSettings settings;
-  settings.lower << -0.5, -0.5, -0.5, a_lower, -50.0;
-  settings.upper << 0.5, 0.5, 0.5, 2.0, 50.0;
-  return plant::InverseKinematics(plant::make_chain(plant::parse_structure(structure)), settings);
-}
-
-PostOptions usual_options() {
-  PostOptions options;
-  options.approach = Approach::direct;
-  options.tools = usual_setup().tools;
-  options.tool = 1;
-  options.work_offset << 0.03, -0.02, 0.05;
-  options.feed = 0.02;
-  options.tolerance = {1.0 * um, 20.0 * urad};
-  return options;
-}
-
-ClData cl(std::string_view text) { return read_cl_data(text, "p.cls"); }
-
-// Locations every few millimetres with a tool axis that wanders, away from the vertical.
-ClData wandering(unsigned seed, int count = 30) {
-  boost::random::mt19937 engine(seed);
-  boost::random::uniform_real_distribution<double> part(-1.0, 1.0);
-  ClData data;
-  Eigen::Vector3d p(0.02, 0.03, 0.04), k(0.5, 0.3, 0.8);
-  for (int n = 0; n < count; ++n) {
-    ClRecord& record = data.records.emplace_back();
-    record.line = n + 1;
-    record.P = {p, k.normalized()};
-    p += 3.0 * mm * Eigen::Vector3d(part(engine), part(engine), part(engine));
-    k += 0.05 * Eigen::Vector3d(part(engine), part(engine), part(engine));
-  }
-  return data;
-}
-
-// The made program as servomill reads it again.
-std::vector<Move> read_again(const PostProcessed& made, const PostOptions& options) {
-  ProgramSetup setup;
-  setup.tools = options.tools;
-  setup.work_offset[0].head<3>() = options.work_offset;
-  std::vector<Move> motions;
-  for (const Move& move : interpret(print_program(made.moves, {}, "").text, "p.ngc", setup)) {
-    if (is_motion(move.kind)) motions.push_back(move);
-  }
-  return motions;
-}
 
 std::string fault_of_post(const ClData& data, const plant::InverseKinematics& inverse,
                           const PostOptions& options = usual_options()) {
@@ -115,39 +60,6 @@ TEST(Post, ToolGoesStraightFromLocationToLocation) {
   }
 }
 
-TEST(Post, EveryBlockTakesTheTimeThatTheTipNeeds) {
-  constexpr double kRelative = 1e-9;  // F has 12 digits, coordinates 7 decimals of mm
-  PostOptions options = usual_options();
-  options.feed = 0.02;
-  const auto inverse = machine(kTableTable);
-  const ClData data = wandering(2);
-  const PostProcessed made = post(data, "p.cls", inverse, options);
-  const auto moves = read_again(made, options);
-  double time = 0.0, length = 0.0;
-  for (std::size_t i = 1; i < moves.size(); ++i) {
-    EXPECT_EQ(moves[i].feed_mode, FeedMode::inverse_time);
-    time += (moves[i].end_machine - moves[i - 1].end_machine).head<3>().norm() / moves[i].feed;
-  }
-  for (std::size_t n = 1; n < data.records.size(); ++n) {
-    length += (data.records[n].P.p_WT - data.records[n - 1].P.p_WT).norm();
-  }
-  EXPECT_NEAR(time / (length / options.feed), 1.0, kRelative);
-}
-
-TEST(Post, StandingTipTurnsWithTheRateOfTheToolAxis) {
-  PostOptions options = usual_options();
-  options.rotary_rate = 0.5;
-  const auto inverse = machine(kTableTable);
-  const ClData data = cl("GOTO/10,0,0,0.6,0,0.8\nGOTO/10,0,0,0.8,0,0.6\n");
-  const auto moves = read_again(post(data, "p.cls", inverse, options), options);
-  double time = 0.0;
-  for (std::size_t i = 1; i < moves.size(); ++i) {
-    time += (moves[i].end_machine - moves[i - 1].end_machine).head<3>().norm() / moves[i].feed;
-  }
-  const double angle = std::atan2(0.8, 0.6) - std::atan2(0.6, 0.8);
-  EXPECT_NEAR(time, angle / options.rotary_rate, 1e-6);
-}
-
 TEST(Post, EndlessAxisGoesOnTurning) {
   PostOptions options = usual_options();
   ClData data;
@@ -172,20 +84,6 @@ TEST(Post, ClassicalPostHasOneBlockALocation) {
   const PostProcessed made = post(data, "p.cls", machine(kTableTable), options);
   EXPECT_EQ(made.inserted, 0u);
   EXPECT_EQ(made.moves.size(), data.records.size() + 1);  // and the tool
-}
-
-TEST(Post, TipWordsAreTheLocations) {
-  PostOptions options = usual_options();
-  options.mode = PostMode::tip;
-  options.tolerance.axis = 1.0;
-  const ClData data = wandering(4);
-  const PostProcessed made = post(data, "p.cls", machine(kTableTable), options);
-  ASSERT_EQ(made.moves.size(), data.records.size() + 1);
-  for (std::size_t n = 0; n < data.records.size(); ++n) {
-    EXPECT_LT((made.moves[n + 1].end.head<3>() - data.records[n].P.p_WT).norm(), 1e-15);
-  }
-  EXPECT_DOUBLE_EQ(made.moves.back().feed, options.feed);
-  EXPECT_EQ(made.moves.back().feed_mode, FeedMode::units_per_minute);
 }
 
 TEST(Post, TipControlNeedsFewerPoints) {
@@ -215,68 +113,6 @@ TEST(Post, WholeProgramAsPrinted) {
   EXPECT_EQ(print_program(post(data, "p.cls", machine(kTableTable), options).moves, print, "").text,
             "G21 G90 G91.1 G94 G17 G40 G80 G92.1\nT1 M6\nS600\nM3\nM8\nG54\nG43.4 H1\nG64 P0.001\n"
             "G0 X0 Y0 Z10 A0 C0\nG1 Z0 F600\nG1 X10\nM5\nM30\n");
-}
-
-// A fork head tilted by 30 deg to +X; the tool is 100 mm long, the retract height 400 mm. Spindle
-// and coolant wait for the rotary axes; the rapid at the same tool axis stays one; a rapid to
-// another tool axis, a tool change and the end retract.
-TEST(Post, SafeApproachAndRetractAsPrinted) {
-  PostOptions options;
-  options.tools = usual_setup().tools;
-  options.safe = {10.0 * mm, 0.4};
-  const ClData data =
-      cl("LOADTL/1\nSPINDL/600,CLW\nCOOLNT/ON\nFEDRAT/600\nGOTO/0,0,10,0.5,0,0.8660254037844386\n"
-         "GOTO/0,0,0\nRAPID\nGOTO/20,0,0\nRAPID\nGOTO/40,0,0,0,0,1\nFEDRAT/600\nGOTO/50,0,0\n"
-         "SPINDL/OFF\nFINI\n");
-  PrintOptions print;
-  print.axes = "XYZAB";
-  const auto inverse = machine("[w X b Y Z B t]");
-  EXPECT_EQ(print_program(post(data, "p.cls", inverse, options).moves, print, "").text,
-            R"(G21 G90 G91.1 G94 G17 G40 G80 G92.1
-G49 G53 G0 Z400
-T1 M6
-G49 G53 G0 Z400
-G54 G0 B30
-S600
-M3
-M8
-G54 G0 X55 Y0
-G54
-G43 H1
-G64 P0.0005
-G0 X55 Y0 Z5.2627944 A0 B30
-G93
-G1 X50 Z-3.3974596 F60
-G1 Z-13.3974596 F60
-G94
-G0 X70
-G0 X75 Z-4.7372056
-G49 G53 G0 Z400
-G54 G0 B0
-G54 G0 X40 Y0
-G54
-G43 H1
-G64 P0.0005
-G0 X40 Y0 Z10 A0 B0
-G0 Z0
-G93
-G1 X50 F60
-G94
-G0 Z10
-G49 G53 G0 Z400
-M5
-M9
-M30
-)");
-}
-
-TEST(Post, SingularToolAxisIsToldOnce) {
-  const PostProcessed made = post(cl("GOTO/0,0,10\nGOTO/0,0,0\nGOTO/5,0,0\n"), "p.cls",
-                                  machine(kTableTable), usual_options());
-  ASSERT_EQ(made.warnings.size(), 1u);
-  EXPECT_EQ(to_string(made.warnings[0]),
-            "p.cls:1: warning: the tool axis is singular, here and at 2 more locations: a rotary "
-            "axis is free");
 }
 
 TEST(Post, Faults) {
@@ -357,61 +193,6 @@ TEST(Post, ChordsAndRoundingTogetherKeepToTheTolerance) {
                    plant::forward(inverse.chain(), trajectory.at(t, cursor).Q_ref, p_ST).p_WT));
   }
   EXPECT_LT(worst, options.tolerance.tip);
-}
-
-TEST(Post, TimesThatAskTooMuchOfAnAxisAreReported) {
-  PostOptions options = usual_options();
-  options.v_max << 1.0, 1.0, 1.0, 10.0, 20.0;
-  // 10 mm past the vertical at 0.01: C turns by 174 deg, most of it within 0.2 mm
-  const auto past = [&](double distance) {
-    return post(cl(fmt::format("GOTO/0,0,0,-0.2,{0},1\nGOTO/10,0,0,0.2,{0},1\n", distance)),
-                "p.cls", machine(kTableTable), options);
-  };
-  EXPECT_TRUE(std::none_of(past(0.1).warnings.begin(), past(0.1).warnings.end(), [](const auto& w) {
-    return w.message.starts_with("the programmed feed");
-  }));
-  options.feed = 0.5;
-  const PostProcessed fast = past(0.01);
-  ASSERT_FALSE(fast.warnings.empty());
-  const Warning& warning = fast.warnings.back();
-  EXPECT_EQ(warning.place.line, 2);
-  EXPECT_TRUE(warning.message.starts_with("the programmed feed needs C at ")) << warning.message;
-  EXPECT_NE(warning.message.find("deg from a singular direction of the tool axis; it can do 1146: "
-                                 "the feed falls to "),
-            std::string::npos)
-      << warning.message;
-}
-
-TEST(Post, WhatClassicalPostsBendIsReported) {
-  PostOptions options = usual_options();
-  options.mode = PostMode::locations;
-  const PostProcessed made = post(cl("GOTO/10,0,0,0,-0.1,1\nGOTO/30,0,0,0.3,-0.3,1\nGOTO/30,1,0\n"),
-                                  "p.cls", machine(kTableTable), options);
-  const auto inverse = machine(kTableTable);
-  const Joints Q_0 = inverse.chain().layout.joints(made.moves[1].end_machine);
-  const Joints Q_1 = inverse.chain().layout.joints(made.moves[2].end_machine);
-  double bend = 0.0;
-  for (double t = 0.0; t < 1.0; t += 0.0625) {
-    const Vector3d way = options.work_offset + Vector3d(10 + 20 * t, 0, 0) * mm;
-    bend = std::max(
-        bend,
-        (plant::forward(inverse.chain(), Q_0 + t * (Q_1 - Q_0), Vector3d(0, 0, -100 * mm)).p_WT -
-         way)
-            .norm());
-  }
-  ASSERT_EQ(made.warnings.size(), 1u);
-  EXPECT_EQ(to_string(made.warnings.back()),
-            fmt::format("p.cls:2: warning: on the way here the axes lead the tip {:.4g} mm off the "
-                        "straight way; only --classical inserts no points",
-                        bend / mm));
-}
-
-TEST(Post, WarningsOfWhatIsRefusedAreKept) {
-  std::vector<Warning> warnings;
-  const ClData data = cl("GOTO/0,0,0\nGOTO/900,0,0\n");
-  EXPECT_THROW(post(data, "p.cls", machine(kTableTable), usual_options(), &warnings), InputError);
-  ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(warnings[0].place.line, 1);
 }
 
 // ------------------------------------------------------------------------ singular directions
