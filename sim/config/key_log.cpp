@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/config/reader.h"
+#include "sim/config/rule.h"
 
 namespace servomill::sim {
 

@@ -5,185 +5,54 @@
 #include <algorithm>
 #include <cassert>
 #include <charconv>
-#include <cmath>
-#include <exception>
 #include <limits>
-#include <map>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "sim/config/key_log.h"
+#include "sim/config/reading_record.h"
 
 namespace servomill::sim {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();  // a default that is none
-constexpr std::size_t kLongestShown = 60;  // characters of a value in a message
-
-bool holds(const Rule& rule, double value) {
-  switch (rule.comparison) {
-    case Rule::Comparison::above:
-      return value > rule.bound;
-    case Rule::Comparison::at_least:
-      return value >= rule.bound;
-    case Rule::Comparison::below:
-      return value < rule.bound;
-    case Rule::Comparison::at_most:
-      return value <= rule.bound;
-  }
-  return false;
-}
-
-bool all_hold(Rules rules, double value) {
-  return std::isfinite(value) && std::all_of(rules.begin(), rules.end(), [value](const Rule& rule) {
-           return holds(rule, value);
-         });
-}
-
-// "must be > 0 and <= 500 um": bounds in the unit that the user wrote the value in
-std::string sentence(Rules rules, double value, const Unit& unit, bool name_unit) {
-  if (!std::isfinite(value)) return "must be finite";
-  std::string out;
-  for (const Rule& rule : rules) {
-    out += fmt::format("{}{} {:.12g}", out.empty() ? "must be " : " and ",
-                       symbol_of(rule.comparison), rule.bound / unit.factor);
-    if (name_unit && rule.bound != 0.0) out += " " + unit.symbol;
-  }
-  return out;
-}
-
-std::string shown(const Value& value) {
-  if (value.type == Value::Type::table) return "{...}";
-  std::string text = inline_toml(value);
-  if (text.size() <= kLongestShown && text.find('\n') == std::string::npos) return text;
-  return value.type == Value::Type::list ? "[...]" : "\"...\"";
-}
 
 }  // namespace
 
-std::string_view symbol_of(Rule::Comparison comparison) {
-  switch (comparison) {
-    case Rule::Comparison::above:
-      return ">";
-    case Rule::Comparison::at_least:
-      return ">=";
-    case Rule::Comparison::below:
-      return "<";
-    case Rule::Comparison::at_most:
-      return "<=";
-  }
-  return "";
-}
-
-// Faults and read keys of one document.
-struct Reader::State {
-  explicit State(const Document& document_in) : document(document_in) {}
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-  ~State() { assert(finished || std::uncaught_exceptions() > 0); }
-
-  struct Table {
-    std::string path;
-    std::vector<std::string> known;  // names asked for, in the order of asking
-    std::set<std::string, std::less<>> read;
-    bool rest_is_skipped = false;
-  };
-
-  void know(const Value* table, std::string_view key) {
-    auto& known = tables[table].known;
-    if (std::find(known.begin(), known.end(), key) == known.end()) known.emplace_back(key);
-  }
-  void report_unread(const Value& table);
-  std::vector<Fault> faults_by_file();
-
-  const Document& document;
-  Value nothing;  // an empty table, for those that are absent
-  std::vector<Fault> faults;
-  std::map<const Value*, Table> tables;
-  bool finished = false;
-};
-
-void Reader::State::report_unread(const Value& value) {
-  if (value.type == Value::Type::list) {
-    for (const Value& item : value.children) report_unread(item);
-  }
-  const auto at = tables.find(&value);
-  if (at == tables.end()) return;
-  const Table& table = at->second;
-  const auto nearest_of = [&](std::string_view word) {
-    std::vector<std::string_view> absent, given;
-    for (const std::string& name : table.known) {
-      (value.find(name) == nullptr ? absent : given).emplace_back(name);
-    }
-    const std::string missing = did_you_mean(word, absent);
-    if (!missing.empty()) return missing;
-    const std::string_view near = nearest_name(word, given);
-    const bool is_a_letter = near.size() == 1;  // of another axis
-    return near.empty() || is_a_letter
-               ? std::string()
-               : fmt::format("; did you mean '{}', which is given, too?", near);
-  };
-  for (const Value& entry : value.children) {
-    const bool known =
-        std::find(table.known.begin(), table.known.end(), entry.key) != table.known.end();
-    if (table.read.contains(entry.key)) {
-      report_unread(entry);
-    } else if (!table.rest_is_skipped) {
-      faults.push_back(
-          {entry.key_place,
-           fmt::format("{} {}", joined_key(table.path, entry.key),
-                       known ? "is not used here" : "is not known" + nearest_of(entry.key))});
-    }
-  }
-}
-
-// Files stay in the order of their first fault; within a file lines ascend.
-std::vector<Fault> Reader::State::faults_by_file() {
-  std::vector<Fault> sorted;
-  while (!faults.empty()) {
-    const std::string file = faults.front().place.file;
-    const auto rest = std::stable_partition(
-        faults.begin(), faults.end(), [&file](const Fault& f) { return f.place.file == file; });
-    std::move(faults.begin(), rest, std::back_inserter(sorted));
-    faults.erase(faults.begin(), rest);
-  }
-  return sorted;
-}
-
 Reader::Reader(const Document& document)
-    : state_(std::make_shared<State>(document)), table_(&document.root()), silent_(false) {
-  state_->tables[table_];
+    : record_(std::make_shared<ReadingRecord>(document)), table_(&document.root()), silent_(false) {
+  record_->open(*table_, "");
 }
 
-Reader::Reader(std::shared_ptr<State> state, const Value* table, std::string path, bool silent)
-    : state_(std::move(state)), table_(table), path_(std::move(path)), silent_(silent) {
-  if (!silent_) state_->tables[table_].path = path_;
+Reader::Reader(std::shared_ptr<ReadingRecord> record, const Value* table, std::string path,
+               bool silent)
+    : record_(std::move(record)), table_(table), path_(std::move(path)), silent_(silent) {
+  if (!silent_) record_->open(*table_, path_);
 }
 
-bool Reader::logs() const { return !silent_ && state_->document.key_log() != nullptr; }
+bool Reader::logs() const { return !silent_ && record_->document().key_log() != nullptr; }
 
 void Reader::log(std::string_view key, KeyUse use) const {
   use.table = without_items(path_);
   use.key = key;
-  state_->document.key_log()->add(std::move(use));
+  record_->document().key_log()->add(std::move(use));
 }
 
 const Value* Reader::find(std::string_view key) {
   if (silent_) return nullptr;
-  state_->know(table_, key);
+  record_->know(*table_, key);
   const Value* value = table_->find(key);
-  if (value != nullptr) state_->tables[table_].read.emplace(key);
+  if (value != nullptr) record_->read(*table_, key);
   return value;
 }
 
 void Reader::missing(std::string_view key) {
   if (silent_) return;
-  state_->faults.push_back({own_place(), joined_key(path_, key) + " is missing"});
+  record_->fault(own_place(), joined_key(path_, key) + " is missing");
 }
 
 void Reader::note(const Value& value, const std::string& name, std::string_view rule) {
-  state_->faults.push_back({value.place, fmt::format("{} = {}; {}", name, shown(value), rule)});
+  record_->fault(value, name, rule);
 }
 
 void Reader::check_type(const Value*& value, std::string_view key, Value::Type type) {
@@ -235,7 +104,7 @@ double Reader::number(const Value& value, std::string_view key, std::optional<st
 
   if (scaled.complaint.empty() && !all_hold(rules, scaled.si)) {
     const bool name_unit = !scaled.unit.symbol.empty() && (from_text || !from_key);
-    scaled.complaint = sentence(rules, scaled.si, scaled.unit, name_unit);
+    scaled.complaint = requirement(rules, scaled.si, scaled.unit, name_unit);
   }
   if (scaled.complaint.empty()) return scaled.si;
   note(value, name_of(key, item), scaled.complaint);
@@ -258,7 +127,7 @@ double Reader::real_or(std::string_view key, double fallback, Quantity quantity,
 
 std::int64_t Reader::whole(const Value& value, std::string_view key, Rules rules) {
   if (all_hold(rules, static_cast<double>(value.integer))) return value.integer;
-  note(value, joined_key(path_, key), sentence(rules, 0.0, Unit{}, false));
+  note(value, joined_key(path_, key), requirement(rules, 0.0, Unit{}, false));
   return 0;
 }
 
@@ -366,23 +235,23 @@ std::vector<std::string> Reader::texts_or(std::string_view key, std::vector<std:
 }
 
 Reader Reader::silent_reader(std::string_view key) const {
-  return {state_, &state_->nothing, joined_key(path_, key), true};
+  return {record_, &record_->nothing(), joined_key(path_, key), true};
 }
 
 Reader Reader::table(std::string_view key) {
   if (logs()) log(key, required_request(KeyType::table));
   const Value* value = require(key, Value::Type::table);
   return value == nullptr ? silent_reader(key)
-                          : Reader(state_, value, joined_key(path_, key), false);
+                          : Reader(record_, value, joined_key(path_, key), false);
 }
 
 Reader Reader::table_or_empty(std::string_view key) {
   if (logs()) log(key, optional_request(KeyType::table, ""));
   const bool absent = !silent_ && !has(key);
   const Value* value = optional(key, Value::Type::table);
-  if (absent) return {state_, &state_->nothing, joined_key(path_, key), false};
+  if (absent) return {record_, &record_->nothing(), joined_key(path_, key), false};
   return value == nullptr ? silent_reader(key)
-                          : Reader(state_, value, joined_key(path_, key), false);
+                          : Reader(record_, value, joined_key(path_, key), false);
 }
 
 std::vector<Reader> Reader::readers(const Value& list, std::string_view key) {
@@ -391,7 +260,7 @@ std::vector<Reader> Reader::readers(const Value& list, std::string_view key) {
     const std::string name = name_of(key, out.size());
     const bool is_table = item.type == Value::Type::table;
     if (!is_table) note(item, name, "must be a table");
-    out.push_back({state_, is_table ? &item : &state_->nothing, name, !is_table});
+    out.push_back({record_, is_table ? &item : &record_->nothing(), name, !is_table});
   }
   return out;
 }
@@ -413,7 +282,7 @@ std::vector<Reader> Reader::tables_or_none(std::string_view key) {
 bool Reader::has(std::string_view key) {
   if (logs()) log(key, optional_request(KeyType::asked, ""));
   if (silent_) return false;
-  state_->know(table_, key);
+  record_->know(*table_, key);
   return table_->find(key) != nullptr;
 }
 
@@ -443,15 +312,15 @@ void Reader::fault(std::string_view message) {
   if (silent_) return;
   const std::string text =
       path_.empty() ? std::string(message) : fmt::format("{}: {}", path_, message);
-  state_->faults.push_back({own_place(), text});
+  record_->fault(own_place(), text);
 }
 
 void Reader::skip_rest() {
   assert(silent_ || faults() > 0);
-  if (!silent_) state_->tables[table_].rest_is_skipped = true;
+  if (!silent_) record_->skip_rest(*table_);
 }
 
-std::size_t Reader::faults() const { return state_->faults.size(); }
+std::size_t Reader::faults() const { return record_->faults(); }
 
 Place Reader::place(std::string_view key) const {
   const Value* value = table_->find(key);
@@ -461,13 +330,9 @@ Place Reader::place(std::string_view key) const {
 // The root has no line of its own, and what is absent has no place at all.
 Place Reader::own_place() const {
   const bool whole_document = path_.empty() || table_->place.file.empty();
-  return whole_document ? Place{state_->document.name()} : table_->place;
+  return whole_document ? Place{record_->document().name()} : table_->place;
 }
 
-void Reader::finish() {
-  state_->finished = true;
-  state_->report_unread(state_->document.root());
-  if (!state_->faults.empty()) throw InputError(state_->faults_by_file());
-}
+void Reader::finish() { record_->finish(); }
 
 }  // namespace servomill::sim

@@ -14,7 +14,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,28 +23,12 @@
 
 #include "sim/config/document.h"
 #include "sim/config/quantity.h"
+#include "sim/config/rule.h"
 
 namespace servomill::sim {
 
 struct KeyUse;
-
-/// A bound on a number, in SI. Rules are data, so that a message can say what was violated.
-struct Rule {
-  enum class Comparison : std::uint8_t { above, at_least, below, at_most };
-  Comparison comparison;
-  double bound;
-};
-
-/// ">", ">=", "<", "<="
-std::string_view symbol_of(Rule::Comparison comparison);
-
-constexpr Rule above(double bound) { return {Rule::Comparison::above, bound}; }
-constexpr Rule at_least(double bound) { return {Rule::Comparison::at_least, bound}; }
-constexpr Rule below(double bound) { return {Rule::Comparison::below, bound}; }
-constexpr Rule at_most(double bound) { return {Rule::Comparison::at_most, bound}; }
-
-/// Rules that must all hold: `{above(0.0), at_most(1.0)}`.
-using Rules = std::initializer_list<Rule>;
+class ReadingRecord;
 
 /// A cursor over one table. All cursors over one document share its faults.
 ///
@@ -129,8 +112,7 @@ class Reader {
   void finish();
 
  private:
-  struct State;
-  Reader(std::shared_ptr<State> state, const Value* table, std::string path, bool silent);
+  Reader(std::shared_ptr<ReadingRecord> record, const Value* table, std::string path, bool silent);
 
   bool logs() const;
   void log(std::string_view key, KeyUse use) const;
@@ -153,7 +135,7 @@ class Reader {
   std::vector<Reader> readers(const Value& list, std::string_view key);
   Reader silent_reader(std::string_view key) const;
 
-  std::shared_ptr<State> state_;
+  std::shared_ptr<ReadingRecord> record_;
   const Value* table_;
   std::string path_;
   bool silent_;  // stands for a table that was faulty already
