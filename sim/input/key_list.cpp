@@ -8,6 +8,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/input/input_files.h"
+#include "sim/input/key_help.h"
 #include "sim/input/key_specimens.h"
 #include "sim/input/scenario_document.h"
 #include "sim/model/scenario.h"

@@ -31,9 +31,4 @@ std::vector<KeyEntry> list_keys();
 /// @throws InputError if there are none, with the nearest name
 std::vector<KeyEntry> keys_of(std::string_view section);
 
-/// Sentence about a key; empty if there is none.
-std::string_view help_of_key(std::string_view section, std::string_view key);
-/// Sections and keys of all sentences, for the law that every one is used.
-std::vector<std::pair<std::string_view, std::string_view>> keys_with_help();
-
 }  // namespace servomill::sim

