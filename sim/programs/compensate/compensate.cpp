@@ -7,7 +7,6 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <set>
 
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/parameters.h"
@@ -17,8 +16,9 @@
 #include "sim/input/read_errors.h"
 #include "sim/input/read_machine.h"
 #include "sim/model/design.h"
-#include "sim/model/scenario.h"
 #include "sim/programs/canon.h"
+#include "sim/programs/compensate/compensate_report.h"
+#include "sim/programs/compensate/dialect_settings.h"
 #include "sim/programs/compensate/dialect_writer.h"
 #include "sim/programs/compensate/highest_z.h"
 #include "sim/programs/compensate/linuxcnc_writer.h"
@@ -34,9 +34,6 @@ namespace {
 constexpr std::string_view kHeader = "(servomill compensate:";  // of corrected programs
 
 namespace fs = std::filesystem;
-using strategies::DisplacedAxes;
-
-constexpr double kReportedTip = 0.1e-6, kReportedAxis = 1e-6;  // m, rad: of less nothing is said
 
 using ErrorModels = std::map<std::string, plant::ErrorModel>;
 
@@ -60,68 +57,6 @@ const plant::ErrorModel& model_of(const ErrorModels& models, const CompensateReq
   if (found != models.end()) return found->second;
   throw InputError({"--model"}, fmt::format("no error model '{}'{}; {}", name,
                                             did_you_mean(name, names), there_are));
-}
-
-// Assumptions that the result relies on.
-std::vector<std::string> assumptions(const CompensateRequest& request, const WorkKnowledge& known,
-                                     const Summary& summary, const JointLayout& layout) {
-  std::vector<std::string> out;
-  for (const int system : known.work_systems) {
-    const WorkSystemPlace place = place_of(known.setup, system);
-    const bool is_there = !place.offset.isZero(0.0) || place.rotation != 0.0;
-    if (!is_there && system != 1) continue;
-    out.push_back(fmt::format(
-        "{} lies at {}{}", kWorkSystems[static_cast<std::size_t>(system - 1)],
-        words_text(place.offset, layout),
-        place.rotation == 0.0 ? "" : fmt::format(", turned by {:g} deg", place.rotation / deg)));
-  }
-  for (const auto& [number, length] : summary.tools) {
-    out.push_back(number == 0  ? fmt::format("no tool is known: length {:g} mm", length / mm)
-                  : number < 0 ? fmt::format("tool offset of G43.1: length {:g} mm", length / mm)
-                               : fmt::format("tool {}: length {:g} mm", number, length / mm));
-  }
-  if (!request.start.empty()) out.push_back(fmt::format("the machine starts at {}", request.start));
-  return out;
-}
-
-std::vector<std::string> unrolled(const Summary& summary) {
-  std::vector<std::string> out;
-  if (summary.unrolled) out.emplace_back("loops and subroutines are unrolled");
-  if (summary.has_expressions) out.emplace_back("expressions became numbers");
-  if (summary.has_cycles) out.emplace_back("canned cycles became their moves");
-  if (summary.has_cutter_compensation) {
-    out.emplace_back("cutter compensation became its moves, for the diameters of the tool table");
-  }
-  return out;
-}
-
-std::vector<Fault> warnings_of(const CompensateRequest& request, const Summary& summary,
-                               const JointLayout& layout) {
-  std::vector<Fault> out;
-  if (summary.outside) {
-    out.push_back(
-        {{request.program_file, summary.outside->line},
-         fmt::format("ends outside the travel of the machine, at {}{}; are the work "
-                     "offsets right?",
-                     words_text(summary.outside->machine, layout),
-                     summary.outside_count == 1
-                         ? ""
-                         : fmt::format(", as do {} other blocks", summary.outside_count - 1))});
-  }
-  const bool turns = request.axes == DisplacedAxes::all;
-  std::vector<std::string> left;
-  if (summary.left.tip > kReportedTip) {
-    left.push_back(fmt::format("{:.2f} um of the tip", summary.left.tip / um));
-  }
-  if (summary.left.axis > kReportedAxis) {
-    left.push_back(fmt::format("{:.1f} urad of the tool axis", summary.left.axis / urad));
-  }
-  if (!left.empty() && summary.most_left) {
-    out.push_back({{request.program_file, summary.most_left->line},
-                   fmt::format("cannot correct {} here, the most found{}", fmt::join(left, " and "),
-                               turns ? "" : "; linear axes do not turn the tool")});
-  }
-  return out;
 }
 
 // So that rounding takes a fiftieth of the tolerance at most.
@@ -153,72 +88,6 @@ std::string header_line(const CompensateRequest& request, const std::string& mac
                         const std::string& model) {
   return fmt::format("servomill compensate: {} for {}, errors {}",
                      fs::path(request.program_file).filename().string(), machine, model);
-}
-
-// IS-B and the like; Siemens computes in finer steps than anyone measures.
-double resolution_of(const CompensateRequest& request) {
-  if (request.resolution > 0.0) return request.resolution;
-  return request.dialect == Dialect::siemens ? 10e-9 : 1e-6;
-}
-
-std::array<bool, 3> endless_axes(const MachineDescription& described) {
-  const JointLayout& layout = described.machine.chain.layout;
-  std::array<bool, 3> out{};
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const std::optional<int> j = layout.joint_of(kAllAxes[kLinearJoints + i]);
-    const NcSettings& nc = described.machine.nc;
-    out[i] = j && (std::isinf(nc.lower[*j]) || std::isinf(nc.upper[*j]));
-  }
-  return out;
-}
-
-DialectSettings dialect_settings(const CompensateRequest& request,
-                                 const MachineDescription& described,
-                                 const controllers::ProgramSetup& setup) {
-  if (request.corrects_rapids) {
-    throw InputError({"--correct-rapids"},
-                     "is for LinuxCNC; on other controls a rapid need not follow a line");
-  }
-  DialectSettings settings;
-  settings.dialect = request.dialect;
-  settings.name = request.program_name;
-  settings.program_number = request.program_number;
-  settings.resolution = resolution_of(request);
-  settings.preset = request.preset;
-  settings.without = request.without;
-  if (!request.without.empty() && request.dialect != Dialect::fanuc) {
-    throw InputError({"--without"}, "names functions of Fanuc controls; it is for --dialect fanuc");
-  }
-  for (int system = 1; system <= controllers::kWorkSystems; ++system) {
-    settings.work_offset[static_cast<std::size_t>(system - 1)] = place_of(setup, system).offset;
-  }
-  settings.smoothing = request.smoothing;
-  const auto retract = request.retract_Z ? request.retract_Z : described.retract_Z;
-  if (!retract) {
-    throw InputError({"--retract"},
-                     "is missing: programs for other controls retract before and after; --retract "
-                     "Z=... in machine coordinates, or axis.Z.retract_mm of the machine file");
-  }
-  const NcSettings& nc = described.machine.nc;
-  if (*retract < nc.lower[2] || *retract > nc.upper[2]) {
-    throw InputError({fmt::format("--retract Z={:g}", *retract / mm)},
-                     fmt::format("is outside the travel of Z, {:g} ... {:g} mm", nc.lower[2] / mm,
-                                 nc.upper[2] / mm));
-  }
-  settings.retract_Z = *retract;
-  if (request.dialect == Dialect::fanuc && request.program_number == 0) {
-    throw InputError({"--program-number"},
-                     "is missing: Fanuc programs have a number, 1 ... 9999, and the name of the "
-                     "file gives none");
-  }
-  const JointLayout& layout = described.machine.chain.layout;
-  settings.axes.clear();
-  for (const Axis axis : kAllAxes) {
-    if (layout.joint_of(axis)) settings.axes.push_back(axis);
-  }
-  settings.has_rotary_axes = layout.has(kLinearJoints) || layout.has(kLinearJoints + 1);
-  settings.is_endless = endless_axes(described);
-  return settings;
 }
 
 std::unique_ptr<ProgramWriter> writer_of(const CompensateRequest& request,
@@ -311,7 +180,7 @@ VerificationReport verify(const CompensateRequest& request, Preparation& prepare
   limits.corrects_rapids = options.corrects_rapids;
   if (request.dialect == Dialect::heidenhain) limits.time_digit = 1e-3;  // FT has three decimals
   limits.is_linuxcnc = is_linuxcnc;
-  limits.retract = request.retract_Z ? request.retract_Z : prepared.described.retract_Z;
+  limits.retract = retract_of(request, prepared.described);
   return verify_program(written, out, prepared.correction);
 }
 
@@ -369,7 +238,7 @@ Compensated compensate(const CompensateRequest& request) {
     writer->write(*block);
   }
 
-  const auto retract = request.retract_Z ? request.retract_Z : prepared.described.retract_Z;
+  const std::optional<double> retract = retract_of(request, prepared.described);
   if (prepared.options.is_for_other_control && retract) {
     highest.refuse_above(*retract, request.program_file);
   }
@@ -390,7 +259,7 @@ Compensated compensate(const CompensateRequest& request) {
   }
   std::vector<std::string> header = {header_line(request, machine.name, prepared.model)};
   header.push_back(path_line(request, *writer));
-  for (const std::string& one : unrolled(summary)) header.push_back(one);
+  for (const std::string& one : unrolled_parts(summary)) header.push_back(one);
   for (const std::string& one : summary.assumed) header.push_back("assumed: " + one);
   for (const std::string& one : writer->warnings()) header.push_back("warning: " + one);
   out.program = writer->finish(header);
@@ -399,7 +268,7 @@ Compensated compensate(const CompensateRequest& request) {
 
   out.report = summary.report(layout);
   out.report.push_back(verified.text());
-  for (const std::string& one : unrolled(summary)) out.report.push_back(one);
+  for (const std::string& one : unrolled_parts(summary)) out.report.push_back(one);
   for (const std::string& one : summary.assumed) out.report.push_back("assumed: " + one);
   out.warnings.insert(out.warnings.end(), interpreter.warnings().begin(),
                       interpreter.warnings().end());

@@ -8,6 +8,9 @@
 
 namespace servomill::sim {
 
+/// Unit, plane, tool and spindle, as most of the programs begin.
+inline const std::string kDialectStart = "G21 G90 G17 G54\nT1 M6\nG43 H1\nS1000 M3\n";
+
 /// A trial for another control: without errors, tools 1 and 2, G54 and G55 known.
 inline Trial dialect_trial(Dialect dialect, const std::string& program) {
   Trial trial(program, "plate.ngc");
