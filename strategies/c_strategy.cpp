@@ -186,6 +186,9 @@ class COffset final : public SetpointPart {
       }
     } catch (const std::exception& error) {
       failure_ = fmt::format("strategy {}: offset: {}", made_->declared->name, error.what());
+    } catch (...) {
+      failure_ =
+          fmt::format("strategy {}: offset: an exception of unknown type", made_->declared->name);
     }
   }
 
@@ -288,6 +291,7 @@ std::unique_ptr<OwnedEntry> entry_of(const servomill_strategy& declared, const s
     }
     return std::make_unique<CStrategy>(std::move(made));
   };
+  entry.plugin = out->label;
   entry.reads_errors = declared.knows_errors != 0;
   entry.uses_feedback_hardware = declared.displacement != nullptr;
   return out;

@@ -25,6 +25,9 @@ struct Entry {
   /// Use of the feedback hardware by its signals: a case has one, and so one such
   /// strategy. True exactly where Strategy::displaces_feedback() is.
   bool uses_feedback_hardware = false;
+  /// "strategy ramp (libramp.so)" if it comes from a shared library, whose functions may crash or
+  /// not return; empty: it is one of the tree.
+  std::string_view plugin = {};
   /// Tells if it adds the error where the machine starts, which two strategies of a case that know
   /// the same model must not both do; nullptr: no parameter decides that.
   bool (*holds_error_at_reference)(const Parameters&) = nullptr;

@@ -76,6 +76,8 @@ class Loading {
   const servomill_plugin_c& open() const {
     // a name without '/' would be looked for in the folders of the system
     const std::string path = std::filesystem::absolute(path_).string();
+    watch_plugins();
+    const PluginCall call(path_.c_str());  // constructors of the library, too
     void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) {
       std::string why = dlerror();
@@ -87,7 +89,6 @@ class Loading {
     if (entry == nullptr) {
       refuse("is no plug-in: it does not export the function " SERVOMILL_PLUGIN_C_ENTRY);
     }
-    watch_plugins();
     const servomill_plugin_c* plugin = entry();
     if (plugin == nullptr) refuse(SERVOMILL_PLUGIN_C_ENTRY " returned NULL");
     return *plugin;

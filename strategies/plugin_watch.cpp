@@ -1,6 +1,7 @@
 #include "strategies/plugin_watch.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <array>
@@ -30,26 +31,64 @@ struct Watch {
   PluginFailure then;
 };
 
-Watch& watch() {
-  static Watch* const one = new Watch;
-  return *one;
+Watch*& current_watch() {
+  static Watch* one = new Watch;
+  return one;
 }
 
+Watch& watch() { return *current_watch(); }
+
+// Handlers of signals read it: no initialisation at its first use.
+thread_local WatchedThread* this_thread = nullptr;
+
+// Stack for the handler of a thread whose own stack is full: a plug-in that recurses without end.
+class HandlerStack {
+ public:
+  HandlerStack()
+      : begin_(mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)) {
+    if (begin_ == MAP_FAILED) return;
+    const stack_t here = {.ss_sp = begin_, .ss_flags = 0, .ss_size = kBytes};
+    sigaltstack(&here, nullptr);
+  }
+  HandlerStack(const HandlerStack&) = delete;
+  HandlerStack& operator=(const HandlerStack&) = delete;
+  ~HandlerStack() {
+    if (begin_ == MAP_FAILED) return;
+    const stack_t none = {.ss_sp = nullptr, .ss_flags = SS_DISABLE, .ss_size = 0};
+    sigaltstack(&none, nullptr);
+    munmap(begin_, kBytes);
+  }
+
+ private:
+  static constexpr std::size_t kBytes = std::size_t{1} << 16;
+  void* begin_;
+};
+
+constexpr int kExit = 0;  // in place of the signal: the plug-in has called exit()
 std::atomic<const char*> crashed = nullptr;
-std::atomic<int> crash_signal = 0;
+std::atomic<int> crash_signal = kExit;
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
-// On the thread that crashed: it waits for the process to end, which the watching thread does.
-void note_crash(int signal) {
-  const char* const who = watched_thread().inside.load(std::memory_order_relaxed);
-  if (who == nullptr) {  // of our own: as if nobody watched
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
-    return;
-  }
+// On the thread that failed: it waits for the process to end, which the watching thread does.
+[[noreturn]] void wait_for_the_end(const char* who, int signal) {
   crash_signal = signal;
   crashed = who;
   for (;;) pause();
+}
+
+const char* inside_now() {
+  return this_thread == nullptr ? nullptr : this_thread->inside.load(std::memory_order_relaxed);
+}
+
+void note_crash(int signal) {
+  if (const char* const who = inside_now()) wait_for_the_end(who, signal);
+  std::signal(signal, SIG_DFL);  // of our own: as if nobody watched
+  std::raise(signal);
+}
+
+// Among the functions that exit() calls.
+void note_exit() {
+  if (const char* const who = inside_now()) wait_for_the_end(who, kExit);
 }
 
 std::atomic<bool> has_failed = false, is_rescued = false;
@@ -87,9 +126,11 @@ struct Seen {
 };
 
 void look_for_crashes() {
-  if (const char* who = crashed) {
-    end(fmt::format("{}: the plug-in crashed (signal {})", who, crash_signal.load()));
-  }
+  const char* const who = crashed;
+  if (who == nullptr) return;
+  const int signal = crash_signal;
+  end(signal == kExit ? fmt::format("{}: the plug-in called exit()", who)
+                      : fmt::format("{}: the plug-in crashed (signal {})", who, signal));
 }
 
 void look_at(const WatchedThread& thread, std::vector<Seen>& all, Clock::time_point now) {
@@ -124,14 +165,19 @@ void look_at(const WatchedThread& thread, std::vector<Seen>& all, Clock::time_po
 }  // namespace
 
 WatchedThread& watched_thread() {
-  static thread_local WatchedThread* const mine = [] {
+  if (this_thread == nullptr) {
+    static thread_local const HandlerStack stack;
     const std::scoped_lock lock(watch().mutex);
-    return &watch().threads.emplace_back();
-  }();
-  return *mine;
+    this_thread = &watch().threads.emplace_back();
+  }
+  return *this_thread;
 }
 
-PluginRescue::PluginRescue() { ++rescues; }
+// exit() calls the latest first: ours comes before the destruction of what was made until here.
+PluginRescue::PluginRescue() {
+  ++rescues;
+  std::atexit(note_exit);
+}
 PluginRescue::~PluginRescue() { --rescues; }
 bool PluginRescue::is_wanted() { return has_failed; }
 void PluginRescue::done() {
@@ -144,12 +190,24 @@ void on_plugin_failure(PluginFailure then) {
   watch().then = std::move(then);
 }
 
+void watch_plugins_in_child(PluginFailure then) {
+  current_watch() =
+      new Watch;  // the lock of the other one may be held, by a thread that is no more
+  watch().then = std::move(then);
+  this_thread = nullptr;
+  rescues = 0;
+  std::thread(keep_watching).detach();
+}
+
 void watch_plugins() {
   static std::once_flag begun;
   std::call_once(begun, [] {
     struct sigaction action = {};
     action.sa_handler = note_crash;
+    action.sa_flags = SA_ONSTACK;
     for (const int signal : kCrashes) sigaction(signal, &action, nullptr);
+    std::atexit(note_exit);
+    std::at_quick_exit(note_exit);
     std::thread(keep_watching).detach();
   });
 }

@@ -12,8 +12,8 @@ namespace servomill::strategies {
 /// Time in which a function of a plug-in must return, s.
 inline constexpr int kPluginPatience = 10;
 
-/// From now on, a plug-in that does not return in time or crashes ends the process: a thread of its
-/// own says so, and what on_plugin_failure adds. Any further call does nothing.
+/// From now on, a plug-in that does not return in time, crashes or calls exit() ends the process: a
+/// thread of its own says so, and what on_plugin_failure adds. Any further call does nothing.
 void watch_plugins();
 
 /// Called by that thread with a sentence before the process ends with status 3. The other threads
@@ -21,6 +21,9 @@ void watch_plugins();
 using PluginFailure = std::function<void(const std::string& why)>;
 /// @param then  empty: prints the sentence
 void on_plugin_failure(PluginFailure then);
+
+/// In a child process, first: watches anew, as threads of the parent do not go on there.
+void watch_plugins_in_child(PluginFailure then);
 
 /// A thread that has results to keep while this is alive: where a plug-in has failed, the end of
 /// the process waits until they are kept, for some time.

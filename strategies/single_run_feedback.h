@@ -101,6 +101,8 @@ class SingleRunFeedback final : public FeedbackPart {
       run.failure = "strategy " + name_ + ": " + function + " returned what is not finite";
     } catch (const std::exception& error) {
       run.failure = "strategy " + name_ + ": " + function + ": " + error.what();
+    } catch (...) {
+      run.failure = "strategy " + name_ + ": " + function + ": an exception of unknown type";
     }
   }
 

@@ -17,4 +17,6 @@ Outcome failed(std::string_view why, double time, int line) {
           time};
 }
 
+Outcome stopped_at_begin(const std::string& why) { return {false, false, why, '-', 0.0}; }
+
 }  // namespace servomill::sim

@@ -21,6 +21,9 @@ Outcome interrupted(double time);
 /// Outcome of a case whose strategy cannot go on.
 Outcome failed(std::string_view why, double time, int line);
 
+/// Outcome of a case whose strategy has failed before it began.
+Outcome stopped_at_begin(const std::string& why);
+
 /// Directions in which the axes of the actual machine travelled.
 class TravelDirections {
  public:

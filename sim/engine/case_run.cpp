@@ -26,6 +26,9 @@ CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::
       static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
   recorder_.expect(static_cast<std::size_t>(end_ / in.record_period + 1));
   initialise_at_rest();
+  if (in.stops_with.empty()) return;
+  result_.outcome = stopped_at_begin(in.stops_with);
+  record(0);
 }
 
 bool CaseRun::command_axes(Tick n) {

@@ -23,6 +23,12 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
   AxisSetpoint set = setpoint_.settle();
   travel_ = {in_.machine_errors, Q_true_of(set)};
   if (in_.cutting != nullptr) cut_.emplace(in_).start(reference_at(0));
+  if (!in_.stops_with.empty()) {
+    result.outcome = stopped_at_begin(in_.stops_with);
+    record(0, set, Q_true_of(set));
+    result.servo = recorder_.take();
+    return result;
+  }
   for (; periods_.seconds(n) <= end; n += periods_.position) {
     progress.store(static_cast<float>(periods_.seconds(n) / end), std::memory_order_relaxed);
     if (stop.load(std::memory_order_relaxed)) {

@@ -44,6 +44,7 @@ struct CaseInputs {
   std::vector<std::size_t> pieces = {};   // of `path`, for each move that the NC runs
   const CuttingTable* cutting = nullptr;  // along `path`; nullptr: in air
   CuttingWear wear = {};
+  std::string stops_with = {};  // why the case stops where it begins; empty: it does not
 };
 
 /// How a case ended. A machine that stops is an outcome, not an exception.

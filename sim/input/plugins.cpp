@@ -10,6 +10,7 @@
 #include "sim/config/quantity.h"
 #include "sim/config/reader.h"
 #include "sim/input/scenario_document.h"
+#include "strategies/plugin_child.h"
 #include "strategies/plugin_file.h"
 #include "strategies/plugin_watch.h"
 
@@ -39,6 +40,8 @@ void load(const std::string& file, const Place& at) {
 }  // namespace
 
 void load_plugin(const std::string& file) { load(file, {}); }
+
+void isolate_plugins() { strategies::isolate_plugins(); }
 
 void on_plugin_failure(std::function<void(const std::string& why)> then) {
   strategies::on_plugin_failure(std::move(then));

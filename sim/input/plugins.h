@@ -12,6 +12,9 @@ class Reader;
 /// @throws InputError as strategies::load_plugin does
 void load_plugin(const std::string& file);
 
+/// From now on plug-ins compute in processes of their own, where a run can do so.
+void isolate_plugins();
+
 /// Sets the function that receives, on a thread of its own, a sentence about a plug-in that did not
 /// return or crashed, before the process ends with status 3.
 void on_plugin_failure(std::function<void(const std::string& why)> then);

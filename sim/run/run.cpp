@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
+#include <span>
 #include <thread>
+#include <utility>
 
 #include "sim/preparation/stability_check.h"
+#include "sim/run/isolated_case.h"
 #include "sim/system/background.h"
+#include "strategies/plugin_child.h"
 #include "strategies/plugin_watch.h"
 
 namespace servomill::sim {
@@ -21,6 +26,36 @@ constexpr auto kProgressPeriod = std::chrono::milliseconds(20);  // an interrupt
     if (done[i] && !failures[i] && control.case_done) control.case_done(outputs[i]);
   }
   strategies::PluginRescue::done();
+}
+
+// Processes for the cases with plug-ins, where these are isolated; nullptr for the others.
+std::vector<std::unique_ptr<IsolatedCase>> isolated_cases(std::span<const PreparedCase> prepared,
+                                                          const RunControl& control) {
+  std::vector<std::unique_ptr<IsolatedCase>> out(prepared.size());
+  if (!strategies::plugins_are_isolated()) return out;
+  for (std::size_t i = 0; i < prepared.size(); ++i) {
+    if (!uses_plugin(prepared[i].spec())) continue;
+    out[i] = std::make_unique<IsolatedCase>(prepared[i], control.scratch_folder);
+  }
+  return out;
+}
+
+// @param isolated  process of the case; nullptr: it runs in this one
+CaseOutput run_one(const PreparedCase& prepared, std::unique_ptr<IsolatedCase> isolated,
+                   const RunControl& control, const StopFlag& stop, std::atomic<float>& progress) {
+  if (isolated == nullptr) return run_case(prepared, stop, progress, control.scratch_folder);
+  CaseOutput out = noted_output_of(prepared, isolated->simulate(stop, progress));
+  progress = 1.0F;
+  return out;
+}
+
+RunOutput with_comparison(const Scenario& scenario, std::vector<CaseOutput> outputs) {
+  RunOutput out;
+  std::vector<CaseData> data;
+  for (const CaseOutput& output : outputs) data.push_back(output.data());
+  out.comparison = compare(scenario.quantities, data);
+  out.cases = std::move(outputs);
+  return out;
 }
 
 }  // namespace
@@ -41,6 +76,8 @@ RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
   if (control.prepared) control.prepared(estimate(scenario, prepared, control.threads));
 
   const std::size_t count = prepared.size();  // independent: any thread may run any of them
+  // before there are threads that hold locks
+  std::vector<std::unique_ptr<IsolatedCase>> isolated = isolated_cases(prepared, control);
   std::vector<CaseOutput> outputs(count);
   std::vector<std::atomic<float>> progress(count);
   std::vector<std::atomic<bool>> done(count);
@@ -49,7 +86,7 @@ RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
   const auto work = [&] {
     for (std::size_t i = next++; i < count; i = next++) {
       try {
-        outputs[i] = run_case(prepared[i], stop, progress[i], control.scratch_folder);
+        outputs[i] = run_one(prepared[i], std::move(isolated[i]), control, stop, progress[i]);
       } catch (...) {
         failures[i] = std::current_exception();
       }
@@ -85,11 +122,7 @@ RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
   }
   pool.clear();
 
-  RunOutput out;
-  std::vector<CaseData> data;
-  for (const CaseOutput& output : outputs) data.push_back(output.data());
-  out.comparison = compare(scenario.quantities, data);
-  out.cases = std::move(outputs);
+  RunOutput out = with_comparison(scenario, std::move(outputs));
   out.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }

@@ -47,13 +47,18 @@ CaseOutput output_of(const PreparedCase& prepared, CaseResult result) {
   return out;
 }
 
-CaseOutput run_case(const PreparedCase& prepared, const StopFlag& stop,
-                    std::atomic<float>& progress, const std::string& scratch_folder) {
-  CaseInputs given = prepared.inputs(scratch_folder);
-  CaseOutput out = output_of(prepared, simulate(given, stop, progress));
+CaseOutput noted_output_of(const PreparedCase& prepared, CaseResult result) {
+  CaseOutput out = output_of(prepared, std::move(result));
   const PreparedParts parts = prepared.parts();
   for (std::string& note : notes_of_uncorrectable(parts)) out.notes.push_back(std::move(note));
   for (std::string& note : notes_of_left_tables(parts)) out.notes.push_back(std::move(note));
+  return out;
+}
+
+CaseOutput run_case(const PreparedCase& prepared, const StopFlag& stop,
+                    std::atomic<float>& progress, const std::string& scratch_folder) {
+  CaseInputs given = prepared.inputs(scratch_folder);
+  CaseOutput out = noted_output_of(prepared, simulate(given, stop, progress));
   progress = 1.0F;
   return out;
 }

@@ -32,7 +32,10 @@ struct CaseOutput {
 /// Probes the part that a run of `prepared.inputs()` has cut, and notes what the NC put right.
 CaseOutput output_of(const PreparedCase& prepared, CaseResult result);
 
-/// Runs a case on this thread: output_of() with all notes of sim/run/case_notes.h.
+/// output_of() with all notes of sim/run/case_notes.h.
+CaseOutput noted_output_of(const PreparedCase& prepared, CaseResult result);
+
+/// Runs a case on this thread: noted_output_of() of its simulation.
 /// @param scratch_folder  of recordings that are long; empty: that of temporary files
 CaseOutput run_case(const PreparedCase& prepared, const StopFlag& stop,
                     std::atomic<float>& progress, const std::string& scratch_folder = {});

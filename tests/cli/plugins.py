@@ -5,10 +5,13 @@
 """
 import json
 import os
+import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import h5py
@@ -20,9 +23,19 @@ SERVOMILL = os.path.abspath(sys.argv.pop(1))
 PATIENCE = 60  # s, far more than anything here takes
 SLOPE = 5000.0  # um/m
 
+# Of tests/cli/plugins/wrong.cpp.
+WHERE = ("create", "settle", "step", "destroy")
+HOW = ("throws", "throws_number", "returns_text", "nan", "segmentation_fault", "abort", "overflow", "exit", "quick_exit",
+       "ends_at_once", "loops")
+SAID = {"throws": "thrown on purpose", "throws_number": "an exception of unknown type",
+        "returns_text": "returned on purpose"}  # the case ends
+FAILED = {"segmentation_fault": "crashed (signal 11)", "abort": "crashed (signal 6)", "overflow": "crashed (signal 11)",
+          "exit": "called exit()", "quick_exit": "called exit()", "ends_at_once": "ended its process with status 7",
+          "loops": "did not return within 10 s"}  # without --isolate the process ends
+
 STRATEGY = """
 [[case]]
-name = "{type}"
+name = "{name}"
 [[case.strategy]]
 type = "{type}"
 {keys}
@@ -41,12 +54,20 @@ def library(name):
 
 
 def scenario_text(*strategies, head=""):
-    """The scenario of the gallery with these strategies, (type, keys), in place of its table."""
+    """The scenario of the gallery with these strategies in place of its table: (type, keys), or (case, type, keys)."""
     with open(os.path.join(HERE, "gallery", "scenario.toml"), encoding="utf-8") as file:
         text = file.read()
     text = text[:text.index('[[case]]\nname = "table"')]
-    text += "".join(STRATEGY.format(type=name, keys=keys) for name, keys in strategies)
-    return head + text + QUANTITY.format(cases=json.dumps([name for name, _ in strategies]))
+    text += "".join(STRATEGY.format(name=one[0], type=one[-2], keys=one[-1]) for one in strategies)
+    return head + text + QUANTITY.format(cases=json.dumps([one[0] for one in strategies]))
+
+
+def is_running(process):
+    try:
+        with open(f"/proc/{process}/stat", encoding="ascii") as file:
+            return file.read().rpartition(")")[2].split()[0] not in "ZX"
+    except FileNotFoundError:
+        return False
 
 
 class Plugins(unittest.TestCase):
@@ -185,6 +206,98 @@ class Plugins(unittest.TestCase):
                 self.assertEqual(complete, ["nominal", "offset_nan"])
             self.assertTrue(kept.endswith(f": complete cases {', '.join(complete)}; interrupted " +
                                           ", ".join(sorted({name, "offset_nan"} - set(complete)))), kept)
+
+
+    def run_wrong(self, kinds, *options, status):
+        """Runs a case for each (strategy, where, how), next to one that is well."""
+        cases = [(f"{name}_{where}_{how}", name, f"where = {WHERE.index(where)}\nhow = {HOW.index(how)}")
+                 for name, where, how in kinds]
+        self.write(scenario_text(*cases))
+        return [case for case, _, _ in cases], self.servomill("run", "s.toml", "-f", "-o", "out.h5", "--plugin",
+                                                              library("wrong"), *options, status=status)
+
+    def check_stopped(self, done, reasons):
+        """Each case has stopped for its reason, and `nominal` is complete."""
+        with self.open("out.h5") as file:
+            self.assertEqual(file["cases/nominal"].attrs["finished"], 1)
+            for case, why in reasons.items():
+                self.assertEqual(file["cases/" + case].attrs["finished"], 0, case)
+                self.assertRegex(done.stdout, rf"(?m)^{case} +stopped: {why}")
+        self.servomill("compare", "out.h5", "--plugin", library("wrong"))
+
+    def test_what_is_thrown_or_not_finite_ends_its_case(self):
+        kinds = [(name, where, how) for name in ("wrong_displacement", "wrong_offset")
+                 for where in ("create", "settle", "step") for how in SAID]
+        kinds += [(name, "step", "nan") for name in ("wrong_displacement", "wrong_offset")]
+        reasons = {}
+        for options in ((), ("--isolate",)):
+            cases, done = self.run_wrong(kinds, *options, status=1)
+            for case, (name, where, how) in zip(cases, kinds):
+                function = name.removeprefix("wrong_")
+                if function == "displacement" and where != "step":
+                    function = "settle"
+                said = " returned what is not finite" if how == "nan" else ": " + SAID[how]
+                reasons[case] = rf"strategy {name}: {function}{said} at 0\.\d{{4}} s, line \d of the program"
+            self.check_stopped(done, reasons)
+
+    def test_one_that_ends_the_process_ends_the_command_with_status_3(self):
+        for name in ("wrong_displacement", "wrong_offset"):
+            for where, how in (("create", "segmentation_fault"), ("settle", "exit"), ("step", "abort"), ("step", "exit"),
+                               ("step", "quick_exit"), ("step", "overflow"), ("destroy", "abort"), ("destroy", "throws")):
+                _, done = self.run_wrong([(name, where, how)], "-j", "1", status=3)
+                first, kept = done.stderr.splitlines()[-2:]
+                why = FAILED.get(how, FAILED["abort"])
+                self.assertEqual(first, f"strategy {name} ({library('wrong')}): the plug-in {why}", (where, how))
+                partial = kept.removeprefix("kept in ").split(":")[0]
+                self.assertIn("complete cases nominal; interrupted", kept)
+                with self.open(partial) as file:
+                    self.assertEqual(list(file["cases"]), ["nominal"])
+                os.remove(os.path.join(self.folder, partial))
+
+    def test_isolated_it_ends_only_its_case(self):
+        kinds = [(name, where, how) for name in ("wrong_displacement", "wrong_offset")
+                 for where in WHERE for how in FAILED if how != "loops" or name == "wrong_offset"]
+        cases, done = self.run_wrong(kinds, "--isolate", "-j", "8", status=1)
+        self.check_stopped(done, {
+            case: re.escape(f"strategy {name} ({library('wrong')}): the plug-in {FAILED[how]}") + "$"
+            for case, (name, where, how) in zip(cases, kinds)})
+
+    def test_isolated_an_interrupt_ends_all_processes(self):
+        text = scenario_text(("loops", "wrong_offset", f"where = {WHERE.index('step')}\nhow = {HOW.index('loops')}"))
+        self.write(text)
+        arguments = [SERVOMILL, "run", "s.toml", "-o", "out.h5", "--plugin", library("wrong"), "--isolate"]
+        with subprocess.Popen(arguments, cwd=self.folder, stderr=subprocess.PIPE, text=True) as process:
+            time.sleep(2.0)  # `nominal` has ended long since, the other one loops
+            with open(f"/proc/{process.pid}/task/{process.pid}/children", encoding="ascii") as file:
+                children = file.read().split()
+            process.send_signal(signal.SIGINT)
+            _, said = process.communicate(timeout=PATIENCE)
+        self.assertEqual(process.returncode, 130, said)
+        self.assertRegex(said, r"interrupted; kept in out\.h5\.partial: complete cases nominal; interrupted loops\n$")
+        self.assertEqual(len(children), 1)
+        for _ in range(50):
+            if not is_running(children[0]):
+                return
+            time.sleep(0.1)
+        self.fail("the child goes on")
+
+    def test_isolated_the_bits_are_the_same(self):
+        self.write(scenario_text(("smooth_ramp", f"slope_um_per_m = {SLOPE}"), ("identified", 'model = "imposed"')))
+        printed = {}
+        for name, options in (("alone.h5", ()), ("isolated.h5", ("--isolate",)), ("long.h5", ("--isolate", "-j", "1"))):
+            printed[name] = self.servomill("run", "s.toml", "-o", name, "--json", "--plugin", library("ramp"),
+                                           *options).stdout
+            self.assertEqual(printed[name], printed["alone.h5"])
+        with self.open("alone.h5") as one:
+            for name in ("isolated.h5", "long.h5"):
+                with self.open(name) as other:
+                    for case in ("nominal", "smooth_ramp", "identified"):
+                        self.assertEqual(sorted(one[f"cases/{case}/servo"]), sorted(other[f"cases/{case}/servo"]))
+                        for signal, data in one[f"cases/{case}/servo"].items():
+                            there = other[f"cases/{case}/servo/{signal}"]
+                            self.assertEqual(data[:].tobytes(), there[:].tobytes(), signal)
+                            self.assertEqual(data.dtype, there.dtype)
+                            self.assertEqual(data.attrs["units"], there.attrs["units"])
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
+#include "sim/input/plugins.h"
 #include "sim/preparation/estimate.h"
 #include "sim/run/run.h"
 #include "sim/run/store.h"
@@ -102,8 +103,12 @@ int run_command(const Arguments& arguments) {
   options.add()("json", "prints the comparison as one JSON object a line");
   options.add()("quiet,q", "prints nothing but warnings and faults");
   add_plugin_option(options);
+  options.add()("isolate",
+                "simulates cases with plug-ins in processes of their own: a plug-in that crashes, "
+                "calls exit() or does not return within 10 s ends its case, not the command");
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
+  if (options.has("isolate")) sim::isolate_plugins();
 
   const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
   const std::string path =

@@ -1,0 +1,113 @@
+#include "sim/run/result_stream.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace servomill::sim {
+namespace {
+
+using strategies::PluginChild;
+using strategies::ProcessPipe;
+
+constexpr std::size_t kRowsAtOnce = 1024;
+
+template <class Value>
+requires std::is_trivially_copyable_v<Value>
+void write(ProcessPipe& to, const Value& value) { to.write(&value, sizeof value); }
+
+void write(ProcessPipe& to, const std::string& text) {
+  write(to, text.size());
+  to.write(text.data(), text.size());
+}
+
+std::string read_text(PluginChild& from) {
+  std::string text(from.read<std::size_t>(), '\0');
+  from.read(text.data(), text.size());
+  return text;
+}
+
+void write(ProcessPipe& to, const Signal& one) {
+  for (const std::string& text : {one.name, one.units, one.long_name, one.labels, one.scale}) {
+    write(to, text);
+  }
+  write(to, one.storage);
+  write(to, one.quantum);
+}
+
+Signal read_signal(PluginChild& from) {
+  Signal one;
+  for (std::string* text : {&one.name, &one.units, &one.long_name, &one.labels, &one.scale}) {
+    *text = read_text(from);
+  }
+  one.storage = from.read<Storage>();
+  one.quantum = from.read<double>();
+  return one;
+}
+
+void write(ProcessPipe& to, const Series& series) {
+  write(to, series.signals().size());
+  for (const Signal& one : series.signals()) write(to, one);
+  write(to, series.rows());
+  std::vector<double> rows;
+  for (std::size_t first = 0; first < series.rows(); first += kRowsAtOnce) {
+    rows.clear();
+    const std::size_t end = std::min(first + kRowsAtOnce, series.rows());
+    for (std::size_t row = first; row < end; ++row) {
+      for (std::size_t c = 0; c < series.width(); ++c) rows.push_back(series.at(row, c));
+    }
+    to.write(rows.data(), rows.size() * sizeof(double));
+  }
+}
+
+Series read_series(PluginChild& from, const RowKeeping& keeping) {
+  std::vector<Signal> signals(from.read<std::size_t>());
+  for (Signal& one : signals) one = read_signal(from);
+  const std::size_t width = Series(signals).width();
+  const auto count = from.read<std::size_t>();
+  RowKeeper keeper(signals, keeping, count);
+  std::vector<double> rows;
+  for (std::size_t first = 0; first < count; first += kRowsAtOnce) {
+    rows.resize(std::min(kRowsAtOnce, count - first) * width);
+    from.read(rows.data(), rows.size() * sizeof(double));
+    keeper.add(rows);
+  }
+  return keeper.take();
+}
+
+}  // namespace
+
+void write_result(const CaseResult& result, ProcessPipe& to) {
+  const auto& [finished, interrupted, reason, axis, time] = result.outcome;
+  write(to, finished);
+  write(to, interrupted);
+  write(to, reason);
+  write(to, axis);
+  write(to, time);
+  write(to, result.servo);
+  write(to, result.last_ticks);
+  write(to, result.saturations.size());
+  for (const strategies::Saturation& one : result.saturations) write(to, one);
+  write(to, result.simulated_time);
+}
+
+CaseResult read_result(PluginChild& from, RowKeeping keeping) {
+  keeping.thinning.reset();
+  CaseResult result;
+  auto& [finished, interrupted, reason, axis, time] = result.outcome;
+  finished = from.read<bool>();
+  interrupted = from.read<bool>();
+  reason = read_text(from);
+  axis = from.read<char>();
+  time = from.read<double>();
+  result.servo = read_series(from, keeping);
+  result.last_ticks = read_series(from, keeping);
+  result.saturations.resize(from.read<std::size_t>());
+  for (strategies::Saturation& one : result.saturations) one = from.read<strategies::Saturation>();
+  result.simulated_time = from.read<double>();
+  return result;
+}
+
+}  // namespace servomill::sim
