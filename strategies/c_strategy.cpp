@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstring>
 #include <exception>
 #include <string_view>
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
+#include "strategies/c_program.h"
 #include "strategies/compensation.h"
+#include "strategies/plugin_child.h"
 #include "strategies/plugin_watch.h"
 #include "strategies/single_run_feedback.h"
 
@@ -199,6 +205,35 @@ class COffset final : public SetpointPart {
   mutable std::string failure_;
 };
 
+// Blocks that `rewrite` makes of a program.
+std::vector<servomill_block> blocks_of(const std::shared_ptr<const Made>& made, CProgram& program) {
+  CState state;
+  void* mine = state.of(made, 0.0);
+  {
+    const PluginCall call(made->label);
+    throw_if_refused(made->declared->rewrite(mine, program.program()));
+  }
+  return program.take_blocks();
+}
+
+// The same, in a process of its own.
+std::vector<servomill_block> isolated_blocks_of(const std::shared_ptr<const Made>& made,
+                                                CProgram& program) {
+  constexpr std::chrono::milliseconds kLookPeriod{20};
+  PluginChild child(made->label, [&] {
+    return [blocks = blocks_of(made, program)](ProcessPipe& to) {
+      const std::size_t count = blocks.size();
+      to.write(&count, sizeof count);
+      to.write(blocks.data(), count * sizeof(servomill_block));
+    };
+  });
+  child.begin();
+  while (!child.wait(kLookPeriod)) throw_if_interrupted();
+  std::vector<servomill_block> blocks(child.read<std::size_t>());
+  child.read(blocks.data(), blocks.size() * sizeof(servomill_block));
+  return blocks;
+}
+
 class CStrategy final : public Strategy {
  public:
   explicit CStrategy(Made made) : made_(std::make_shared<const Made>(std::move(made))) {}
@@ -207,6 +242,8 @@ class CStrategy final : public Strategy {
     if (made_->declared->offset == nullptr) return nullptr;
     return std::make_unique<COffset>(made_);
   }
+  bool rewrites() const override { return made_->declared->rewrite != nullptr; }
+  std::vector<Move> rewrite(const std::vector<Move>& moves) const override;
   bool displaces_feedback() const override { return made_->declared->displacement != nullptr; }
   bool displaces_rotary() const override { return made_->declared->displaces_rotary != 0; }
   std::unique_ptr<FeedbackPart> feedback(double model_period) const override {
@@ -218,6 +255,29 @@ class CStrategy final : public Strategy {
  private:
   std::shared_ptr<const Made> made_;
 };
+
+std::vector<Move> CStrategy::rewrite(const std::vector<Move>& moves) const {
+  if (!rewrites()) return moves;
+  const IdentifiedModel& identified = made_->identified;
+  std::string wrong;
+  try {
+    CProgram program(moves, identified.layout, identified.reference);
+    const std::vector<servomill_block> blocks =
+        plugins_are_isolated() ? isolated_blocks_of(made_, program) : blocks_of(made_, program);
+    std::vector<Move> out = with_blocks(moves, blocks, identified.layout, identified.reference,
+                                        displaces_rotary(), wrong);
+    if (wrong.empty()) return out;
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const PluginFailed&) {
+    throw;
+  } catch (const std::exception& error) {
+    wrong = error.what();
+  } catch (...) {
+    wrong = "an exception of unknown type";
+  }
+  throw PluginFailed(fmt::format("strategy {}: rewrite: {}", made_->declared->name, wrong));
+}
 
 bool is_name(std::string_view name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
@@ -235,6 +295,23 @@ bool is_number(std::string_view text) {
   }
 }
 
+// Bytes of the struct as the first headers of this ABI version had it; what follows was appended.
+constexpr std::size_t kFirstSize = offsetof(servomill_strategy, rewrite);
+constexpr std::size_t kMostSize = 1024;
+
+// A struct of a library that was built with other headers: as far as both know it.
+servomill_strategy completed(const servomill_strategy& declared) {
+  servomill_strategy out{};
+  std::memcpy(&out, &declared, std::min(declared.size, sizeof out));
+  return out;
+}
+
+bool has_unknown_parts(const servomill_strategy& declared) {
+  const char* const bytes = reinterpret_cast<const char*>(&declared);
+  return declared.size > sizeof declared &&
+         std::any_of(bytes + sizeof declared, bytes + declared.size, [](char c) { return c != 0; });
+}
+
 std::string wrong_with(const servomill_parameter* one) {
   if (one == nullptr || one->size < sizeof(servomill_parameter)) return "is not declared";
   if (one->name == nullptr || *one->name == '\0') return "has no name";
@@ -248,16 +325,20 @@ std::string wrong_with(const servomill_parameter* one) {
 }  // namespace
 
 std::string wrong_with(const servomill_strategy& declared) {
-  if (declared.size < sizeof(servomill_strategy)) {
-    return fmt::format("its struct has {} bytes, expected at least {}", declared.size,
-                       sizeof(servomill_strategy));
+  if (declared.size < kFirstSize || declared.size > kMostSize) {
+    return fmt::format("its struct has {} bytes, expected {} to {}", declared.size, kFirstSize,
+                       kMostSize);
   }
+  if (has_unknown_parts(declared)) {
+    return "has functions that this program does not know: it was built for a later one";
+  }
+  const servomill_strategy full = completed(declared);
   if (!is_name(text(declared.name))) {
     return fmt::format("'{}' is no name: lower case, digits and '_'", text(declared.name));
   }
   if (declared.create == nullptr) return "lacks the function create";
-  if (declared.displacement == nullptr && declared.offset == nullptr) {
-    return "has neither displacement nor offset";
+  if (full.displacement == nullptr && full.offset == nullptr && full.rewrite == nullptr) {
+    return "has none of the functions displacement, offset and rewrite";
   }
   for (std::size_t n = 0; n < declared.parameter_count; ++n) {
     if (const std::string wrong = wrong_with(declared.parameters[n]); !wrong.empty()) {
@@ -270,6 +351,7 @@ std::string wrong_with(const servomill_strategy& declared) {
 std::unique_ptr<OwnedEntry> entry_of(const servomill_strategy& declared, const std::string& file) {
   auto out = std::make_unique<OwnedEntry>();
   out->label = fmt::format("strategy {} ({})", declared.name, file);
+  out->declared = completed(declared);
   for (std::size_t n = 0; n < declared.parameter_count; ++n) {
     const servomill_parameter& one = *declared.parameters[n];
     out->parameters.push_back({.name = text(one.name),
@@ -283,11 +365,11 @@ std::unique_ptr<OwnedEntry> entry_of(const servomill_strategy& declared, const s
   entry.name = declared.name;
   entry.summary = text(declared.summary);
   entry.parameters = out->parameters;
-  entry.make = [&declared, label = out->label.c_str()](const Parameters& p, Action action,
-                                                       const IdentifiedModel& identified) {
-    Made made{&declared, label, {}, action, identified};
-    for (std::size_t n = 0; n < declared.parameter_count; ++n) {
-      made.parameters.push_back(p.number(declared.parameters[n]->name));
+  entry.make = [owned = out.get()](const Parameters& p, Action action,
+                                   const IdentifiedModel& identified) {
+    Made made{&owned->declared, owned->label.c_str(), {}, action, identified};
+    for (const ParameterSpec& one : owned->parameters) {
+      made.parameters.push_back(p.number(one.name));
     }
     return std::make_unique<CStrategy>(std::move(made));
   };

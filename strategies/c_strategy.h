@@ -14,6 +14,7 @@ namespace servomill::strategies {
 struct OwnedEntry {
   std::string label;  // "strategy ramp (libramp.so)"
   std::vector<ParameterSpec> parameters;
+  servomill_strategy declared;  // with what an older library does not know as NULL
   Entry entry;
 };
 
@@ -21,7 +22,8 @@ struct OwnedEntry {
 std::string wrong_with(const servomill_strategy& declared);
 
 /// @param file  of the plug-in
-/// @pre wrong_with(declared) is empty; it outlives the entry, as does the entry all runs
+/// @pre wrong_with(declared) is empty; what it points to outlives the entry, as does the entry all
+/// runs
 std::unique_ptr<OwnedEntry> entry_of(const servomill_strategy& declared, const std::string& file);
 
 }  // namespace servomill::strategies

@@ -5,7 +5,8 @@
 ///       explicit Ramp(const servomill_setup&);
 ///       void settle(const servomill_reading&);                  // may be left out
 ///       servomill::plugin::Joints displacement(const servomill_reading&);   // one of these two,
-///       servomill::plugin::Joints offset(const servomill_reading&);         // or both
+///       servomill::plugin::Joints offset(const servomill_reading&);         // or several
+///       void rewrite(servomill::plugin::Program&);
 ///     };
 ///     constexpr auto kRamp = servomill::plugin::strategy<Ramp>("ramp", "displaces Y over X");
 ///     SERVOMILL_PLUGIN("my plug-in", "1.0", kRamp)
@@ -33,6 +34,41 @@ constexpr servomill_parameter parameter(const char* name, const char* help, cons
                                         const char* default_text, double min, double max) {
   return {sizeof(servomill_parameter), name, help, unit, default_text, min, max};
 }
+
+/// The program that `rewrite` makes blocks of.
+class Program {
+ public:
+  explicit Program(const servomill_program& program) : program_(program) {}
+
+  /// Motions, in their order.
+  std::size_t size() const { return program_.move_count; }
+  const servomill_move& operator[](std::size_t move) const { return *program_.moves[move]; }
+  Joints start() const {
+    Joints Q;
+    std::copy_n(program_.start, Q.size(), Q.begin());
+    return Q;
+  }
+  /// Programmed position at a share (0 to 1) of a motion.
+  Joints position(std::size_t move, double share) const {
+    Joints Q;
+    program_.position(program_.host, move, share, Q.data());
+    return Q;
+  }
+  /// Adds a block, in the order of the motions; a motion without blocks stays as it is.
+  /// @param share  of the motion, at which the block ends: rising, and 1 for the last one
+  void add(std::size_t move, double share, const Joints& end, double feed_factor = 1.0) {
+    servomill_block block{};
+    block.size = sizeof block;
+    block.move = move;
+    block.share = share;
+    std::copy(end.begin(), end.end(), block.end);
+    block.feed_factor = feed_factor;
+    program_.add_block(program_.host, &block);
+  }
+
+ private:
+  const servomill_program& program_;
+};
 
 /// Text of an exception, until the next one of this thread.
 inline const char* keep(const char* what) {
@@ -70,6 +106,12 @@ struct Functions {
   static const char* offset(void* state, const servomill_reading* now, double* out) {
     return guarded([&] { write(static_cast<Run*>(state)->offset(*now), out); });
   }
+  static const char* rewrite(void* state, const servomill_program* given) {
+    return guarded([&] {
+      Program program(*given);
+      static_cast<Run*>(state)->rewrite(program);
+    });
+  }
 
  private:
   static void write(const Joints& from, double* to) { std::copy(from.begin(), from.end(), to); }
@@ -94,6 +136,9 @@ constexpr servomill_strategy strategy(const char* name, const char* summary) {
   if constexpr (requires(Run run, servomill_reading now) { run.offset(now); }) {
     out.offset = Functions<Run>::offset;
   }
+  if constexpr (requires(Run run, Program program) { run.rewrite(program); }) {
+    out.rewrite = Functions<Run>::rewrite;
+  }
   return out;
 }
 
@@ -106,6 +151,18 @@ constexpr servomill_strategy strategy(const char* name, const char* summary,
   out.parameters = parameters;
   out.parameter_count = kCount;
   return out;
+}
+
+/// The strategy with the keys model and action, and with error_at in its setup.
+constexpr servomill_strategy knows_errors(servomill_strategy one) {
+  one.knows_errors = 1;
+  return one;
+}
+
+/// The strategy with permission to displace rotary axes.
+constexpr servomill_strategy displaces_rotary(servomill_strategy one) {
+  one.displaces_rotary = 1;
+  return one;
 }
 
 }  // namespace servomill::plugin

@@ -48,7 +48,7 @@ typedef struct servomill_setup {
   size_t size;
   const double* parameters; /* in SI, in the order of servomill_strategy.parameters */
   size_t parameter_count;
-  double period;                  /* s, between two calls; 0: not known (`offset` alone) */
+  double period;                  /* s, between two calls; 0: not known (`offset`, `rewrite`) */
   double lower[SERVOMILL_JOINTS]; /* travel of the machine */
   double upper[SERVOMILL_JOINTS];
   char axes[SERVOMILL_JOINTS]; /* letter of each joint; 0: the machine has none there */
@@ -58,6 +58,41 @@ typedef struct servomill_setup {
   const void* model;
   void (*error_at)(const void* model, const double Q[SERVOMILL_JOINTS], double error[3]);
 } servomill_setup;
+
+/* A motion of the program, from where the one before has ended. Positions are those of the axes, in
+ * machine coordinates. */
+enum { SERVOMILL_RAPID = 0, SERVOMILL_LINE = 1, SERVOMILL_ARC = 2 };
+typedef struct servomill_move {
+  size_t size;
+  int32_t kind; /* one of these */
+  int32_t line; /* of the program */
+  double end[SERVOMILL_JOINTS];
+  double s_begin, s_end; /* m, arc length on the path of the original program */
+  double feed;           /* m/s; rad/s where X, Y and Z stand still; 0: rapid */
+} servomill_move;
+
+/* A straight block in place of a motion, or of a part of it. Line, arc length and mode of the feed
+ * are those of the motion. */
+typedef struct servomill_block {
+  size_t size;
+  size_t move;  /* number of the motion, from 0 */
+  double share; /* of the motion, at which the block ends: rising, and 1 for the last one */
+  double end[SERVOMILL_JOINTS];
+  double feed_factor; /* 1: as programmed */
+} servomill_block;
+
+/* The program, for the time of `rewrite`. */
+typedef struct servomill_program {
+  size_t size;
+  const servomill_move* const* moves;
+  size_t move_count;
+  double start[SERVOMILL_JOINTS];
+  void* host; /* the first argument of these functions */
+  /* Programmed position at a share (0 to 1) of a motion, of arcs too. NaN: there is none. */
+  void (*position)(const void* host, size_t move, double share, double Q[SERVOMILL_JOINTS]);
+  /* Adds a block, in the order of the motions. A motion without blocks stays as it is. */
+  void (*add_block)(void* host, const servomill_block* block);
+} servomill_program;
 
 /* One strategy. Functions that return text return NULL where all is well, else why not: the case
  * ends with that message. The text is copied before the next call. What they write must be finite;
@@ -70,7 +105,7 @@ typedef struct servomill_strategy {
   const servomill_parameter* const* parameters;
   size_t parameter_count;
   int knows_errors;     /* takes the keys model and sign */
-  int displaces_rotary; /* `displacement` may write to the places of rotary axes */
+  int displaces_rotary; /* `displacement` and `rewrite` may displace rotary axes */
 
   /* State of one run. */
   const char* (*create)(const servomill_setup* setup, void** state);
@@ -85,6 +120,9 @@ typedef struct servomill_strategy {
   /* Offset of the setpoint behind the feed-forward tap; once per position period. Or NULL. */
   const char* (*offset)(void* state, const servomill_reading* reading,
                         double offset[SERVOMILL_JOINTS]);
+  /* Rewrites the program before the run, by a state of its own, whose setup has the period 0. Or
+   * NULL. X, Y and Z of a motion of rotary axes alone stay where the block before has ended. */
+  const char* (*rewrite)(void* state, const servomill_program* program);
 } servomill_strategy;
 
 typedef struct servomill_plugin_c {

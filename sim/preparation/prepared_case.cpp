@@ -13,6 +13,7 @@
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/stability_check.h"
 #include "strategies/gcode.h"
+#include "strategies/plugin_child.h"
 
 namespace servomill::sim {
 
@@ -28,6 +29,7 @@ struct PreparedCase::Parts {
   Joints machine_start;
   std::optional<ThinningLimits> thinning = {};  // of its recording
   double distance_of_plan = 0.0;                // m, of nominal points from the part
+  std::string stops_with = {};                  // why a plug-in could not rewrite the program
 
   const MachineSettings& machine() const { return scenario.machine_of(spec); }
   SharedMoves apply_strategies(const CasePreparation& prepare);
@@ -45,6 +47,9 @@ SharedMoves PreparedCase::Parts::apply_strategies(const CasePreparation& prepare
     refuse_tip_moves(strategy, *strategies.back(), *program, scenario.program.file, spec.name);
     try {
       rewritten = prepare.rewritten(moves, strategies.back());
+    } catch (const servomill::strategies::PluginFailed& failed) {
+      if (stops_with.empty()) stops_with = failed.what();
+      continue;
     } catch (const servomill::strategies::TooManyBlocks& error) {
       throw InputError(strategy.place, fmt::format("case {}: strategy {}: {}", spec.name,
                                                    strategy.entry->name, error.what()));
@@ -118,6 +123,8 @@ CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const {
     inputs.cutting = &p.cutting->table;
     inputs.wear = p.spec.wear;
   }
+  inputs.stops_with = p.stops_with;
+  if (!p.stops_with.empty()) return inputs;
   for (const auto& strategy : p.strategies) {
     if (auto part = strategy->setpoint()) inputs.setpoints.push_back(std::move(part));
     if (strategy->displaces_feedback()) inputs.feedback = strategy.get();
@@ -134,6 +141,8 @@ PreparedParts PreparedCase::parts() const {
   return {p.scenario,        p.spec,          *p.program,      *p.motion,         p.strategies,
           p.rewritten.get(), p.cutting.get(), p.imposed.get(), p.distance_of_plan};
 }
+
+const std::string& PreparedCase::stops_with() const { return parts_->stops_with; }
 
 const CaseSpec& PreparedCase::spec() const { return parts_->spec; }
 

@@ -49,6 +49,10 @@ class PreparedCase {
   /// Lets rows of its recording be left out, so that it takes about so many bytes of the file.
   void thin(double bytes);
 
+  /// Why the case stops where it begins, as a plug-in could not rewrite its program; empty: it
+  /// runs.
+  const std::string& stops_with() const;
+
   /// Duration of the planned motion, s.
   double duration() const;
 

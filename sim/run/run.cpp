@@ -1,5 +1,7 @@
 #include "sim/run/run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -61,7 +63,15 @@ RunOutput with_comparison(const Scenario& scenario, std::vector<CaseOutput> outp
 }  // namespace
 
 RunEstimate check_scenario(const Scenario& scenario) {
-  return estimate(scenario, prepare_cases(scenario), 1);
+  const std::vector<PreparedCase> prepared = prepare_cases(scenario);
+  std::vector<Fault> faults;
+  for (const PreparedCase& one : prepared) {
+    if (one.stops_with().empty()) continue;
+    faults.push_back({one.spec().strategies.front().place,
+                      fmt::format("case {}: {}", one.spec().name, one.stops_with())});
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+  return estimate(scenario, prepared, 1);
 }
 
 void check_machine(const MachineSettings& machine) {

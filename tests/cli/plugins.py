@@ -68,6 +68,7 @@ def is_running(process):
             return file.read().rpartition(")")[2].split()[0] not in "ZX"
     except FileNotFoundError:
         return False
+LOOPING = {("wrong_offset", where) for where in WHERE} | {("wrong_rewrite", "step")}  # 10 s each
 
 
 class Plugins(unittest.TestCase):
@@ -81,6 +82,9 @@ class Plugins(unittest.TestCase):
     def write(self, text, name="s.toml"):
         with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
             file.write(text)
+
+    def write_program(self, text):
+        self.write(text, "part.ngc")
 
     def servomill(self, *arguments, status=0):
         done = subprocess.run([SERVOMILL, *arguments], cwd=self.folder, capture_output=True, text=True,
@@ -110,6 +114,20 @@ class Plugins(unittest.TestCase):
         with self.open("out.h5") as file:
             x, y = file["cases/identified/servo/meas_linear"][-1, :2]
         self.assertAlmostEqual(y - 5.0, 0.150 * np.sin(2.0 * np.pi * x / 62.0), delta=1e-3)  # EYX
+
+    def test_a_rewritten_program_is_the_one_of_the_tree(self):
+        """Blocks of a plug-in, displaced by the identified errors, are those of `gcode`: text and all signals."""
+        self.write_program("G21 G90 G94 G17\nF1000\nG1 X10 Y5\nG4 P0.1\nG2 X20 Y15 I10\nG0 Z4\nG1 X3\nM30\n")
+        common = 'model = "imposed"\naction = "impose"\nmax_block_mm = 0.5'
+        self.write(scenario_text(("tree", "gcode", common + "\ntolerance_um = 1000"), ("plugin", "blocks", common)))
+        self.servomill("run", "s.toml", "-o", "out.h5", "--plugin", library("blocks"))
+        with self.open("out.h5") as file:
+            tree, plugin = file["cases/tree"], file["cases/plugin"]
+            texts = [case.attrs["program"].replace(name, "") for case, name in ((tree, "tree"), (plugin, "plugin"))]
+            self.assertGreater(len(texts[0].splitlines()), 80)
+            self.assertEqual(*texts)
+            for signal, data in tree["servo"].items():
+                self.assertEqual(data[:].tobytes(), plugin["servo/" + signal][:].tobytes(), signal)
 
     def test_the_scenario_can_name_it(self):
         by_option = self.run_ramp("option.h5", "--plugin", library("ramp"))
@@ -161,7 +179,7 @@ class Plugins(unittest.TestCase):
                                   "again with the headers of this program"),
                 ("no_function", "is no plug-in: it does not export the function servomill_plugin_c_entry"),
                 ("taken_name", "its strategy 'feedback' has the name of another one"),
-                ("small_struct", "strategy 1: its struct has 8 bytes, expected at least 88")):
+                ("small_struct", "strategy 1: its struct has 8 bytes, expected 88 to 1024")):
             done = self.servomill("list", "strategies", "--plugin", library(name), status=2)
             self.assertEqual(done.stderr, f"{library(name)}: error: {why}\n")
         self.assertEqual(self.servomill("list", "strategies", "--plugin", "no.so", status=2).stderr,
@@ -228,7 +246,8 @@ class Plugins(unittest.TestCase):
     def test_what_is_thrown_or_not_finite_ends_its_case(self):
         kinds = [(name, where, how) for name in ("wrong_displacement", "wrong_offset")
                  for where in ("create", "settle", "step") for how in SAID]
-        kinds += [(name, "step", "nan") for name in ("wrong_displacement", "wrong_offset")]
+        kinds += [("wrong_rewrite", where, how) for where in ("create", "step") for how in SAID]
+        kinds += [(name, "step", "nan") for name in ("wrong_displacement", "wrong_offset", "wrong_rewrite")]
         reasons = {}
         for options in ((), ("--isolate",)):
             cases, done = self.run_wrong(kinds, *options, status=1)
@@ -237,6 +256,10 @@ class Plugins(unittest.TestCase):
                 if function == "displacement" and where != "step":
                     function = "settle"
                 said = " returned what is not finite" if how == "nan" else ": " + SAID[how]
+                if function == "rewrite":
+                    said = ": block 2 (line 8) ends at Y = nan, which is not finite" if how == "nan" else said
+                    reasons[case] = re.escape(f"strategy {name}: rewrite{said}") + "$"
+                    continue
                 reasons[case] = rf"strategy {name}: {function}{said} at 0\.\d{{4}} s, line \d of the program"
             self.check_stopped(done, reasons)
 
@@ -254,9 +277,22 @@ class Plugins(unittest.TestCase):
                     self.assertEqual(list(file["cases"]), ["nominal"])
                 os.remove(os.path.join(self.folder, partial))
 
+    def test_one_that_ends_the_process_while_it_rewrites_ends_the_command_with_status_3(self):
+        for where, how in (("create", "exit"), ("step", "segmentation_fault"), ("step", "loops"), ("destroy", "throws")):
+            _, done = self.run_wrong([("wrong_rewrite", where, how)], status=3)
+            why = FAILED.get(how, FAILED["abort"])
+            self.assertEqual(done.stderr.splitlines()[-1], f"strategy wrong_rewrite ({library('wrong')}): the plug-in {why}")
+
+    def test_what_cannot_be_rewritten_is_a_fault_of_check(self):
+        self.write(scenario_text(("wrong_rewrite", f"where = {WHERE.index('step')}\nhow = {HOW.index('returns_text')}")))
+        done = self.servomill("check", "s.toml", "--plugin", library("wrong"), status=2)
+        self.assertRegex(done.stderr + done.stdout, r"s\.toml:\d+:\d+: error: case wrong_rewrite: strategy wrong_rewrite: "
+                                                    "rewrite: returned on purpose")
+
     def test_isolated_it_ends_only_its_case(self):
-        kinds = [(name, where, how) for name in ("wrong_displacement", "wrong_offset")
-                 for where in WHERE for how in FAILED if how != "loops" or name == "wrong_offset"]
+        kinds = [(name, where, how) for name in ("wrong_displacement", "wrong_offset", "wrong_rewrite")
+                 for where in WHERE for how in FAILED
+                 if (how != "loops" or (name, where) in LOOPING) and (name, where) != ("wrong_rewrite", "settle")]
         cases, done = self.run_wrong(kinds, "--isolate", "-j", "8", status=1)
         self.check_stopped(done, {
             case: re.escape(f"strategy {name} ({library('wrong')}): the plug-in {FAILED[how]}") + "$"

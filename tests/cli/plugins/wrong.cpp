@@ -98,6 +98,24 @@ const char* step(void* state, const servomill_reading* now, double out[SERVOMILL
   return go_wrong(run.how);
 }
 
+// Half of the first motion by a block, then the other half, unless it goes wrong in between.
+const char* rewrite(void* state, const servomill_program* program) {
+  const Run& run = *static_cast<Run*>(state);
+  servomill_block block{};
+  block.size = sizeof block;
+  block.feed_factor = 1.0;
+  for (const double share : {0.5, 1.0}) {
+    block.share = share;
+    program->position(program->host, 0, share, block.end);
+    if (run.where == kStep && share == 1.0) {
+      if (run.how == kNan) block.end[1] = std::numeric_limits<double>::quiet_NaN();
+      if (const char* why = go_wrong(run.how)) return why;
+    }
+    program->add_block(program->host, &block);
+  }
+  return nullptr;
+}
+
 constexpr servomill_parameter kWhere = {
     sizeof(servomill_parameter), "where", "function that goes wrong", "", "0", 0.0, kDestroy};
 constexpr servomill_parameter kHow = {
@@ -126,11 +144,17 @@ constexpr servomill_strategy offsetting() {
   out.offset = step;
   return out;
 }
+constexpr servomill_strategy rewriting() {
+  servomill_strategy out = strategy("wrong_rewrite");
+  out.rewrite = rewrite;
+  return out;
+}
 
-constexpr servomill_strategy kDisplacing = displacing(), kOffsetting = offsetting();
-const servomill_strategy* const kStrategies[] = {&kDisplacing, &kOffsetting};
+constexpr servomill_strategy kDisplacing = displacing(), kOffsetting = offsetting(),
+                             kRewriting = rewriting();
+const servomill_strategy* const kStrategies[] = {&kDisplacing, &kOffsetting, &kRewriting};
 constexpr servomill_plugin_c kPlugin = {
-    SERVOMILL_PLUGIN_ABI, 0, sizeof(servomill_plugin_c), "wrong", "0", kStrategies, 2};
+    SERVOMILL_PLUGIN_ABI, 0, sizeof(servomill_plugin_c), "wrong", "0", kStrategies, 3};
 
 }  // namespace
 
