@@ -84,7 +84,7 @@ void DriveBank::prepare_stretches() {
   for (const Stretch& stretch : stretches_) stop_count += stretch.stops.size();
   stops_.resize(stop_count * constants_.size());
   for (std::size_t l = 0; l < lanes(); ++l) {
-    StopBlock* to = &stops_[l / kLaneWidth * stop_count];
+    StopBlock* to = stops_.data() + l / kLaneWidth * stop_count;
     for (const PreparedDrive::Stop& from : drives_[l]->stops) {
       for (std::size_t column = 0; column < HoldBlock::kColumns; ++column) {
         to->hold.set(column, l % kLaneWidth, from.hold[kHoldColumns[column]]);
@@ -106,7 +106,7 @@ void DriveBank::prepare_stretches() {
     };
     for (std::size_t block = 0; block < constants_.size(); ++block) {
       BlockStep step = steps_of(stretch.step)[block];
-      step.stops = &stops_[block * stop_count + first];
+      step.stops = stops_.data() + block * stop_count + first;
       step.stop_count = stretch.stops.size();
       // what the pieces may grow to, or more where they would not show that it does
       step.least_wanted = std::min(rung(stretch.step), rung(longest_piece) + 1);
