@@ -12,8 +12,8 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
+#include "strategies/axis_displacement.h"
 #include "strategies/c_program.h"
-#include "strategies/compensation.h"
 #include "strategies/plugin_child.h"
 #include "strategies/plugin_watch.h"
 #include "strategies/single_run_feedback.h"

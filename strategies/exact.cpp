@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "strategies/straightening.h"
+#include "strategies/linearisation.h"
 
 namespace servomill::strategies {
 namespace {

@@ -10,9 +10,9 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "strategies/linearisation.h"
 #include "strategies/pose_compensation.h"
 #include "strategies/programmed_way.h"
-#include "strategies/straightening.h"
 
 namespace servomill::strategies {
 namespace {

@@ -1,6 +1,6 @@
 #include "strategies/harmonic.h"
 
-#include "strategies/straightening.h"
+#include "strategies/linearisation.h"
 
 namespace servomill::strategies {
 namespace {

@@ -1,6 +1,6 @@
 #include "strategies/parabolic.h"
 
-#include "strategies/straightening.h"
+#include "strategies/linearisation.h"
 
 namespace servomill::strategies {
 namespace {

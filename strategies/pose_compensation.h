@@ -21,7 +21,7 @@
 /// robustness for robot manipulator control, ASME J. Dyn. Sys. Meas. Control 108 (1986) 163-171.
 #pragma once
 
-#include "strategies/compensation.h"
+#include "strategies/axis_displacement.h"
 #include "strategies/strategy.h"
 
 namespace servomill::strategies {

@@ -8,7 +8,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
-#include "strategies/compensation.h"
+#include "strategies/axis_displacement.h"
 #include "strategies/grid_table.h"
 #include "strategies/pose_compensation.h"
 #include "strategies/tabulate.h"

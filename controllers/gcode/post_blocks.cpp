@@ -78,11 +78,11 @@ void PostBlocks::note_speed(int line, const ToolPose& P, const Joints& Q, double
   if (!(time > 0.0)) return;
   // under tip control linear joints go elsewhere than to Q in between
   const int first = options_.mode == PostMode::tip ? kLinearJoints : 0;
-  std::vector<SlowedMotion> slowed;
+  std::vector<FeedReduction> slowed;
   for (int j = first; j < kJoints; ++j) {
     if (!inverse_.chain().layout.has(j)) continue;
-    const SlowedMotion here{line, j, std::abs(Q[j] - Q_[j]) / time, options_.v_max[j],
-                            inverse_.distance_from_singular(P.k_W)};
+    const FeedReduction here{line, j, std::abs(Q[j] - Q_[j]) / time, options_.v_max[j],
+                             inverse_.distance_from_singular(P.k_W)};
     if (here.needed > here.allowed) slowed.push_back(here);
   }
   if (!slowed.empty()) report_.note_slowed(slowed);

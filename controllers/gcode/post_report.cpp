@@ -34,9 +34,9 @@ void PostReport::note_bend(int line, double deviation) {
   most_bent_ = line;
 }
 
-void PostReport::note_slowed(const std::vector<SlowedMotion>& joints) {
+void PostReport::note_slowed(const std::vector<FeedReduction>& joints) {
   ++slowed_blocks_;
-  for (const SlowedMotion& here : joints) {
+  for (const FeedReduction& here : joints) {
     if (!slowed_ || here.share() < slowed_->share()) slowed_ = here;
   }
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "controllers/path/slowed_motion.h"
+#include "controllers/path/feed_reduction.h"
 #include "plant/vocabulary/input_error.h"
 
 namespace servomill::controllers {
@@ -32,7 +32,7 @@ class PostReport {
 
   /// A block in which joints exceed their speed limits at the programmed feed.
   /// @param joints  each such joint, at least one
-  void note_slowed(const std::vector<SlowedMotion>& joints);
+  void note_slowed(const std::vector<FeedReduction>& joints);
 
   /// Warnings of the run, those that are counted last.
   /// @param of_refused  receives the warnings if there are errors
@@ -52,7 +52,7 @@ class PostReport {
   double bend_ = 0.0;       // m, at most
   int most_bent_ = 0;       // its line
   std::size_t slowed_blocks_ = 0;
-  std::optional<SlowedMotion> slowed_;  // the one that falls most
+  std::optional<FeedReduction> slowed_;  // the one that falls most
 };
 
 }  // namespace servomill::controllers

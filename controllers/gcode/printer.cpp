@@ -164,7 +164,7 @@ class Printer {
   }
 
   std::string tool_code(int offset) const {
-    if (options_.tip_control) return fmt::format("G43.4 H{}", offset);
+    if (options_.tcp_control) return fmt::format("G43.4 H{}", offset);
     return offset == 0 ? "G49" : fmt::format("G43 H{}", offset);
   }
 

@@ -18,7 +18,7 @@ struct PrintOptions {
   int decimals_mm = 7;                  // of X Y Z I J K
   int decimals_deg = 7;                 // of A B C
   std::string axes = "XYZABC";          // axes of the machine; others are printed only if they move
-  bool tip_control = false;             // G43.4 in place of G43: `end` is the tip in the workpiece
+  bool tcp_control = false;             // G43.4 in place of G43: `end` is the tip in the workpiece
   AxisWords start = AxisWords::Zero();  // machine coordinates before the first move; m, rad
 };
 

@@ -99,12 +99,12 @@ class ChainTiming {
     }
   }
 
-  std::vector<StretchLimits> limits_of(double curve_share) const {
-    std::vector<StretchLimits> out;
+  std::vector<SegmentLimits> limits_of(double curve_share) const {
+    std::vector<SegmentLimits> out;
     out.reserve(path_.pieces.size());
     for_each_piece(
         [&](const CubicPiece& piece, double h, const JointLimits& limits, const FeedLimit& feed) {
-          out.push_back(stretch_limits(piece, h, limits, feed, curve_share));
+          out.push_back(segment_limits(piece, h, limits, feed, curve_share));
           out.back().end = path_.end_of(out.size() - 1);
         });
     return merge_similar(out);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "controllers/path/path_limits.h"
+#include "controllers/path/segment_limits.h"
 #include "controllers/path/smooth_path.h"
-#include "controllers/path/stretch_limits.h"
 #include "controllers/path/time_law.h"
 #include "controllers/path/trajectory.h"
 

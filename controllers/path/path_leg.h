@@ -2,7 +2,7 @@
 #pragma once
 
 #include "controllers/path/path_limits.h"
-#include "controllers/path/stretch_limits.h"
+#include "controllers/path/segment_limits.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/move.h"
 

@@ -155,7 +155,7 @@ class Planner {
   // A move under tool control is one leg of many chords. Their inner ends lie on a curve, as the
   // points of an arc do.
   void add_tip_motion(const Move& move, std::size_t index) {
-    const TipMotion* motion = tip_.of(index);
+    const TcpMotion* motion = tip_.of(index);
     assert(motion != nullptr);
     const std::span<const JointChord> chords = tip_.chords_of(*motion);
     const Leg leg = tip_leg(move, *motion, chords);
@@ -212,7 +212,7 @@ class Planner {
   }
 
   // Tangents where it begins and ends to move; length 0 if it does not.
-  Leg tip_leg(const Move& move, const TipMotion& motion, std::span<const JointChord> chords) const {
+  Leg tip_leg(const Move& move, const TcpMotion& motion, std::span<const JointChord> chords) const {
     Leg leg;
     leg.rapid = move.kind == MoveKind::rapid;
     leg.stop_after = move.path_mode == PathMode::exact_stop;
@@ -234,7 +234,7 @@ class Planner {
   }
 
   // s, least by feed and block time; 0: none
-  double time_of(const TipMotion& motion) const {
+  double time_of(const TcpMotion& motion) const {
     return std::max(motion.time, options_.block_time);
   }
 

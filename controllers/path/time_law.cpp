@@ -74,7 +74,7 @@ struct Waypoint {
 
 class SpeedPlanner {
  public:
-  explicit SpeedPlanner(std::span<const StretchLimits> stretches) : limits_(stretches) {
+  explicit SpeedPlanner(std::span<const SegmentLimits> stretches) : limits_(stretches) {
     points_.push_back({0.0, 0.0, 0, 1, 0, {}, {}});
     points_.push_back({limits_.back().end, 0.0, limits_.size(), 1, 0, {}, {}});
   }
@@ -187,7 +187,7 @@ class SpeedPlanner {
     if (limits_[k].end <= s) {  // the stretch that holds s
       const auto found =
           std::upper_bound(limits_.begin() + static_cast<std::ptrdiff_t>(k), limits_.end(), s,
-                           [](double x, const StretchLimits& limit) { return x < limit.end; });
+                           [](double x, const SegmentLimits& limit) { return x < limit.end; });
       k = static_cast<std::size_t>(found - limits_.begin());
     }
     v = std::min(v, limits_[k].v);
@@ -318,7 +318,7 @@ class SpeedPlanner {
     return true;
   }
 
-  std::span<const StretchLimits> limits_;
+  std::span<const SegmentLimits> limits_;
   std::vector<Waypoint> points_;  // 0 is the first, 1 the last
   std::vector<std::size_t> dirty_;
 };
@@ -346,7 +346,7 @@ Phase::State Phase::at(double time) const {
   return {s + v * S + a * C, speed, a * E + beta * v * S, beta * speed};
 }
 
-TimeLaw plan_speed(std::span<const StretchLimits> stretches) {
+TimeLaw plan_speed(std::span<const SegmentLimits> stretches) {
   assert(!stretches.empty());
   return SpeedPlanner(stretches).run();
 }

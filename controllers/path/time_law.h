@@ -8,7 +8,7 @@
 namespace servomill::controllers {
 
 /// Limits that hold on one stretch of the path, from the end of the one before to `end`.
-struct StretchLimits {
+struct SegmentLimits {
   double end = 0.0;         // m
   double v = 0.0;           // m/s
   double a = 0.0;           // m/s^2, at every speed up to v
@@ -47,6 +47,6 @@ struct TimeLaw {
 ///        +---------------------- s
 ///
 /// @param stretches  ends increasing, all limits > 0
-TimeLaw plan_speed(std::span<const StretchLimits> stretches);
+TimeLaw plan_speed(std::span<const SegmentLimits> stretches);
 
 }  // namespace servomill::controllers

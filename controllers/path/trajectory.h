@@ -8,8 +8,8 @@
 
 #include "controllers/path/path_limits.h"
 #include "controllers/path/smooth_path.h"
+#include "controllers/path/tcp_motion.h"
 #include "controllers/path/time_law.h"
-#include "controllers/path/tip_motion.h"
 #include "plant/vocabulary/move_list.h"
 
 namespace servomill::controllers {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "controllers/path/tip_motion.h"
+#include "controllers/path/tcp_motion.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/move_list.h"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "plant/geometry/turn.h"
+#include "plant/geometry/rotation_vector.h"
 
 namespace servomill::plant {
 namespace {

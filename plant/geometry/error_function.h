@@ -28,7 +28,7 @@ struct LinearTable {
 };
 
 /// Hysteresis: an error that depends on the direction of travel, by width(s) / 2 on either side of
-/// the mean, direction(s) width(s) / 2 in between (plant/geometry/travel_memory.h).
+/// the mean, direction(s) width(s) / 2 in between (plant/geometry/reversal_memory.h).
 /// Source: polynomials with a hysteresis term, Slamani, Mayer, Cloutier, Modeling and experimental
 /// validation of machine tool motion errors using degree optimized polynomial including motion
 /// hysteresis, Experimental Techniques 35 (2011) 37-44.

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "plant/geometry/error_function.h"
+#include "plant/geometry/reversal_memory.h"
 #include "plant/geometry/table_lookup.h"
-#include "plant/geometry/travel_memory.h"
 #include "plant/geometry/volumetric_kernel.h"
 
 namespace servomill::plant {

@@ -4,8 +4,8 @@
 
 #include <cstddef>
 
+#include "plant/geometry/geometric_errors_kernel.h"
 #include "plant/geometry/straight_kernel.h"
-#include "plant/geometry/volumetric_faults.h"
 
 namespace servomill::plant {
 namespace {  // one copy for each instruction set

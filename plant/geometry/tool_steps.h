@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "plant/geometry/volumetric_faults.h"
+#include "plant/geometry/geometric_errors_kernel.h"
 #include "plant/geometry/volumetric_kernel.h"
 
 namespace servomill::plant {

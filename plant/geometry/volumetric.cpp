@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "plant/geometry/turn.h"
+#include "plant/geometry/rotation_vector.h"
 #include "plant/geometry/volumetric_evaluation.h"
 
 namespace servomill::plant {

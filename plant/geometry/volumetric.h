@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "plant/geometry/error_model.h"
-#include "plant/geometry/travel_memory.h"
+#include "plant/geometry/reversal_memory.h"
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/lanes.h"
 
@@ -75,7 +75,7 @@ class VolumetricModel {
   void joint_offsets(const LaneArray (&Q)[kJoints], const Eigen::Vector3d& p_ST,
                      LaneArray (&out)[kLinearJoints]) const;
 
-  /// Plays that errors with hysteresis have to remember (TravelMemory); empty on most machines,
+  /// Plays that errors with hysteresis have to remember (ReversalMemory); empty on most machines,
   /// which pay nothing for it.
   const std::vector<Play>& plays() const;
 

@@ -7,8 +7,8 @@
 
 #include "plant/geometry/error_model.h"
 #include "plant/geometry/prepared_functions.h"
+#include "plant/geometry/reversal_memory.h"
 #include "plant/geometry/straight_kernel.h"
-#include "plant/geometry/travel_memory.h"
 #include "plant/geometry/volumetric_kernel.h"
 #include "plant/kinematics/chain.h"
 

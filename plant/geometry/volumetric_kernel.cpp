@@ -1,7 +1,7 @@
 #include "plant/geometry/volumetric_kernel.h"
 
+#include "plant/geometry/geometric_errors_kernel.h"
 #include "plant/geometry/tool_steps.h"
-#include "plant/geometry/volumetric_faults.h"
 
 namespace servomill::plant {
 namespace {

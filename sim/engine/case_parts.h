@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "plant/geometry/travel_memory.h"
-#include "sim/engine/cutting.h"
+#include "plant/geometry/reversal_memory.h"
+#include "sim/engine/cutting_load.h"
 #include "sim/engine/recorder.h"
 #include "sim/engine/simulate.h"
 
@@ -39,7 +39,7 @@ class TravelDirections {
   }
 
  private:
-  plant::TravelMemory memory_;
+  plant::ReversalMemory memory_;
   std::vector<double> directions_;
 };
 

@@ -13,7 +13,7 @@
 #include "sim/model/run_settings.h"
 #include "sim/records/row_keeper.h"
 #include "sim/records/series.h"
-#include "sim/system/background.h"
+#include "sim/system/worker_thread.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim {
@@ -72,8 +72,8 @@ class Recorder {
     std::vector<double> directions;  // of each snapshot, one behind the other
   };
   Block filling_;
-  Block working_;          // what the thread turns into rows
-  Background background_;  // last: its thread uses the others
+  Block working_;            // what the thread turns into rows
+  WorkerThread background_;  // last: its thread uses the others
 };
 
 }  // namespace servomill::sim

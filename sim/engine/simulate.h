@@ -12,7 +12,7 @@
 #include "controllers/path/trajectory.h"
 #include "plant/drives/prepared_drives.h"
 #include "plant/geometry/volumetric.h"
-#include "sim/engine/cutting.h"
+#include "sim/engine/cutting_load.h"
 #include "sim/engine/program_path.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"

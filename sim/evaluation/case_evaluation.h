@@ -1,9 +1,9 @@
 /// A case with what several quantities look at, each found once.
 #pragma once
 
-#include "sim/evaluation/ball_quantities.h"
 #include "sim/evaluation/case_samples.h"
 #include "sim/evaluation/circular_quantities.h"
+#include "sim/evaluation/r_test_quantities.h"
 
 namespace servomill::sim {
 

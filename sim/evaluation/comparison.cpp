@@ -9,9 +9,9 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
-#include "sim/evaluation/ball_quantities.h"
 #include "sim/evaluation/case_evaluation.h"
 #include "sim/evaluation/quantity.h"
+#include "sim/evaluation/r_test_quantities.h"
 #include "sim/model/scenario.h"
 #include "sim/system/json.h"
 #include "sim/system/text_table.h"

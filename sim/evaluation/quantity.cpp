@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cassert>
 
-#include "sim/evaluation/ball_quantities.h"
 #include "sim/evaluation/circular_quantities.h"
 #include "sim/evaluation/path_quantities.h"
 #include "sim/evaluation/probe_quantities.h"
+#include "sim/evaluation/r_test_quantities.h"
 
 namespace servomill::sim {
 
@@ -14,7 +14,7 @@ std::span<const QuantityEntry> quantities() {
   static const std::vector<QuantityEntry> kQuantities = [] {
     std::vector<QuantityEntry> all;
     for (const auto family :
-         {path_quantities(), circular_quantities(), ball_quantities(), probe_quantities()}) {
+         {path_quantities(), circular_quantities(), r_test_quantities(), probe_quantities()}) {
       all.insert(all.end(), family.begin(), family.end());
     }
     return all;

@@ -15,7 +15,7 @@ constexpr Complex kJ{0.0, 1.0};
 
 constexpr auto kLookAway = [](Tick, std::uint8_t, const AxisSignals&) {};
 
-Eigen::MatrixXd monodromy_of(AxisStand& stand) {
+Eigen::MatrixXd monodromy_of(AxisTestBench& stand) {
   const int states = stand.states();
   Eigen::MatrixXd Phi(states, states);
   for (int column = 0; column < states; ++column) {
@@ -150,7 +150,7 @@ double slowest_time_constant(const MachineSettings& machine, int joint, Tick rea
 double velocity_spectral_radius(const MachineSettings& machine, int joint) {
   MachineSettings alone = linearised(machine);
   alone.nc.cascade[static_cast<std::size_t>(joint)].Kv = 0.0;
-  AxisStand stand(alone, joint, 0, PositionLoop::closed);
+  AxisTestBench stand(alone, joint, 0, PositionLoop::closed);
   const Eigen::MatrixXd monodromy = monodromy_of(stand);
   if (!monodromy.allFinite()) return std::numeric_limits<double>::infinity();
   const Eigen::VectorXcd all = eigenvalues(monodromy);

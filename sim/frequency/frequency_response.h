@@ -43,11 +43,11 @@ class FrequencyResponse {
   /// @param f  Hz, > 0
   Response at(Entry entry, double f);
 
-  const AxisStand& stand() const { return stand_; }
+  const AxisTestBench& stand() const { return stand_; }
   const Eigen::MatrixXd& monodromy() const { return monodromy_; }
 
  private:
-  AxisStand stand_;
+  AxisTestBench stand_;
   Eigen::MatrixXd monodromy_;
 };
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <complex>
 
-#include "sim/frequency/axis_stand.h"
+#include "sim/frequency/axis_test_bench.h"
 
 namespace servomill::sim {
 

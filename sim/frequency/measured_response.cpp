@@ -60,7 +60,7 @@ double frequency(const Window& window, std::size_t k, double T) {
 // Sum of sinusoids of one window on the ticks of the stand.
 class Excitation {
  public:
-  Excitation(const Window& window, const AxisStand& stand, const Measurement& how)
+  Excitation(const Window& window, const AxisTestBench& stand, const Measurement& how)
       : how_(how), h_(stand.base()), ticks_(window.hyperperiods * stand.hyperperiod()) {
     if (ticks_ <= kMostKept) turn_.reserve(static_cast<std::size_t>(ticks_));
     for (Tick n = 0; n < ticks_ && ticks_ <= kMostKept; ++n) turn_.push_back(turned(n));
@@ -130,7 +130,7 @@ class Excitation {
 // How far the signals are off the true ones, over a window.
 class EncoderErrors {
  public:
-  explicit EncoderErrors(AxisStand& stand)
+  explicit EncoderErrors(AxisTestBench& stand)
       : stand_(stand),
         Tv_(stand.machine().nc.cascade[static_cast<std::size_t>(stand.joint())].Tv) {}
 
@@ -152,7 +152,7 @@ class EncoderErrors {
   }
 
  private:
-  AxisStand& stand_;
+  AxisTestBench& stand_;
   double Tv_;
   std::optional<double> last_speed_;
   double turned_ = 0.0;        // rad, true, since the last instant of the velocity loop
@@ -184,7 +184,7 @@ struct Lines {
   std::vector<Fundamental> sums, added;
 };
 
-void measure_window(AxisStand& stand, PositionLoop loop, const Measurement& how,
+void measure_window(AxisTestBench& stand, PositionLoop loop, const Measurement& how,
                     const Window& window, double wait, MeasuredResponse& out) {
   const Excitation excitation(window, stand, how);
   const auto moved = [&, h = stand.base()](Tick n) {
@@ -239,7 +239,7 @@ MeasuredResponse measure(const MachineSettings& machine, int joint, Tick reading
                          PositionLoop loop, const Measurement& how,
                          const std::vector<double>& wanted) {
   assert(how.amplitude > 0.0);
-  AxisStand stand(machine, joint, reading_delay, loop);
+  AxisTestBench stand(machine, joint, reading_delay, loop);
   const double wait =
       std::min(kLongestWait, kDecay * slowest_time_constant(machine, joint, reading_delay, loop));
   MeasuredResponse out;

@@ -78,7 +78,7 @@ StepResponse step_response(const MachineSettings& machine, int joint, Tick readi
   assert(settings.amplitude != 0.0 && settings.duration > 0.0 && every > 0);
   const PositionLoop loop =
       settings.kind == StepKind::velocity ? PositionLoop::open : PositionLoop::closed;
-  AxisStand stand(machine, joint, reading_delay, loop);
+  AxisTestBench stand(machine, joint, reading_delay, loop);
   stand.settle(settings.position);
   const StandInput in = input_of(settings);
   StepResponse out;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/frequency/axis_stand.h"
+#include "sim/frequency/axis_test_bench.h"
 
 namespace servomill::sim {
 

@@ -10,7 +10,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/config/document.h"
-#include "sim/system/memo.h"
+#include "sim/system/shared_cache.h"
 
 namespace servomill::sim {
 
@@ -41,8 +41,8 @@ class InputFiles {
   std::shared_ptr<const Document> document(const std::string& path, const std::string& text);
 
  private:
-  Memo<std::string> texts_;
-  Memo<Document> documents_;
+  SharedCache<std::string> texts_;
+  SharedCache<Document> documents_;
   std::mutex mutex_;
   std::unordered_map<std::string, std::uint64_t> checksums_;  // by path, of all that was read
 };

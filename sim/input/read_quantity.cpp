@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "plant/vocabulary/units.h"
-#include "sim/evaluation/ball_quantities.h"
 #include "sim/evaluation/nominal_part.h"
 #include "sim/evaluation/quantity.h"
+#include "sim/evaluation/r_test_quantities.h"
 #include "sim/input/known_name.h"
-#include "sim/input/read_ball.h"
+#include "sim/input/r_test_keys.h"
 
 namespace servomill::sim {
 namespace {
@@ -54,8 +54,8 @@ class QuantityReader {
     }
     if (info.probes > 0) {
       read_part(table, info, spec);
-    } else if (info.is_of_ball) {
-      read_ball(table, info, out_.machine.chain.layout, spec);
+    } else if (info.is_r_test) {
+      read_r_test(table, info, out_.machine.chain.layout, spec);
     } else {
       spec.sections = info.circles > 0 ? table.texts("sections") : table.texts_or("sections", {});
       spec.sections_place = table.place("sections");

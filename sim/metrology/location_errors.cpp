@@ -35,7 +35,7 @@ int number_of_set_ups(const std::vector<SensorReading>& readings) {
 }
 
 Effects effects_of(const plant::MachineChain& chain, const std::vector<SensorReading>& readings,
-                   const BallSetUp& set_up, const std::vector<ErrorName>& names) {
+                   const RTestSetUp& set_up, const std::vector<ErrorName>& names) {
   std::vector<plant::VolumetricModel> single;
   for (const ErrorName& name : names) {
     plant::ErrorModel errors;
@@ -138,7 +138,7 @@ void explain(LocationEstimate& estimate, const VectorXd& effect, const Solved& s
 }
 
 LocationFit fit(const plant::MachineChain& chain, const std::vector<SensorReading>& readings,
-                const BallSetUp& set_up, bool with_values) {
+                const RTestSetUp& set_up, bool with_values) {
   assert(!readings.empty());
   const std::vector<ErrorName> names = location_errors(chain);
   const Effects effects = effects_of(chain, readings, set_up, names);
@@ -261,13 +261,13 @@ std::vector<ErrorName> location_errors(const plant::MachineChain& chain) {
 
 LocationFit identify_locations(const plant::MachineChain& chain,
                                const std::vector<SensorReading>& readings,
-                               const BallSetUp& set_up) {
+                               const RTestSetUp& set_up) {
   return fit(chain, readings, set_up, true);
 }
 
 LocationFit observable_locations(const plant::MachineChain& chain,
                                  const std::vector<SensorReading>& readings,
-                                 const BallSetUp& set_up) {
+                                 const RTestSetUp& set_up) {
   return fit(chain, readings, set_up, false);
 }
 

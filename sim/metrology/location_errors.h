@@ -43,7 +43,7 @@ struct SensorReading {
 };
 
 /// Unknowns of the set-up beside the place of the nest on the table.
-struct BallSetUp {
+struct RTestSetUp {
   bool tcp_is_unknown = true;      // place of the ball in the spindle
   bool length_is_unknown = false;  // of a ball bar
 };
@@ -92,11 +92,12 @@ std::vector<plant::ErrorName> location_errors(const plant::MachineChain& chain);
 /// that errors of the size e leave a share of the order e (rad) of themselves.
 /// @pre there are readings; their n_W are unit vectors
 LocationFit identify_locations(const plant::MachineChain& chain,
-                               const std::vector<SensorReading>& readings, const BallSetUp& set_up);
+                               const std::vector<SensorReading>& readings,
+                               const RTestSetUp& set_up);
 
 /// Only what could be identified at these joints and directions: no values.
 LocationFit observable_locations(const plant::MachineChain& chain,
                                  const std::vector<SensorReading>& readings,
-                                 const BallSetUp& set_up);
+                                 const RTestSetUp& set_up);
 
 }  // namespace servomill::sim

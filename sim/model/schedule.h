@@ -12,8 +12,8 @@
 namespace servomill::sim {
 
 enum Due : std::uint8_t {
-  kErrorModel = 1,  // feedback hardware evaluates its model
-  kFeedbackSample = 2,      // the reading that the next position period will use is taken
+  kErrorModel = 1,      // feedback hardware evaluates its model
+  kFeedbackSample = 2,  // the reading that the next position period will use is taken
   kPositionLoop = 4,
   kVelocityLoop = 8,
   kCurrentLoop = 16,

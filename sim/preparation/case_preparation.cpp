@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "controllers/conversational/conversational.h"
-#include "controllers/path/slowed_motion.h"
+#include "controllers/path/feed_reduction.h"
 #include "controllers/path/travel.h"
 #include "plant/vocabulary/input_error.h"
 #include "sim/evaluation/nominal_part.h"
-#include "sim/preparation/case_faults.h"
 #include "sim/preparation/case_program.h"
-#include "sim/preparation/plan_cutting.h"
+#include "sim/preparation/cutting_force_plan.h"
+#include "sim/preparation/refusals.h"
 #include "sim/preparation/rewritten_text.h"
 #include "strategies/gcode.h"
 

@@ -10,7 +10,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/probed_part.h"
 #include "sim/evaluation/quantity.h"
-#include "sim/system/background.h"
+#include "sim/system/worker_thread.h"
 
 namespace servomill::sim {
 namespace {
@@ -30,7 +30,7 @@ constexpr double kUsualCompression = 6.0, kLeastCompression = 4.0;
 
 bool needs_every_row(const QuantitySpec& quantity) {
   const QuantityEntry& info = quantity_entry(quantity.name);
-  return info.circles > 0 || info.is_of_ball;
+  return info.circles > 0 || info.is_r_test;
 }
 
 std::string in_gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / kGigabyte); }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/preparation/prepared_case.h"
-#include "sim/system/memory.h"
+#include "sim/system/memory_limit.h"
 
 namespace servomill::sim {
 

@@ -14,11 +14,11 @@
 #include "plant/drives/prepared_drives.h"
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/move_list.h"
-#include "sim/engine/cutting.h"
+#include "sim/engine/cutting_load.h"
 #include "sim/engine/program_path.h"
 #include "sim/model/machine.h"
 #include "sim/preparation/circular_sections.h"
-#include "sim/system/memo.h"
+#include "sim/system/shared_cache.h"
 #include "sim/system/shared_texts.h"
 #include "strategies/strategy.h"
 
@@ -66,7 +66,7 @@ struct PlannedMotion {
   SharedMoves moves;
   controllers::Trajectory trajectory;
   double blocks = 0.0;  // of motion
-  std::vector<controllers::SlowedMotion> slowed;
+  std::vector<controllers::FeedReduction> slowed;
 };
 
 /// Sections of a planned program as circular tests see them, by name.
@@ -103,15 +103,15 @@ struct PreparationCache {
   PreparationCache();
 
   SharedTexts texts;  // of programs
-  Memo<InterpretedProgram> programs;
-  Memo<RewrittenProgram> rewritten;
-  Memo<PlannedMotion> motions;
-  Memo<SectionsOfMotion> circles;
-  Memo<PlannedCutting> cuttings;
-  Memo<plant::VolumetricModel> models;
-  Memo<strategies::Strategy> strategies;
-  Memo<double> spectral_radii;
-  Memo<PlanDistance> plan_distances;
+  SharedCache<InterpretedProgram> programs;
+  SharedCache<RewrittenProgram> rewritten;
+  SharedCache<PlannedMotion> motions;
+  SharedCache<SectionsOfMotion> circles;
+  SharedCache<PlannedCutting> cuttings;
+  SharedCache<plant::VolumetricModel> models;
+  SharedCache<strategies::Strategy> strategies;
+  SharedCache<double> spectral_radii;
+  SharedCache<PlanDistance> plan_distances;
   plant::PreparedDrives drives{kDrives};
 };
 

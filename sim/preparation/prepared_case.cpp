@@ -7,10 +7,10 @@
 
 #include "plant/kinematics/chain.h"
 #include "sim/evaluation/nominal_part.h"
-#include "sim/preparation/case_faults.h"
 #include "sim/preparation/case_preparation.h"
 #include "sim/preparation/estimate.h"
 #include "sim/preparation/preparation_cache.h"
+#include "sim/preparation/refusals.h"
 #include "sim/preparation/stability_check.h"
 #include "strategies/gcode.h"
 #include "strategies/plugin_child.h"

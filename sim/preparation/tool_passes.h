@@ -10,7 +10,7 @@
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/units.h"
 #include "sim/model/work_frame.h"
-#include "sim/preparation/plan_cutting.h"
+#include "sim/preparation/cutting_force_plan.h"
 
 namespace servomill::sim {
 

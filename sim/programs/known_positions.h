@@ -8,7 +8,7 @@
 
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/modal_state.h"
-#include "sim/programs/compensate/walk.h"
+#include "sim/programs/compensate/program_corrector.h"
 
 namespace servomill::sim {
 

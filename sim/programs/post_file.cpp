@@ -232,7 +232,7 @@ PostProcessedFile post_file(PostRequest request, std::vector<controllers::Warnin
 
   controllers::PrintOptions print;
   print.axes = names_of(machine.chain.layout);
-  print.tip_control = options.mode == controllers::PostMode::tip;
+  print.tcp_control = options.mode == controllers::PostMode::tip;
   PostProcessedFile out;
   out.program = controllers::print_program(post_processed.moves, print,
                                            header(request, options, data, machine.name))

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/programs/canon.h"
+#include "sim/programs/canonical_moves.h"
 #include "sim/programs/program_extent.h"
 
 namespace servomill::sim {

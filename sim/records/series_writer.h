@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/records/hdf5_group.h"
-#include "sim/system/background.h"
+#include "sim/system/worker_thread.h"
 
 namespace servomill::sim {
 
@@ -107,7 +107,7 @@ class SeriesWriter {
   std::vector<double> filling_, writing_;  // chunk_rows x width
   std::size_t rows_ = 0;                   // in the block that fills
   bool finished_ = false;
-  Background background_;  // last: its thread uses the others
+  WorkerThread background_;  // last: its thread uses the others
 };
 
 }  // namespace servomill::sim

@@ -11,7 +11,7 @@
 
 #include "sim/preparation/stability_check.h"
 #include "sim/run/isolated_case.h"
-#include "sim/system/background.h"
+#include "sim/system/worker_thread.h"
 #include "strategies/plugin_child.h"
 #include "strategies/plugin_watch.h"
 

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "sim/preparation/preparation_cache.h"
-#include "sim/run/case_notes.h"
+#include "sim/run/case_warnings.h"
 
 namespace servomill::sim {
 namespace {

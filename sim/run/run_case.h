@@ -32,7 +32,7 @@ struct CaseOutput {
 /// Probes the part that a run of `prepared.inputs()` has cut, and notes what the NC put right.
 CaseOutput output_of(const PreparedCase& prepared, CaseResult result);
 
-/// output_of() with all notes of sim/run/case_notes.h.
+/// output_of() with all notes of sim/run/case_warnings.h.
 CaseOutput noted_output_of(const PreparedCase& prepared, CaseResult result);
 
 /// Runs a case on this thread: noted_output_of() of its simulation.

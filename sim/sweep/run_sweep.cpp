@@ -15,7 +15,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "sim/preparation/estimate.h"
 #include "sim/preparation/preparation_cache.h"
-#include "sim/system/background.h"
+#include "sim/system/worker_thread.h"
 
 namespace servomill::sim {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/run/batch.h"
+#include "sim/run/point_batch.h"
 #include "sim/sweep/selection.h"
 #include "sim/sweep/sweep.h"
 

@@ -13,7 +13,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/user_file.h"
 #include "sim/records/input_file.h"
-#include "sim/run/batch.h"
+#include "sim/run/point_batch.h"
 #include "sim/sweep/table_columns.h"
 #include "sim/system/output_name.h"
 #include "sim/system/system_error.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "strategies/compensation.h"
+#include "strategies/axis_displacement.h"
 
 namespace servomill::sim {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
-#include "sim/frequency/axis_stand.h"
+#include "sim/frequency/axis_test_bench.h"
 #include "sim/metrology/circular_test.h"
 #include "tests/sim/small_scenario.h"
 
@@ -151,7 +151,7 @@ constexpr double kBase = 10e-6;  // s
 class AfterMove {
  public:
   AfterMove(const MachineSettings& machine, double seconds) {
-    AxisStand stand(machine, 0, 0, PositionLoop::closed);
+    AxisTestBench stand(machine, 0, 0, PositionLoop::closed);
     stand.settle(0.0);
     const auto end = static_cast<Tick>(std::lround(seconds / kBase));
     for (Tick n = 0; n < end; n += stand.hyperperiod()) {
@@ -256,7 +256,7 @@ TEST(Hunting, IsNotThereWithPresliding) {
 // Position of the slide after a long time under `input`.
 template <class Input>
 double rests_at(const MachineSettings& machine, double seconds, const Input& input) {
-  AxisStand stand(machine, 0, 0, PositionLoop::closed);
+  AxisTestBench stand(machine, 0, 0, PositionLoop::closed);
   stand.settle(0.0);
   double x = 0.0;
   const auto end = static_cast<Tick>(std::lround(seconds / kBase));

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "strategies/compensation.h"
+#include "strategies/axis_displacement.h"
 #include "strategies/single_run_feedback.h"
 
 namespace servomill::strategies {

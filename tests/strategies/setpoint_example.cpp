@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "strategies/compensation.h"
+#include "strategies/axis_displacement.h"
 
 namespace servomill::strategies {
 namespace {

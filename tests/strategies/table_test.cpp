@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/input_error.h"
-#include "strategies/compensation.h"
+#include "strategies/axis_displacement.h"
 #include "tests/strategies/identified_machines.h"
 
 namespace servomill::strategies::table_test {

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/programs/canon.h"
+#include "sim/programs/canonical_moves.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/program_options.h"
 

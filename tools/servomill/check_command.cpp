@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/programs/canon.h"
+#include "sim/programs/canonical_moves.h"
 #include "sim/programs/program_survey.h"
 #include "sim/system/json.h"
 #include "tools/servomill/command.h"

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/input/catalogue.h"
 #include "sim/input/key_text.h"
+#include "sim/input/listings.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {

@@ -16,7 +16,7 @@
 #include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/user_file.h"
 #include "sim/run/build_identity.h"
-#include "sim/system/memory.h"
+#include "sim/system/memory_limit.h"
 #include "sim/system/system_error.h"
 #include "sim/version.h"
 #include "tools/servomill/command.h"

@@ -1,7 +1,7 @@
 /// The options of every command that reads a G-code program.
 #pragma once
 
-#include "sim/programs/canon.h"
+#include "sim/programs/canonical_moves.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {

@@ -16,14 +16,14 @@
 #include "sim/input/read_errors.h"
 #include "sim/input/read_machine.h"
 #include "sim/model/design.h"
-#include "sim/programs/canon.h"
+#include "sim/programs/canonical_moves.h"
 #include "sim/programs/compensate/compensate_report.h"
 #include "sim/programs/compensate/dialect_settings.h"
 #include "sim/programs/compensate/dialect_writer.h"
 #include "sim/programs/compensate/highest_z.h"
 #include "sim/programs/compensate/linuxcnc_writer.h"
+#include "sim/programs/compensate/program_corrector.h"
 #include "sim/programs/compensate/smoothed_feeds.h"
-#include "sim/programs/compensate/walk.h"
 #include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/verification/verification.h"
 #include "sim/system/read_file.h"
@@ -92,8 +92,8 @@ std::string header_line(const CompensateRequest& request, const std::string& mac
 
 std::unique_ptr<ProgramWriter> writer_of(const CompensateRequest& request,
                                          const MachineDescription& described,
-                                         const controllers::ProgramSetup& setup, Walk& walk,
-                                         Summary& summary) {
+                                         const controllers::ProgramSetup& setup,
+                                         ProgramCorrector& corrector, Summary& summary) {
   if (request.dialect == Dialect::linuxcnc && request.smoothing > 0.0) {
     throw InputError({"--smoothing"}, "is for other controls; LinuxCNC takes G64 P in the program");
   }
@@ -101,13 +101,13 @@ std::unique_ptr<ProgramWriter> writer_of(const CompensateRequest& request,
     DialectSettings settings = dialect_settings(request, described, setup);
     for (std::size_t i = 0; i < settings.rotary_start.size(); ++i) {
       const Axis axis = kAllAxes[kLinearJoints + i];
-      if (walk.has(axis) && walk.is_known(axis)) {
-        settings.rotary_start[i] = walk.out()[index_of(axis)];
+      if (corrector.has(axis) && corrector.is_known(axis)) {
+        settings.rotary_start[i] = corrector.out()[index_of(axis)];
       }
     }
-    return std::make_unique<DialectWriter>(walk, summary, settings, request.program_file);
+    return std::make_unique<DialectWriter>(corrector, summary, settings, request.program_file);
   }
-  return std::make_unique<LinuxCncWriter>(walk, summary, decimals_for(request.tolerance));
+  return std::make_unique<LinuxCncWriter>(corrector, summary, decimals_for(request.tolerance));
 }
 
 std::string path_line(const CompensateRequest& request, const ProgramWriter& writer) {
@@ -221,9 +221,10 @@ Compensated compensate(const CompensateRequest& request) {
   Compensated out;
   std::optional<SmoothedFeeds> smoothed;
   if (request.smoothing > 0.0) smoothed.emplace(machine, request.smoothing, request.tolerance);
-  Walk walk(prepared.options, known.setup.tools, correction, out.summary,
-            request.records ? &out.record : nullptr, smoothed ? &*smoothed : nullptr);
-  const auto writer = writer_of(request, prepared.described, known.setup, walk, out.summary);
+  ProgramCorrector corrector(prepared.options, known.setup.tools, correction, out.summary,
+                             request.records ? &out.record : nullptr,
+                             smoothed ? &*smoothed : nullptr);
+  const auto writer = writer_of(request, prepared.described, known.setup, corrector, out.summary);
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
                                        known.setup);
   HighestZ highest;

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/programs/canon.h"
+#include "sim/programs/canonical_moves.h"
 #include "sim/programs/compensate/dialect.h"
 #include "sim/programs/compensate/path_record.h"
 #include "sim/programs/compensate/summary.h"
-#include "strategies/compensation.h"
+#include "strategies/axis_displacement.h"
 
 namespace servomill::sim {
 

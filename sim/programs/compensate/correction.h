@@ -10,7 +10,7 @@
 #include "plant/geometry/error_model.h"
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/axes.h"
-#include "strategies/compensation.h"
+#include "strategies/axis_displacement.h"
 #include "strategies/pose_compensation.h"
 
 namespace servomill::sim {

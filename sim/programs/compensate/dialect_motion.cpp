@@ -45,7 +45,7 @@ void DialectWriter::write_reference(const Move& move, const Block& block, bool i
   if (!is_last) {
     if (block.state->is_incremental) return;
     restate_axes(move, block);
-    return write_step(block, walk_.next(move, block, false));
+    return write_step(block, corrector_.next(move, block, false));
   }
   restate_spindle_and_coolant();
   printer_->end_smoothing();
@@ -64,7 +64,7 @@ void DialectWriter::write_reference(const Move& move, const Block& block, bool i
   is_optional_[static_cast<std::size_t>(index_of(Axis::Z))] = writes_optional_;
   if (!is_at_reference) height_ = settings_.retract_Z;
   out_known_[static_cast<std::size_t>(index_of(Axis::Z))] = false;
-  walk_.arrive_elsewhere(move);
+  corrector_.arrive_elsewhere(move);
 }
 
 void DialectWriter::write_path_mode(const Block& block, const Move& move) {
@@ -178,7 +178,7 @@ DialectWriter::Words DialectWriter::words_of(const Step& step, const AxisWords& 
     const bool moves = !out_known_[k]                            ? step.is_commanded[k] || is_feed
                        : is_optional_[k] && step.is_commanded[k] ? true
                                                                  : differs;
-    if (moves && walk_.has(axis)) out.emplace_back(axis, target[i] / unit);
+    if (moves && corrector_.has(axis)) out.emplace_back(axis, target[i] / unit);
   }
   return out;
 }
@@ -227,7 +227,7 @@ std::optional<DialectArc> DialectWriter::arc_of(const Step& step, const FittedBl
 // True if every arc of the step can be written as one.
 bool DialectWriter::takes_arcs(const DialectMotion& motion, const Step& step,
                                const AxisWords& origin) const {
-  AxisWords at = walk_.out() - origin;
+  AxisWords at = corrector_.out() - origin;
   for (const FittedBlock& fitted : step.blocks) {
     const AxisWords target = on_grid(step.programmed.frame.machine(fitted.end) - origin);
     DialectMotion one = motion;
@@ -282,8 +282,8 @@ void DialectWriter::write_step(const Block& block, const Step& given) {
   if (!motion.is_place) write_path_mode(block, *given.move);
   const bool keeps_arcs = takes_arcs(motion, given, origin);
   if (!keeps_arcs && given.programmed.arc && given.programmed.arc->c != 2) ++arcs_to_lines_;
-  const Step step = keeps_arcs ? given : walk_.without_arcs(given);
-  AxisWords at = walk_.out() - origin;
+  const Step step = keeps_arcs ? given : corrector_.without_arcs(given);
+  AxisWords at = corrector_.out() - origin;
   for (const FittedBlock& fitted : step.blocks) {
     const AxisWords target = on_grid(step.programmed.frame.machine(fitted.end) - origin);
     motion.words = words_of(step, target, at);
@@ -312,7 +312,7 @@ void DialectWriter::write_step(const Block& block, const Step& given) {
     }
     if (motion.arc) printer_->turn_by_angle(motion, begin, at);
   }
-  walk_.arrive(step, at + origin);
+  corrector_.arrive(step, at + origin);
 }
 
 }  // namespace servomill::sim

@@ -10,8 +10,8 @@
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
-#include "sim/programs/compensate/line_pieces.h"
-#include "sim/programs/compensate/woven_line.h"
+#include "sim/programs/compensate/edited_line.h"
+#include "sim/programs/compensate/line_tokens.h"
 
 namespace servomill::sim {
 namespace {
@@ -104,9 +104,9 @@ bool is_spoken(std::string_view text) {
 
 }  // namespace
 
-DialectWriter::DialectWriter(Walk& walk, Summary& summary, const DialectSettings& settings,
-                             std::string file)
-    : walk_(walk),
+DialectWriter::DialectWriter(ProgramCorrector& corrector, Summary& summary,
+                             const DialectSettings& settings, std::string file)
+    : corrector_(corrector),
       summary_(summary),
       settings_(settings),
       file_(std::move(file)),
@@ -131,7 +131,7 @@ void DialectWriter::check_codes(const Block& block) {
 }
 
 void DialectWriter::note_what_became_numbers(const Block& block) {
-  for (const LinePiece& piece : line_pieces(block)) {
+  for (const LineToken& piece : line_tokens(block)) {
     if (piece.kind == PieceKind::o_word) summary_.unrolled = true;
     if (!piece.is_constant) summary_.has_expressions = true;
     if (piece.kind != PieceKind::comment) continue;
@@ -205,7 +205,7 @@ void DialectWriter::write_moves(const Block& block) {
       write_reference(move, block, i == last);
     } else {
       if (!is_place_of_machine(block)) restate_axes(move, block);
-      write_step(block, walk_.next(move, block));
+      write_step(block, corrector_.next(move, block));
     }
   }
 }
@@ -293,7 +293,7 @@ void DialectWriter::change_tool(int number, const Block& block) {
 }
 
 void DialectWriter::forget_positions() {
-  walk_.forget_positions();
+  corrector_.forget_positions();
   out_known_.fill(false);
 }
 

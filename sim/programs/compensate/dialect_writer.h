@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "sim/programs/compensate/dialect.h"
+#include "sim/programs/compensate/program_corrector.h"
 #include "sim/programs/compensate/program_writer.h"
-#include "sim/programs/compensate/walk.h"
 
 namespace servomill::sim {
 
@@ -27,7 +27,8 @@ namespace servomill::sim {
 ///   B-63844EN/02 p. 48).
 class DialectWriter final : public ProgramWriter {
  public:
-  DialectWriter(Walk& walk, Summary& summary, const DialectSettings& settings, std::string file);
+  DialectWriter(ProgramCorrector& corrector, Summary& summary, const DialectSettings& settings,
+                std::string file);
   ~DialectWriter() override;
 
   void write(const controllers::ExecutedBlock& block) override;
@@ -83,7 +84,7 @@ class DialectWriter final : public ProgramWriter {
                                    const AxisWords& to) const;
   bool takes_arcs(const DialectMotion& motion, const Step& step, const AxisWords& origin) const;
 
-  Walk& walk_;
+  ProgramCorrector& corrector_;
   Summary& summary_;
   DialectSettings settings_;
   std::string file_;

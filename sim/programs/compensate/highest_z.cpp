@@ -5,7 +5,7 @@
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
-#include "sim/programs/compensate/walk.h"
+#include "sim/programs/compensate/program_corrector.h"
 
 namespace servomill::sim {
 

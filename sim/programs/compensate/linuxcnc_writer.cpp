@@ -12,9 +12,9 @@
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/programs/compensate/edited_line.h"
 #include "sim/programs/compensate/motion_printer.h"
 #include "sim/programs/compensate/timed_feed.h"
-#include "sim/programs/compensate/woven_line.h"
 
 namespace servomill::sim {
 
@@ -89,7 +89,7 @@ void refuse_what_changes_its_meaning(const ExecutedBlock& block) {
 }
 
 // A radius says the same as long as its ends are where they were.
-void keep_radius(const WovenLine& line, const Step& step, const AxisWords& at, double grid,
+void keep_radius(const EditedLine& line, const Step& step, const AxisWords& at, double grid,
                  MotionWords& words) {
   if (!line.has_word('R') || !line.is_constant_word('R') || step.blocks.size() != 1) return;
   const double half = kHalf * grid;
@@ -105,8 +105,8 @@ void keep_radius(const WovenLine& line, const Step& step, const AxisWords& at, d
 
 }  // namespace
 
-LinuxCncWriter::LinuxCncWriter(Walk& walk, Summary& summary, int decimals)
-    : walk_(walk), summary_(summary), decimals_(decimals) {}
+LinuxCncWriter::LinuxCncWriter(ProgramCorrector& corrector, Summary& summary, int decimals)
+    : corrector_(corrector), summary_(summary), decimals_(decimals) {}
 LinuxCncWriter::~LinuxCncWriter() = default;
 
 void LinuxCncWriter::put(std::string_view text) {
@@ -114,7 +114,7 @@ void LinuxCncWriter::put(std::string_view text) {
   text_ += end_of_line_;
 }
 
-void LinuxCncWriter::put(const WovenLine& line) {
+void LinuxCncWriter::put(const EditedLine& line) {
   std::string text;
   for (const std::string& word : line.words) text += word;
   if (text.size() > controllers::kLongestLine) {
@@ -126,12 +126,12 @@ void LinuxCncWriter::put(const WovenLine& line) {
 }
 
 // One more line for the same block: the operator's switch decides about it, too.
-void LinuxCncWriter::put_beside(const WovenLine& line, std::string_view text) {
+void LinuxCncWriter::put_beside(const EditedLine& line, std::string_view text) {
   put(fmt::format("{}{}", has_slash(line) ? "/" : "", text));
 }
 
 // Behind a block with '/' the operator knows the code in force.
-void LinuxCncWriter::forget_motion_code(const WovenLine& line) {
+void LinuxCncWriter::forget_motion_code(const EditedLine& line) {
   if (has_slash(line)) motion_ = kUnknownCode;
 }
 
@@ -156,7 +156,7 @@ void LinuxCncWriter::write(const Block& given) {
     summary_.unrolled = true;
     return;
   }
-  WovenLine line = line_of(block, summary_);
+  EditedLine line = line_of(block, summary_);
   if (has_o_word(line) || block.is_repeated || block.call_depth > 0) summary_.unrolled = true;
   if (has_o_word(line)) {
     drop_o_words(line);
@@ -199,13 +199,13 @@ void LinuxCncWriter::write(const Block& given) {
 }
 
 // The machine is in another place now: words that state the place have to follow.
-void LinuxCncWriter::shift_position(const Block& block, WovenLine& line) const {
+void LinuxCncWriter::shift_position(const Block& block, EditedLine& line) const {
   const int code = block.request->code(Group::g_non_modal);
   const int L = static_cast<int>(std::lround((*block.request)['L']));
   const bool sets = code == 920 || (code == 100 && (L == 20 || L == 10 || L == 11));
   if (!sets) return;
   const controllers::ModalState& state = *block.state;
-  const AxisWords off = state.unrotated(walk_.out() - state.to_machine(state.position));
+  const AxisWords off = state.unrotated(corrector_.out() - state.to_machine(state.position));
   for (std::size_t i = 0; i < line.pieces.size(); ++i) {
     if (line.pieces[i].kind != PieceKind::word) continue;
     const auto axis = axis_of(line.pieces[i].letter);
@@ -228,7 +228,7 @@ void LinuxCncWriter::release_until(int line) {
 }
 
 // Without motion, or with what has been woven in.
-void LinuxCncWriter::release(WovenLine& line) {
+void LinuxCncWriter::release(EditedLine& line) {
   if (!line.is_released) {
     if (line.is_motion && compensates_cutter_) drop_motion(line);
     put(line);
@@ -238,7 +238,7 @@ void LinuxCncWriter::release(WovenLine& line) {
   line.behind.clear();
 }
 
-void LinuxCncWriter::note_motion_code(const WovenLine& line) {
+void LinuxCncWriter::note_motion_code(const EditedLine& line) {
   for (const Code* code : line.codes) {
     if (code == nullptr || code->group != Group::g_motion) continue;
     motion_ = code->tenths <= 30 ? controllers::code_name('G', code->tenths) : "";
@@ -271,7 +271,7 @@ void LinuxCncWriter::note_path_mode(const Block& block) {
 }
 
 // The rapid to the height of R keeps the mode of the program.
-void LinuxCncWriter::begin_exact_path(const Move& one, const Block& block, const WovenLine& line) {
+void LinuxCncWriter::begin_exact_path(const Move& one, const Block& block, const EditedLine& line) {
   const controllers::ModalState& state = *block.state;
   if (one.path_mode != PathMode::exact_path || state.path_mode == PathMode::exact_path) return;
   if (!path_behind_cycle_.empty()) return;
@@ -300,7 +300,7 @@ std::vector<std::string> LinuxCncWriter::assumptions() const {
       "RS274NGC_STARTUP_CODE): it is restored behind canned cycles"};
 }
 
-void LinuxCncWriter::put_cycle_step(const Move& one, const Block& block, const WovenLine& line) {
+void LinuxCncWriter::put_cycle_step(const Move& one, const Block& block, const EditedLine& line) {
   if (one.kind == MoveKind::dwell) {
     put_beside(line, controllers::dwell_block(one.value));
   } else if (one.kind == MoveKind::spindle) {
@@ -312,17 +312,17 @@ void LinuxCncWriter::put_cycle_step(const Move& one, const Block& block, const W
 
 void LinuxCncWriter::move(const Move& one, const Block& block, bool is_place) {
   const bool waits = std::any_of(waiting_.begin(), waiting_.end(),
-                                 [&](const WovenLine& line) { return line.number == one.line; });
+                                 [&](const EditedLine& line) { return line.number == one.line; });
   if (waits) release_until(one.line);
-  WovenLine& line = waits ? waiting_.front() : waiting_.back();
+  EditedLine& line = waits ? waiting_.front() : waiting_.back();
   if (line.is_cycle) begin_exact_path(one, block, line);
-  const Step step = walk_.next(one, block);
+  const Step step = corrector_.next(one, block);
   if (step.is_corrected) {
     write_step(step, line, waits && !line.is_released);
     return forget_motion_code(line);
   }
   // the words of the line are those of the move
-  walk_.arrive(step, step.programmed.frame.machine(step.blocks.back().end));
+  corrector_.arrive(step, step.programmed.frame.machine(step.blocks.back().end));
   if (is_place) return;
   note_motion_code(line);
   if (motion_ != "G0") insert(line, "G0");
@@ -330,7 +330,7 @@ void LinuxCncWriter::move(const Move& one, const Block& block, bool is_place) {
   forget_motion_code(line);
 }
 
-void LinuxCncWriter::write_step(const Step& step, WovenLine& line, bool is_woven_in) {
+void LinuxCncWriter::write_step(const Step& step, EditedLine& line, bool is_woven_in) {
   const Move& one = *step.move;
   const bool is_rapid = one.kind == MoveKind::rapid;
   TimedFeed feed(step, line);
@@ -355,7 +355,7 @@ void LinuxCncWriter::write_step(const Step& step, WovenLine& line, bool is_woven
     at = printer.end();
   }
   if (feed.is_changed()) put_beside(line, feed.restored());
-  walk_.arrive(step, step.programmed.frame.machine(at));
+  corrector_.arrive(step, step.programmed.frame.machine(at));
 }
 
 std::string LinuxCncWriter::finish(const std::vector<std::string>& header) {

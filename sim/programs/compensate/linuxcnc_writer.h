@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "sim/programs/compensate/program_corrector.h"
 #include "sim/programs/compensate/program_writer.h"
-#include "sim/programs/compensate/walk.h"
 
 namespace servomill::sim {
 
-struct WovenLine;
+struct EditedLine;
 
 /// Positions are written in the units, the distance mode and the work coordinates that the program
 /// has there: blocks that change them stay. Words whose value does not change keep their spelling.
@@ -30,7 +30,7 @@ struct WovenLine;
 class LinuxCncWriter final : public ProgramWriter {
  public:
   /// @param decimals  of millimetres; inches get two more, so that they are no coarser
-  LinuxCncWriter(Walk& walk, Summary& summary, int decimals);
+  LinuxCncWriter(ProgramCorrector& corrector, Summary& summary, int decimals);
   ~LinuxCncWriter() override;
 
   void write(const controllers::ExecutedBlock& block) override;
@@ -41,23 +41,23 @@ class LinuxCncWriter final : public ProgramWriter {
   using Block = controllers::ExecutedBlock;
 
   void put(std::string_view text);
-  void put(const WovenLine& line);
-  void put_beside(const WovenLine& line, std::string_view text);
-  void forget_motion_code(const WovenLine& line);
+  void put(const EditedLine& line);
+  void put_beside(const EditedLine& line, std::string_view text);
+  void forget_motion_code(const EditedLine& line);
   bool take_percent(const Block& block);
   void move(const Block& block);
   void move(const Move& one, const Block& block, bool is_place);
-  void put_cycle_step(const Move& one, const Block& block, const WovenLine& line);
+  void put_cycle_step(const Move& one, const Block& block, const EditedLine& line);
   void note_path_mode(const Block& block);
-  void begin_exact_path(const Move& one, const Block& block, const WovenLine& line);
+  void begin_exact_path(const Move& one, const Block& block, const EditedLine& line);
   void end_exact_path();
   void release_until(int line);
-  void release(WovenLine& line);
-  void write_step(const Step& step, WovenLine& line, bool is_woven_in);
-  void shift_position(const Block& block, WovenLine& line) const;
-  void note_motion_code(const WovenLine& line);
+  void release(EditedLine& line);
+  void write_step(const Step& step, EditedLine& line, bool is_woven_in);
+  void shift_position(const Block& block, EditedLine& line) const;
+  void note_motion_code(const EditedLine& line);
 
-  Walk& walk_;
+  ProgramCorrector& corrector_;
   Summary& summary_;
   int decimals_;
   std::string text_, end_of_line_ = "\n";
@@ -68,7 +68,7 @@ class LinuxCncWriter final : public ProgramWriter {
   bool says_path_ = false, assumes_G64_ = false;  // the program has named its path mode
   double naive_cam_tolerance_ = -1.0;             // m, Q of G64; < 0: not given
   std::string path_behind_cycle_;                 // to be restored; empty: in force
-  std::deque<WovenLine> waiting_;                 // lines whose motion may still come
+  std::deque<EditedLine> waiting_;                // lines whose motion may still come
 };
 
 }  // namespace servomill::sim

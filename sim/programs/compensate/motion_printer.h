@@ -3,7 +3,7 @@
 
 #include "plant/vocabulary/axes.h"
 #include "sim/programs/compensate/corrected_path.h"
-#include "sim/programs/compensate/woven_line.h"
+#include "sim/programs/compensate/edited_line.h"
 
 namespace servomill::sim {
 
@@ -17,7 +17,7 @@ double unit_of(int axis, double unit);
 class MotionPrinter {
  public:
   /// @param line  that the words go into; nullptr: a line of their own
-  MotionPrinter(const WovenLine& modes, const WovenLine* line, int decimals)
+  MotionPrinter(const EditedLine& modes, const EditedLine* line, int decimals)
       : modes_(modes), line_(line), decimals_(decimals) {}
 
   MotionWords print(const FittedBlock& block, bool is_rapid, const AxisWords& at);
@@ -37,8 +37,8 @@ class MotionPrinter {
   void axis(int i, double target, double at);
   void centre(const FittedBlock& block, const AxisWords& at);
 
-  const WovenLine& modes_;
-  const WovenLine* line_;
+  const EditedLine& modes_;
+  const EditedLine* line_;
   int decimals_;
   MotionWords words_;
   AxisWords end_;

@@ -8,8 +8,8 @@
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/input_error.h"
 #include "sim/programs/compensate/dialect_writer.h"
-#include "sim/programs/compensate/line_pieces.h"
-#include "sim/programs/compensate/woven_line.h"
+#include "sim/programs/compensate/edited_line.h"
+#include "sim/programs/compensate/line_tokens.h"
 
 namespace servomill::sim {
 namespace {

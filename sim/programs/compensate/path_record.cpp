@@ -7,7 +7,7 @@
 
 #include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/units.h"
-#include "sim/programs/compensate/walk.h"
+#include "sim/programs/compensate/program_corrector.h"
 #include "sim/run/store.h"
 
 namespace servomill::sim {

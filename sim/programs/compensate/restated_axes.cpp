@@ -29,7 +29,7 @@ std::vector<Axis> DialectWriter::unnamed_lost(const AxisFlags& is_lost, const Bl
   std::vector<Axis> out;
   for (const bool is_of_linear : {false, true}) {
     for (const Axis axis : kAllAxes) {
-      if (axis == Axis::Z || is_linear(axis) != is_of_linear || !walk_.has(axis)) continue;
+      if (axis == Axis::Z || is_linear(axis) != is_of_linear || !corrector_.has(axis)) continue;
       const bool is_polar = is_of_linear && block.request != nullptr && block.request->has_polar();
       const bool is_named =
           is_polar || (block.request != nullptr && block.request->has(letter(axis)));
@@ -45,7 +45,7 @@ std::vector<Axis> DialectWriter::lost_axes(const Move& move, const Block& block)
   const std::vector<Axis> lost = unnamed_lost(is_lost_, block);
   std::vector<Axis> unnamed;
   std::copy_if(lost.begin(), lost.end(), std::back_inserter(unnamed),
-               [&](Axis axis) { return !walk_.programmed(axis); });
+               [&](Axis axis) { return !corrector_.programmed(axis); });
   if (unnamed.empty()) return lost;
   const std::string axes = names_of(unnamed);
   throw InputError(
@@ -85,7 +85,7 @@ void DialectWriter::restate_axes(const Move& move, const Block& block) {
   const bool is_cycle =
       block.request != nullptr && controllers::is_canned_cycle(block.request->motion_code());
   const bool names_Z = block.request != nullptr && block.request->has('Z') && !is_cycle;
-  const std::optional<double> before = walk_.programmed(Axis::Z);
+  const std::optional<double> before = corrector_.programmed(Axis::Z);
   const double end = move.end_machine[index_of(Axis::Z)];
   const bool changes_Z = before && std::abs(end - *before) > kSamePlace;
   if (!names_Z && !changes_Z) return;
@@ -135,12 +135,12 @@ void DialectWriter::write_rapid_back(const std::vector<Axis>& axes) {
   motion.tool = tool_;
   AxisWords origin = AxisWords::Zero(), target = AxisWords::Zero();
   if (!motion.is_place) origin = settings_.work_offset[static_cast<std::size_t>(system - 1)];
-  for (const Axis axis : axes) target[index_of(axis)] = *walk_.programmed(axis);
+  for (const Axis axis : axes) target[index_of(axis)] = *corrector_.programmed(axis);
   target = on_grid(target - origin);
   for (const Axis axis : axes) {
     const int i = index_of(axis);
     motion.words.emplace_back(axis, target[i] / printer_->unit(axis));
-    walk_.restate(axis, target[i] + origin[i]);
+    corrector_.restate(axis, target[i] + origin[i]);
     find_axis(static_cast<std::size_t>(i));
   }
   printer_->motion(motion);

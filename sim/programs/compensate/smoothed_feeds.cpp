@@ -9,7 +9,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/move_curve.h"
 #include "plant/vocabulary/units.h"
-#include "sim/programs/compensate/walk.h"
+#include "sim/programs/compensate/program_corrector.h"
 
 namespace servomill::sim {
 namespace {

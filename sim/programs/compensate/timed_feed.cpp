@@ -18,7 +18,7 @@ constexpr double kShortestShare = 1e-4;  // of a move, for blocks that lead to i
 
 }  // namespace
 
-TimedFeed::TimedFeed(const Step& step, const WovenLine& line)
+TimedFeed::TimedFeed(const Step& step, const EditedLine& line)
     : step_(step), line_(line), mode_(line.feed_mode) {
   is_rapid_ = step.move->kind == MoveKind::rapid;
   is_inverse_ = line.feed_mode == FeedMode::inverse_time;

@@ -3,9 +3,9 @@
 
 #include <string>
 
+#include "sim/programs/compensate/edited_line.h"
 #include "sim/programs/compensate/motion_printer.h"
-#include "sim/programs/compensate/walk.h"
-#include "sim/programs/compensate/woven_line.h"
+#include "sim/programs/compensate/program_corrector.h"
 
 namespace servomill::sim {
 
@@ -16,7 +16,7 @@ namespace servomill::sim {
 /// would turn a table within 6 ms: slower blocks go under G94.
 class TimedFeed {
  public:
-  TimedFeed(const Step& step, const WovenLine& line);
+  TimedFeed(const Step& step, const EditedLine& line);
 
   /// Adds F, and the feed mode where another is needed, to the words of a block.
   /// @param begin  work coordinates, where the output stands
@@ -32,7 +32,7 @@ class TimedFeed {
   void set_mode(MotionWords& words, FeedMode mode);
 
   const Step& step_;
-  const WovenLine& line_;
+  const EditedLine& line_;
   bool is_rapid_ = false, is_inverse_ = false, only_turns_ = false, is_mixed_ = false;
   FeedMode mode_;   // in force in the output
   double F_ = 0.0;  // in force under G94

@@ -13,7 +13,7 @@
 #include "sim/config/option_value.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/programs/compensate/compensate.h"
-#include "sim/programs/compensate/walk.h"
+#include "sim/programs/compensate/program_corrector.h"
 
 namespace servomill::sim {
 

@@ -109,7 +109,7 @@ TEST(Post, WholeProgramAsPrinted) {
             "G21 G90 G91.1 G94 G17 G40 G80 G92.1\nT1 M6\nS600\nM3\nM8\nG54\nG43 H1\nG64 P0.0005\n"
             "G0 X0 Y0 Z10 A0 C0\nG93\nG1 Z0 F60\nG1 X10 F60\nM5\nM30\n");
   options.mode = PostMode::tip;
-  print.tip_control = true;
+  print.tcp_control = true;
   EXPECT_EQ(print_program(post(data, "p.cls", machine(kTableTable), options).moves, print, "").text,
             "G21 G90 G91.1 G94 G17 G40 G80 G92.1\nT1 M6\nS600\nM3\nM8\nG54\nG43.4 H1\nG64 P0.001\n"
             "G0 X0 Y0 Z10 A0 C0\nG1 Z0 F600\nG1 X10\nM5\nM30\n");

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "controllers/path/tip_motion.h"
+#include "controllers/path/tcp_motion.h"
 #include "tip_programs.h"
 
 namespace servomill::controllers::test::singular_direction_test {
@@ -53,7 +53,7 @@ TEST(SingularDirection, PassingNearItSlowsTheMoveAndSaysSo) {
     EXPECT_LT(slowest, 0.1 * 2000 * mm_per_min);
     expect_within_joint_limits(p);
     ASSERT_EQ(p.tip.slowed.size(), 1U);
-    const SlowedMotion& slowed = p.tip.slowed.front();
+    const FeedReduction& slowed = p.tip.slowed.front();
     EXPECT_EQ(slowed.line, 3);
     EXPECT_EQ(p.machine.chain.layout.letter_of(slowed.joint), 'C');
     // C = atan(w t / d) at the distance d from the pole: dC <= w / d, ddC <= 0.65 (w / d)^2,
@@ -86,7 +86,7 @@ TEST(SingularDirection, IsSaidInOneSentence) {
 }
 
 // Half a turn of C in the time that the tip takes for 0.1 um is no matter of the tool axis.
-TEST(TipMotion, ATurnThatIsTooFastIsNoSingularDirection) {
+TEST(TcpMotion, ATurnThatIsTooFastIsNoSingularDirection) {
   for (const std::string tilt : {"A30", "A0"}) {
     const Planned p(table_machine(), "G43.4 H1\nG0 " + tilt + "\nG1 X0.0001 C180 F1000\n");
     ASSERT_EQ(p.tip.slowed.size(), 1U);
@@ -103,7 +103,7 @@ TEST(SingularDirection, AccelerationsAndJerksSlowTheMoveAsSaid) {
     const double w = 2 * std::atan(0.3) * 2000 * mm_per_min / (kTo - kFrom).norm() / 0.015;
     ASSERT_LT(w, machine.limits.v[4]);
     ASSERT_EQ(p.tip.slowed.size(), 1U);
-    const SlowedMotion& slowed = p.tip.slowed.front();
+    const FeedReduction& slowed = p.tip.slowed.front();
     EXPECT_EQ(slowed.order, 2);
     EXPECT_NEAR(slowed.needed / (0.65 * w * w), 1.0, 0.05) << name;
     double slowest = 1e9;

@@ -26,7 +26,7 @@ State state(const TimeLaw& law, double t) {
 
 TEST(TimeLaw, MeetsASlowStretchAtItsLimit) {
   const double j = 100.0;
-  const std::vector<StretchLimits> stretches = {
+  const std::vector<SegmentLimits> stretches = {
       {0.1, 0.1, 10.0, j}, {0.2, 0.05, 10.0, j}, {0.3, 0.1, 10.0, j}};
   const TimeLaw law = plan_speed(stretches);
   // a ramp over dv takes 2 sqrt(dv/j) at the mean of its speeds
@@ -36,7 +36,7 @@ TEST(TimeLaw, MeetsASlowStretchAtItsLimit) {
 }
 
 TEST(TimeLaw, StandsAtBothEnds) {
-  const TimeLaw law = plan_speed(std::vector<StretchLimits>{{0.01, 0.1, 2.0, 50.0}});
+  const TimeLaw law = plan_speed(std::vector<SegmentLimits>{{0.01, 0.1, 2.0, 50.0}});
   const State begin = state(law, 0.0), end = state(law, law.duration);
   EXPECT_EQ(begin.v, 0.0);
   EXPECT_EQ(begin.a, 0.0);
@@ -51,7 +51,7 @@ TEST(TimeLaw, IsContinuousAfterHoursOfASlowFeed) {
   constexpr double kDay = 86400.0, kSlow = 1e-6;
   for (const double j : {1.0, 1e4, 1e7}) {
     const double length = kSlow * kDay * 0.999;
-    const std::vector<StretchLimits> stretches = {{0.4 * length, kSlow, 10.0, j},
+    const std::vector<SegmentLimits> stretches = {{0.4 * length, kSlow, 10.0, j},
                                                   {0.5 * length, 3.0 * kSlow, 10.0, j},
                                                   {length, kSlow, 10.0, j}};
     const TimeLaw law = plan_speed(stretches);  // asserts that it is
@@ -68,7 +68,7 @@ TEST(TimeLaw, KeepsTheLimitsOfRandomStretches) {
     return low * std::pow(high / low, static_cast<double>(dice()) / 4294967296.0);
   };
   for (int run = 0; run < 200; ++run) {
-    std::vector<StretchLimits> stretches;
+    std::vector<SegmentLimits> stretches;
     double end = 0.0;
     for (std::size_t k = 0, n = 1 + dice() % 30; k < n; ++k) {
       end += log_uniform(1e-6, 1e-2);
@@ -92,7 +92,7 @@ TEST(TimeLaw, KeepsTheLimitsOfRandomStretches) {
 TEST(TimeLaw, IsFasterOnAShorterSlowStretch) {
   double last = 1e9;
   for (const double slow : {0.05, 0.02, 0.005, 0.0005}) {
-    const std::vector<StretchLimits> stretches = {
+    const std::vector<SegmentLimits> stretches = {
         {0.1, 0.1, 5.0, 100.0}, {0.1 + slow, 0.03, 5.0, 100.0}, {0.2, 0.1, 5.0, 100.0}};
     const double duration = plan_speed(stretches).duration;
     EXPECT_LT(duration, last);

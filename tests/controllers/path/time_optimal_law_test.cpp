@@ -35,7 +35,7 @@ JointLimits limits() {
 
 // Rest to rest at a speed that is safe everywhere.
 TimeLaw slow_law(const SmoothPath& path) {
-  return plan_speed(std::vector<StretchLimits>{{path.length(), 20 * mm, 0.5, 10.0}});
+  return plan_speed(std::vector<SegmentLimits>{{path.length(), 20 * mm, 0.5, 10.0}});
 }
 
 TEST(Phase, SolvesItsEquation) {
@@ -108,7 +108,7 @@ TEST(TimeOptimalLaw, LeavesALawThatCannotBeImproved) {
   piece.c1 = Joints::Unit(0);
   line.pieces = {piece};
   line.s = {0.0, 0.1};
-  const TimeLaw law = plan_speed(std::vector<StretchLimits>{{0.1, 50 * mm, 3.0, 50.0}});
+  const TimeLaw law = plan_speed(std::vector<SegmentLimits>{{0.1, 50 * mm, 3.0, 50.0}});
   EXPECT_EQ(refine_time_law(law, line, std::vector<double>{50 * mm}, limits()).duration,
             law.duration);
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "controllers/gcode/interpreter.h"
-#include "controllers/path/tip_motion.h"
+#include "controllers/path/tcp_motion.h"
 #include "controllers/path/trajectory.h"
 #include "controllers/path/travel.h"
 #include "plant/kinematics/structure.h"

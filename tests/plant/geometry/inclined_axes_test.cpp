@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "plant/geometry/turn.h"
+#include "plant/geometry/rotation_vector.h"
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/units.h"
 #include "tests/plant/geometry/random_errors.h"

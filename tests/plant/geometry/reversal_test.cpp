@@ -160,7 +160,7 @@ TEST(VolumetricModel, ShowsTheStepsOfACircleWithReversals) {
     const double t = degrees * deg;
     return Joints(R * std::cos(t), R * std::sin(t), 0.0, 0.0, 0.0);
   };
-  TravelMemory memory(model.plays(), at(-90.0));
+  ReversalMemory memory(model.plays(), at(-90.0));
   std::vector<double> directions(memory.size());
   constexpr double kClear = 1.0;  // deg: R (1 - cos) is 7.6 um there
   for (double degrees = -89.9; degrees < 360.0; degrees += 0.1) {

@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "plant/geometry/pose_inverse.h"
-#include "plant/geometry/turn.h"
+#include "plant/geometry/rotation_vector.h"
 #include "plant/vocabulary/units.h"
 #include "tests/plant/geometry/random_errors.h"
 

@@ -15,9 +15,9 @@
 namespace servomill::plant::reference_marks_test {
 namespace {
 
-constexpr double kPeriod = 20 * um;   // LS 486C
+constexpr double kPeriod = 20 * um;           // LS 486C
 constexpr double kFeedbackSample = 0.5 * mm;  // travel between samples in most tests
-constexpr double kRounding = 1e-15;   // m, of coordinates below 2 m
+constexpr double kRounding = 1e-15;           // m, of coordinates below 2 m
 
 ReferenceMarks metre() { return ReferenceMarks(marks_of_scale(kPeriod, 1000, -0.5, 0.5)); }
 

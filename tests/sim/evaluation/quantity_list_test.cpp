@@ -23,12 +23,12 @@ TEST(Quantities, AreNamedOnceAndExplained) {
 // Features of the part have kinds; a fit, and bars, belong to one family each.
 TEST(Quantities, HaveTheKeysOfOneFamily) {
   for (const QuantityEntry& entry : quantities()) {
-    const int families = (entry.circles > 0) + entry.is_of_ball + (entry.probes > 0);
+    const int families = (entry.circles > 0) + entry.is_r_test + (entry.probes > 0);
     EXPECT_LE(families, 1) << entry.name;
     EXPECT_EQ(entry.kinds.empty(), entry.probes == 0) << entry.name;
     EXPECT_TRUE(entry.probes > 0 || !entry.has_fit) << entry.name;
-    EXPECT_TRUE(entry.is_of_ball || entry.bars == BallBars::none) << entry.name;
-    EXPECT_TRUE(entry.is_of_ball || !entry.identifies) << entry.name;
+    EXPECT_TRUE(entry.is_r_test || entry.bars == BallBars::none) << entry.name;
+    EXPECT_TRUE(entry.is_r_test || !entry.identifies) << entry.name;
     EXPECT_FALSE(entry.is_of_program && entry.needs_baseline) << entry.name;
   }
 }

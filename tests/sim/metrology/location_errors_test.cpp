@@ -168,7 +168,7 @@ TEST(RTest, DoesNotSeeHowTheBallWasSetUp) {
 TEST(RTest, TellsMoreWithABallAdjustedToTheSpindle) {
   const MachineChain chain = hsm();
   auto readings = r_test(chain, kBall, rotary_angles());
-  const BallSetUp set_up{.tcp_is_unknown = false};
+  const RTestSetUp set_up{.tcp_is_unknown = false};
   ErrorModel truth;
   const auto can_be = observable_locations(chain, readings, set_up);
   EXPECT_EQ(identified(can_be),
@@ -268,7 +268,7 @@ TEST(BallBar, RecoversAllOfTheEightButOneFromFourCircles) {
                          n < 2 ? Frustum{10.0, 15.0} : Frustum{30.0, 45.0}, n);
     readings.insert(readings.end(), one.begin(), one.end());
   }
-  const BallSetUp set_up{.tcp_is_unknown = true, .length_is_unknown = true};
+  const RTestSetUp set_up{.tcp_is_unknown = true, .length_is_unknown = true};
   const auto fit = observable_locations(chain, readings, set_up);
   EXPECT_EQ(identified(fit),
             (std::vector<std::string>{"EC0Y", "EA0Z", "EB0Z", "EA0C", "EB0C", "EA0B", "EX0C"}));

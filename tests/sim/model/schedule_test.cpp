@@ -59,7 +59,8 @@ TEST(Schedule, VisitsEveryRateAtItsMultiplesForRandomPeriods) {
   std::mt19937 random(23);
   for (int n = 0; n < 200; ++n) {
     std::vector<Rate> rates = {{kPositionLoop, static_cast<Tick>(1 + random() % 12), 0}};
-    for (const std::uint8_t due : {kErrorModel, kFeedbackSample, kVelocityLoop, kCurrentLoop, kRecord}) {
+    for (const std::uint8_t due :
+         {kErrorModel, kFeedbackSample, kVelocityLoop, kCurrentLoop, kRecord}) {
       const auto period = static_cast<Tick>(1 + random() % 12);
       rates.push_back({due, period, static_cast<Tick>(random()) % period});
     }

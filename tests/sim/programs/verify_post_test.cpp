@@ -79,7 +79,7 @@ Work work(const char* structure, Approach approach, PostMode mode, const std::st
   for (const auto& axis : out.machine.chain.layout.axis) {
     if (axis) print.axes += letter(*axis);
   }
-  print.tip_control = mode == PostMode::tip;
+  print.tcp_control = mode == PostMode::tip;
   const auto post_processed = controllers::post(out.data, "p.cls", inverse, out.options);
   out.program = controllers::print_program(post_processed.moves, print, "").text;
   return out;

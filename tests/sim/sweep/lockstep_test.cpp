@@ -8,7 +8,7 @@
 #include <map>
 
 #include "sim/preparation/preparation_cache.h"
-#include "sim/run/batch.h"
+#include "sim/run/point_batch.h"
 
 namespace servomill::sim::lockstep_test {
 namespace {

@@ -18,7 +18,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_errors.h"
 #include "sim/model/scenario.h"
-#include "sim/programs/canon.h"
+#include "sim/programs/canonical_moves.h"
 #include "sim/programs/compensate/compensate.h"
 #include "sim/programs/compensate/correction.h"
 

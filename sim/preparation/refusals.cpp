@@ -1,0 +1,199 @@
+#include "sim/preparation/refusals.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "controllers/gcode/modal_state.h"
+#include "plant/vocabulary/units.h"
+#include "sim/preparation/preparation_cache.h"
+
+namespace servomill::sim {
+namespace {
+
+// Adds a fault that is not said yet.
+void add_once(std::vector<Fault>& faults, Fault fault) {
+  const bool is_said = std::any_of(faults.begin(), faults.end(), [&](const Fault& other) {
+    return other.place == fault.place && other.message == fault.message;
+  });
+  if (!is_said) faults.push_back(std::move(fault));
+}
+
+}  // namespace
+
+void refuse_unnumbered_tools(const MoveRange& moves, const std::string& file) {
+  const auto found = first_move(moves, [](const Move& move) {
+    return is_motion(move.kind) && move.tool_offset == controllers::kOtherToolOffset;
+  });
+  if (!found) return;
+  throw InputError({file, found->line},
+                   "moves with a tool offset of G43.1 or G43.2; a simulation takes the tool from "
+                   "[[program.tool]]: use G43 H");
+}
+
+void refuse_absent_axes(const InterpretedProgram& program, const Scenario& scenario) {
+  std::vector<Fault> faults;
+  for (const Axis axis : kAllAxes) {
+    const int line = program.first_line[static_cast<std::size_t>(axis)];
+    if (scenario.machine.chain.layout.joint_of(axis) || line == 0) continue;
+    faults.push_back({{scenario.program.file, line},
+                      fmt::format("moves {0}; the machine has no axis {0}", letter(axis))});
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+void refuse_standing_spindle(const InterpretedProgram& program, const Scenario& scenario) {
+  for (const Move& move : program.moves) {
+    const bool is_fed = move.kind == MoveKind::feed || move.kind == MoveKind::arc;
+    if (!is_fed || move.feed_mode != FeedMode::units_per_revolution || move.feed > 0.0) continue;
+    throw InputError({scenario.program.file, move.line},
+                     "feed per revolution (G95) while the spindle stands still; it would never "
+                     "end: start the spindle (M3 S...) or use G94");
+  }
+}
+
+void refuse_turned_tip(const InterpretedProgram& program, const Scenario& scenario,
+                       const CaseSpec& spec) {
+  const AxisWords offset = scenario.program.work_offset + spec.work_offset;
+  const Move* tip = program.first_tip_move();
+  const bool is_probed = !scenario.probes.empty();
+  if (tip == nullptr || offset.tail<3>().isZero(0.0) || !(is_probed || spec.cutting)) return;
+  throw InputError(is_probed ? scenario.probes.front().place : scenario.cutting->place,
+                   fmt::format("case {}: a part is {} in the coordinates of its program; with "
+                               "tool-centre-point control ({}:{}) these do not turn with the "
+                               "work_offset of a rotary axis: leave that at 0",
+                               spec.name, is_probed ? "probed" : "cut from [[part.stock]]",
+                               scenario.program.file, tip->line));
+}
+
+void refuse_start_outside(const Scenario& scenario, const MachineSettings& machine,
+                          const Joints& start) {
+  std::vector<Fault> faults;
+  for (int j = 0; j < kJoints; ++j) {
+    if (!machine.chain.layout.has(j)) continue;
+    if (start[j] >= machine.nc.lower[j] && start[j] <= machine.nc.upper[j]) continue;
+    const bool linear = j < kLinearJoints;
+    const double unit = linear ? mm : deg;
+    faults.push_back(
+        {scenario.program.start_place,
+         fmt::format("program.start: {} = {:.4f} {} with all work offsets, outside the travel; "
+                     "must be >= {:.4f} and <= {:.4f}",
+                     machine.chain.layout.letter_of(j), start[j] / unit, linear ? "mm" : "deg",
+                     machine.nc.lower[j] / unit, machine.nc.upper[j] / unit)});
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+void refuse_unread_scale(const StrategySpec& spec, const strategies::Strategy& strategy,
+                         const MachineSettings& machine, const std::string& case_name) {
+  if (!strategy.displaces_feedback()) return;
+  for (const int j : machine.joints()) {
+    const auto& feedback = machine.nc.functions[static_cast<std::size_t>(j)].position_feedback;
+    if (j >= kLinearJoints && !strategy.displaces_rotary()) continue;
+    if (feedback.kind != controllers::PositionFeedback::motor) continue;
+    throw InputError(spec.place,
+                     fmt::format("case {}: strategy {}: displaces the scale of axis {}, whose "
+                                 "position loop reads the motor (position_feedback = \"motor\")",
+                                 case_name, spec.entry->name, machine.chain.layout.letter_of(j)));
+  }
+}
+
+void refuse_undeclared_feedback(const StrategySpec& spec, const strategies::Strategy& strategy) {
+  if (!strategy.displaces_feedback() || spec.entry->uses_feedback_hardware) return;
+  throw std::logic_error(
+      fmt::format("strategy {} displaces the feedback, but its entry in the registry lacks "
+                  "uses_feedback_hardware",
+                  spec.entry->name));
+}
+
+void refuse_tip_moves(const StrategySpec& spec, const strategies::Strategy& strategy,
+                      const InterpretedProgram& program, const std::string& file,
+                      const std::string& case_name) {
+  const Move* move = program.first_tip_move();
+  if (move == nullptr) return;
+  if (!strategy.rewrites_tip_moves()) {
+    throw InputError(spec.place,
+                     fmt::format("case {}: strategy {}: cannot rewrite moves under "
+                                 "tool-centre-point control or in a tilted work plane ({}:{})",
+                                 case_name, spec.entry->name, file, move->line));
+  }
+  for (const Move& other : program.moves) {
+    const bool is_tip = is_motion(other.kind) && other.tool_control != ToolControl::none;
+    if (!is_tip || program.tips.at(other.tool_offset) == program.first_tip) continue;
+    throw InputError(
+        spec.place,
+        fmt::format("case {}: strategy {}: rewrites moves under tool-centre-point control for one "
+                    "tool, the first that the program works with; here is another ({}:{})",
+                    case_name, spec.entry->name, file, other.line));
+  }
+}
+
+void refuse_endless(const Scenario& scenario, double duration) {
+  constexpr double kHour = 3600.0;
+  if (duration > scenario.record.max_duration) {
+    throw InputError(
+        {scenario.program.file},
+        fmt::format("takes {:.3g} h at program.feed_override = {:g}; must be <= "
+                    "record.max_duration_h = {:g}: check feeds and feed_override, or raise it",
+                    duration / kHour, scenario.program.feed_override,
+                    scenario.record.max_duration / kHour));
+  }
+  constexpr double kMostSamples = 1e8;  // of some 500 bytes: more than most machines hold
+  const double period = scenario.machine.nc.periods.seconds(scenario.record_period);
+  const double samples = (duration + scenario.settle_time) / period;
+  if (samples <= kMostSamples) return;
+  throw InputError({scenario.program.file},
+                   fmt::format("takes {:.3g} s: {:.3g} samples at record.period_ms = {:g}; must be "
+                               "<= {:g}; check feeds, feed_override and the limits of the axes",
+                               duration, samples, period / ms, kMostSamples));
+}
+
+void refuse_absent_sections(const Scenario& scenario, const std::vector<std::string>& sections) {
+  std::vector<std::string_view> known;
+  for (const std::string& name : sections) {
+    if (!name.empty()) known.push_back(name);
+  }
+  std::vector<Fault> faults;
+  for (const QuantitySpec& quantity : scenario.quantities) {
+    for (const std::string& name : quantity.sections) {
+      if (std::find(sections.begin(), sections.end(), name) != sections.end()) continue;
+      const std::string near = did_you_mean(name, known);
+      add_once(faults, {quantity.sections_place,
+                        fmt::format("{} has no section '{}'{}", scenario.program.file, name,
+                                    !near.empty() ? near
+                                    : known.empty()
+                                        ? "; a comment (MSG, NAME) begins one"
+                                        : fmt::format("; there are: {}", fmt::join(known, ", ")))});
+    }
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+void CaseFaults::add(const std::string& case_name, const InputError& error) {
+  for (const Fault& fault : error.faults()) {
+    const auto same = std::find_if(found_.begin(), found_.end(), [&](const Found& other) {
+      return other.fault.place == fault.place && other.fault.message == fault.message;
+    });
+    if (same == found_.end()) {
+      found_.push_back({fault, {case_name}});
+    } else {
+      same->cases.push_back(case_name);
+    }
+  }
+}
+
+void CaseFaults::report(std::size_t cases) {
+  if (found_.empty()) return;
+  std::vector<Fault> faults;
+  for (Found& one : found_) {
+    const std::string who = fmt::format("case {}: ", fmt::join(one.cases, ", "));
+    if (one.cases.size() < cases && !one.fault.message.starts_with(who)) {
+      one.fault.message = who + one.fault.message;
+    }
+    faults.push_back(std::move(one.fault));
+  }
+  throw InputError(std::move(faults));
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,221 @@
+#include "sim/programs/canonical_moves.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <span>
+
+#include "controllers/gcode/canon_json.h"
+#include "controllers/gcode/cl_data.h"
+#include "controllers/gcode/interpreter.h"
+#include "controllers/gcode/parameter_file.h"
+#include "sim/config/document.h"
+#include "sim/input/implausible.h"
+#include "sim/input/read_machine.h"
+#include "sim/input/subroutine_files.h"
+#include "sim/model/scenario.h"
+#include "sim/preparation/prepared_case.h"
+#include "sim/programs/compensate/work_knowledge.h"
+#include "sim/run/run.h"
+#include "sim/sweep/sweep.h"
+#include "sim/system/read_file.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr std::size_t kWrittenAtOnce = 1U << 16;  // bytes
+
+void warn_of(const MachineSettings& machine, const std::string& path,
+             std::vector<Fault>* warnings) {
+  if (warnings == nullptr) return;
+  for (std::string& value : implausible_values(machine)) {
+    warnings->push_back({{path}, std::move(value)});
+  }
+}
+
+// Uses of rules beyond LinuxCNC's in the cases' programs; the cases mostly run the same one.
+void add_program_warnings(const Scenario& scenario, std::vector<Fault>& warnings) {
+  for (const CaseSpec& spec : scenario.cases) {
+    std::vector<Fault> found;
+    read_program(scenario, spec, &found);
+    for (Fault& one : found) {
+      const bool is_known = std::any_of(warnings.begin(), warnings.end(), [&](const Fault& other) {
+        return other.place == one.place && other.message == one.message;
+      });
+      if (!is_known) warnings.push_back(std::move(one));
+    }
+  }
+}
+
+void check_toml(const std::string& path, const std::vector<std::string>& changes,
+                std::vector<Fault>* warnings) {
+  const Document document = Document::from_file(path);
+  if (document.root().find("structure") != nullptr) {
+    const MachineSettings machine = read_machine_file(path);
+    warn_of(machine, path, warnings);
+    check_machine(machine);
+    return;
+  }
+  const Scenario scenario = read_scenario(path, changes);
+  warn_of(scenario.machine, path, warnings);
+  check_scenario(scenario);
+  if (warnings != nullptr) add_program_warnings(scenario, *warnings);
+  if (!scenario.sweep.empty()) Sweep(path, changes).check();
+}
+
+bool holds_cutter_locations(std::string_view path) {
+  return path.ends_with(".cls") || path.ends_with(".apt") || path.ends_with(".csv");
+}
+
+// Index of a name among those of an option.
+std::size_t chosen(const std::string& option, const std::string& name,
+                   std::span<const std::string_view> names) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  throw InputError({option + " " + name}, fmt::format("must be one of {}{}", fmt::join(names, ", "),
+                                                      did_you_mean(name, names)));
+}
+
+// "P3:X=10,Y=5"
+void add_additional_offset(const std::string& text, controllers::ProgramSetup& setup) {
+  const std::string option = "--additional-offset";
+  const std::size_t colon = text.find(':');
+  const double P = text.starts_with('P') && colon != std::string::npos
+                       ? number_of(text.substr(1, colon - 1))
+                       : std::nan("");
+  if (!(P >= 1.0) || P != std::floor(P) || P > 300.0) {
+    throw InputError({option + " " + text},
+                     "must be P and a number, then positions in mm, such as "
+                     "P3:X=10,Y=-5.5,Z=0");
+  }
+  setup.additional_offsets[static_cast<int>(P)] =
+      axis_values(option, std::string_view(text).substr(colon + 1), nullptr, false).words;
+}
+
+// The number of "M82", a code that no rule of a reader gives a meaning.
+int ignored_code(const std::string& text) {
+  const double number = text.starts_with('M') ? number_of(text.substr(1)) : std::nan("");
+  const bool is_code = number >= 0.0 && number <= 9999.0 && number == std::floor(number);
+  if (is_code && !controllers::is_known_function(static_cast<int>(number))) {
+    return static_cast<int>(number);
+  }
+  throw InputError({"--ignore-code " + text},
+                   is_code ? "has a meaning of its own, which cannot be left out"
+                           : "must be an M code of the machine's builder, such as M82");
+}
+
+}  // namespace
+
+void choose_reader(const ProgramInputs& inputs, const NcSettings& nc,
+                   controllers::ProgramSetup& setup) {
+  using controllers::DecimalPoint;
+  using controllers::Reader;
+  setup.reader = nc.program_reader;
+  setup.decimal_point = nc.decimal_point;
+  if (inputs.reader) {
+    setup.reader = static_cast<Reader>(chosen("--reader", *inputs.reader, controllers::kReaders));
+  }
+  if (!inputs.decimal_point) return;
+  setup.decimal_point = static_cast<DecimalPoint>(
+      chosen("--decimal-point", *inputs.decimal_point, controllers::kDecimalPoints));
+}
+
+controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
+                                        const std::string& program_file) {
+  controllers::ProgramSetup setup;
+  NcSettings nc;
+  if (!inputs.tool_table.empty()) {
+    setup.tools = controllers::ToolTable::parse(read_file(inputs.tool_table, {}, "tool table"),
+                                                inputs.tool_table);
+  }
+  if (!inputs.parameter_file.empty()) {
+    setup.stored = controllers::parse_parameter_file(
+        read_file(inputs.parameter_file, {}, "parameter file"), inputs.parameter_file);
+    setup.work_system = controllers::work_system_of(setup.stored);
+  }
+  if (!inputs.machine.empty()) {
+    const MachineSettings machine = read_machine_description(inputs.machine).machine;
+    setup.machine = tool_centre_point(machine);
+    nc = machine.nc;
+  }
+  for (const std::string& parameter : inputs.parameters) {
+    const std::size_t equals = parameter.find('=');
+    const double value =
+        equals == std::string::npos ? std::nan("") : number_of(parameter.substr(equals + 1));
+    if (!std::isfinite(value)) {
+      throw InputError({"--parameter " + parameter}, "must be #N=NUMBER, such as '#101=1394'");
+    }
+    setup.parameters[parameter.substr(0, equals)] = value;
+  }
+  choose_reader(inputs, nc, setup);
+  setup.feed = inputs.feed;
+  for (const std::string& text : inputs.additional_offsets) add_additional_offset(text, setup);
+  for (const std::string& code : inputs.ignored_codes) {
+    setup.ignored_codes.insert(ignored_code(code));
+  }
+  setup.trials = inputs.trials;
+  setup.block_delete = inputs.block_delete;
+  setup.most_jumps = inputs.most_jumps;
+  for (const std::string& folder : inputs.subroutine_folders) {
+    if (!std::filesystem::is_directory(folder))
+      throw InputError({"--subs " + folder}, "is no folder");
+  }
+  setup.subroutine_file = subroutine_files(program_file, inputs.subroutine_folders);
+  return setup;
+}
+
+std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& inputs,
+                         const std::function<void(std::string_view)>& write) {
+  controllers::ProgramSetup setup = program_setup(inputs, program_file);
+  setup.accepts_unknown_lengths = setup.accepts_unknown_dwells = true;
+  controllers::Interpreter interpreter(controllers::ProgramText::of_file(program_file),
+                                       std::move(setup));
+  std::string lines;
+  const auto flush = [&] {
+    write(lines);
+    lines.clear();
+  };
+  try {
+    while (const Move* move = interpreter.next()) {
+      controllers::add_canon_json(*move, lines);
+      lines += '\n';
+      if (lines.size() >= kWrittenAtOnce) flush();
+    }
+  } catch (const InputError& error) {
+    write(lines);
+    write(controllers::canon_error_json(error.what()) + '\n');
+    throw;
+  }
+  flush();
+  return interpreter.warnings();
+}
+
+bool is_program(std::string_view path) {
+  return !path.ends_with(".toml") && !holds_cutter_locations(path);
+}
+
+std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,
+                              const ProgramInputs& inputs, std::vector<Fault>* warnings) {
+  try {
+    if (path.ends_with(".toml")) {
+      check_toml(path, changes, warnings);
+      return {};
+    }
+    if (holds_cutter_locations(path)) {
+      controllers::read_cl_data(read_file(path, {}, "cutter location file"), path);
+      return {};
+    }
+    controllers::ProgramSetup setup = program_setup(inputs, path);
+    if (setup.tools.empty()) setup.tools.take_any_number();  // the control has a table of its own
+    setup.accepts_unknown_dwells = true;
+    return controllers::check_program(controllers::ProgramText::of_file(path), std::move(setup),
+                                      warnings);
+  } catch (const InputError& error) {
+    return error.faults();
+  }
+}
+
+}  // namespace servomill::sim

@@ -1,0 +1,188 @@
+#include "sim/run/case_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "controllers/path/feed_reduction.h"
+#include "plant/kinematics/inverse.h"
+#include "plant/vocabulary/units.h"
+#include "sim/evaluation/nominal_part.h"
+#include "sim/evaluation/probed_part.h"
+#include "sim/input/implausible.h"
+#include "sim/preparation/preparation_cache.h"
+#include "sim/run/residual_errors.h"
+
+namespace servomill::sim {
+namespace {
+
+// Nominal points this far from the mesh are reported: its facets stand in for curved faces.
+constexpr double kFacets = 1e-6;  // m
+
+const plant::MachineChain& chain_of(const PreparedParts& one) {
+  return one.scenario.machine_of(one.spec).chain;
+}
+
+std::string note_of(const Fault& warning) {
+  return fmt::format("{}: warning: {}", to_string(warning.place), warning.message);
+}
+
+// The strategy of a case that displaces its feedback.
+std::string_view displacing_strategy(const PreparedParts& one) {
+  for (std::size_t k = 0; k < one.strategies.size(); ++k) {
+    if (one.strategies[k]->displaces_feedback()) return one.spec.strategies[k].entry->name;
+  }
+  return {};
+}
+
+// "case 'a'", "cases 'a', 'b'"
+std::string quoted_cases(const std::vector<std::string>& names) {
+  return fmt::format("{} '{}'", names.size() == 1 ? "case" : "cases", fmt::join(names, "', '"));
+}
+
+// The largest feed along the path (m/s) with its override; 0: the program feeds no linear axis.
+double largest_feed(const PreparedParts& one) {
+  double largest = 0.0;
+  for (const Move& move : one.program.moves) {
+    const bool moves_xyz = move.kind == MoveKind::arc || move.s_end > move.s_begin;
+    const bool feeds = move.kind == MoveKind::arc || move.kind == MoveKind::feed;
+    if (feeds && moves_xyz) largest = std::max(largest, move.feed);
+  }
+  return largest * one.scenario.program.feed_override;
+}
+
+// Cases that the feedback hardware delays beside others that it does not.
+std::optional<std::string> uneven_hardware(const PreparedParts& noted) {
+  std::vector<std::string> with, without;
+  double delay = 0.0;
+  for (const CaseSpec& one : noted.scenario.cases) {
+    const auto its = noted.scenario.signal_delay_of(one);
+    if (!its) continue;
+    delay = std::max(delay, *its);
+    (*its > 0.0 ? with : without).push_back(one.name);
+  }
+  if (with.empty() || without.empty()) return std::nullopt;
+  const double feed = largest_feed(noted);
+  const std::string displaced =
+      feed > 0.0 ? fmt::format(", which is {:.2g} um at the largest feed of {:.3g} m/min",
+                               delay * feed / um, feed * 60.0)
+                 : "";
+  return fmt::format(
+      "warning: the feedback hardware is connected in {} but not in {}: readings of the latter "
+      "lack its delay of {:g} us{}; feedback_hardware.connected = true connects it in all cases",
+      quoted_cases(with), quoted_cases(without), delay / us, displaced);
+}
+
+// "part.ngc:12: warning: case one: strategy feedback: virtual displacement of Y saturated ..."
+std::string note_of(const PreparedParts& one, const strategies::Saturation& held) {
+  controllers::Trajectory::Cursor cursor{};
+  const int line = one.motion.trajectory.at(held.first, cursor).line;
+  const bool linear = held.joint < kLinearJoints;
+  return fmt::format(
+      "{}:{}: warning: case {}: strategy {}: {} of {} saturated at {:g} {}{}, first here, "
+      "{:.2f} s in all",
+      one.scenario.program.file, line, one.spec.name, displacing_strategy(one),
+      held.of_rate ? "rate of the virtual displacement" : "virtual displacement",
+      one.scenario.machine.chain.layout.letter_of(held.joint),
+      held.limit / (linear ? held.of_rate ? mm : um : 1e-3),
+      linear ? held.of_rate ? "mm" : "um" : "mrad", held.of_rate ? "/s" : "", held.time);
+}
+
+// Probes and stock stay where the work_offset has them, whatever the program does to its zero.
+std::optional<Fault> shifted_program(const PreparedParts& one) {
+  const std::optional<Move> move = one.program.first_shifted_feed();
+  std::vector<std::string_view> unshifted;
+  if (!one.scenario.probes.empty()) unshifted.push_back("[[probe]]");
+  if (!one.scenario.stock.empty()) unshifted.push_back("[[part.stock]]");
+  if (!move || unshifted.empty()) return std::nullopt;
+  return Fault{{one.scenario.program.file, move->line},
+               fmt::format("feeds in coordinates shifted by G52, G92, G10 or another work system "
+                           "than G54, which does not shift {}",
+                           fmt::join(unshifted, " and "))};
+}
+
+}  // namespace
+
+std::vector<std::string> notes_of_run(const PreparedParts& one,
+                                      std::span<const strategies::Saturation> held) {
+  std::vector<std::string> out;
+  for (const Fault& warning : one.program.warnings) out.push_back(note_of(warning));
+  if (const auto shifted = shifted_program(one)) out.push_back(note_of(*shifted));
+  if (one.cutting != nullptr) {
+    for (const auto& [place, message] : one.cutting->warnings) {
+      out.push_back(note_of({place, fmt::format("case {}: {}", one.spec.name, message)}));
+    }
+  }
+  for (const auto& slowed : one.motion.slowed) {
+    out.push_back(note_of(
+        {{one.scenario.program.file, slowed.line}, to_string(slowed, chain_of(one).layout)}));
+  }
+  for (const std::string& value : implausible_values(one.scenario.machine_of(one.spec))) {
+    out.push_back("warning: " + value);
+  }
+  if (auto uneven = uneven_hardware(one)) out.push_back(std::move(*uneven));
+  for (const strategies::Saturation& saturation : held) out.push_back(note_of(one, saturation));
+  return out;
+}
+
+std::vector<std::string> notes_of_uncorrectable(const PreparedParts& one) {
+  const plant::InverseKinematics inverse(chain_of(one));
+  std::vector<std::string> out;
+  for (std::size_t k = 0; k < one.strategies.size(); ++k) {
+    const strategies::Strategy& strategy = *one.strategies[k];
+    const auto found = residual_errors(one.program.path, strategy, inverse, one.program.first_tip);
+    if (!found) continue;
+    std::vector<std::string> left;
+    if (found->left.tip > kUncorrected.tip) {
+      left.push_back(fmt::format("{:.2f} um of the tip", found->left.tip / um));
+    }
+    if (found->left.axis > kUncorrected.axis) {
+      left.push_back(fmt::format("{:.1f} urad of the tool axis", found->left.axis / urad));
+    }
+    const bool is_near =
+        strategy.displaces_rotary() && found->singular_angle < controllers::kNearSingular;
+    out.push_back(fmt::format(
+        "{}:{}: warning: case {}: strategy {} cannot correct {} here{}, the most found",
+        one.scenario.program.file, found->line, one.spec.name, one.spec.strategies[k].entry->name,
+        fmt::join(left, " and "),
+        is_near ? fmt::format(", {:.2f} deg from a singular direction", found->singular_angle / deg)
+                : ""));
+  }
+  return out;
+}
+
+std::vector<std::string> notes_of_left_tables(const PreparedParts& one) {
+  const JointLayout& layout = chain_of(one).layout;
+  std::vector<std::string> out;
+  for (std::size_t k = 0; k < one.strategies.size(); ++k) {
+    for (const LeftTable& left : left_tables(one.program.path, *one.strategies[k], layout)) {
+      const char axis = layout.letter_of(left.table.joint);
+      out.push_back(fmt::format(
+          "{}:{}: warning: case {}: strategy {}: the table over {} ends at {:.4f} mm, the "
+          "program goes on to {:.4f} mm; from there on the last value is held",
+          one.scenario.program.file, left.line, one.spec.name, one.spec.strategies[k].entry->name,
+          axis, left.table.end / mm, left.farthest / mm));
+    }
+  }
+  return out;
+}
+
+std::optional<PartFit> lay_on_nominal(const std::string& case_name, const NominalPart& part,
+                                      double distance, std::span<const ProbedFeature> probes,
+                                      std::vector<std::string>& notes) {
+  auto found = fit_part(probes, *part.mesh);
+  if (const NoFit* none = std::get_if<NoFit>(&found)) {
+    notes.push_back(
+        fmt::format("warning: case {}: best fit to '{}': {}", case_name, part.file, none->why));
+    return std::nullopt;
+  }
+  if (distance > kFacets) {
+    notes.push_back(fmt::format(
+        "warning: case {}: nominal points of the probes are up to {:.3g} um off '{}' "
+        "(facets in place of curved faces, or another part); distances after best fit hold that",
+        case_name, distance / um, part.file));
+  }
+  return std::get<PartFit>(std::move(found));
+}
+
+}  // namespace servomill::sim

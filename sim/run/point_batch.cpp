@@ -1,0 +1,227 @@
+#include "sim/run/point_batch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <exception>
+#include <optional>
+#include <utility>
+
+#include "plant/vocabulary/interrupt.h"
+#include "sim/preparation/preparation_cache.h"
+#include "sim/system/memory_limit.h"
+
+namespace servomill::sim {
+namespace {
+
+constexpr double kRowBytes = 500.0;
+constexpr double kMemoryShare = 0.25;  // of the machine's memory
+
+BatchResult failure(std::exception_ptr error) {
+  try {
+    std::rethrow_exception(std::move(error));
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const InputError& refused) {
+    return {PointStatus::refused, in_one_line(refused), {}};
+  } catch (const std::bad_alloc&) {
+    return {PointStatus::failed, "not enough memory", {}};
+  } catch (const std::exception& failed) {
+    return {PointStatus::failed, failed.what(), {}};
+  }
+}
+
+// A point with its cases on the way to their results.
+struct Point {
+  const Scenario* scenario;
+  std::vector<PreparedCase> cases;
+  std::vector<std::optional<CaseInputs>> inputs;
+  std::vector<CaseResult> results;
+  std::exception_ptr error;
+  std::size_t left = 0;      // of the cases, to be run
+  bool interrupted = false;  // half a point is none
+
+  double rows() const {
+    double sum = 0.0;
+    for (const auto& in : inputs) {
+      sum += (in->reference.duration() + in->settle_time) /
+             in->machine.nc.periods.seconds(in->record_period);
+    }
+    return sum;
+  }
+};
+
+Point prepared(const Scenario& scenario, PreparationCache* cache) {
+  Point point{&scenario, {}, {}, {}, nullptr, 0, false};
+  try {
+    point.cases = prepare_cases(scenario, cache);
+    point.inputs.reserve(point.cases.size());
+    for (const PreparedCase& one : point.cases) point.inputs.push_back(one.inputs());
+    point.results.resize(point.cases.size());
+    point.left = point.cases.size();
+  } catch (const Interrupted&) {
+    point.interrupted = true;
+  } catch (...) {
+    point.error = std::current_exception();
+  }
+  return point;
+}
+
+// One case of one point.
+struct Run {
+  Point* point;
+  std::size_t number;
+
+  CaseInputs& inputs() const { return *point->inputs[number]; }
+};
+
+// Runs that share lanes, at most eight; point after point, so that runs of one program and feed are
+// neighbours: they share its interpolation and end together. In an order in which the first points
+// are done with first.
+std::vector<std::vector<Run>> groups_of(std::span<Point> points) {
+  std::vector<std::vector<Run>> groups;
+  for (Point& point : points) {
+    for (std::size_t number = 0; !point.error && number < point.inputs.size(); ++number) {
+      const Run run{&point, number};
+      const auto open = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
+        return group.size() < kLaneWidth && share_lanes(group.front().inputs(), run.inputs());
+      });
+      if (open == groups.end()) {
+        groups.push_back({run});
+      } else {
+        open->push_back(run);
+      }
+    }
+  }
+  const auto last_point = [](const std::vector<Run>& group) {
+    return std::max_element(group.begin(), group.end(),
+                            [](const Run& a, const Run& b) { return a.point < b.point; })
+        ->point;
+  };
+  std::stable_sort(groups.begin(), groups.end(),
+                   [&](const auto& a, const auto& b) { return last_point(a) < last_point(b); });
+  return groups;
+}
+
+void simulate_group(std::span<const Run> group, const StopFlag& stop, std::atomic<float>& progress,
+                    PreparationCache* cache) {
+  std::vector<CaseInputs*> together;
+  for (const Run& run : group) together.push_back(&run.inputs());
+  try {
+    std::vector<CaseResult> results =
+        simulate(together, stop, progress, cache != nullptr ? &cache->drives : nullptr);
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      group[k].point->results[group[k].number] = std::move(results[k]);
+    }
+  } catch (const Interrupted&) {
+    for (const Run& run : group) run.point->interrupted = true;
+  } catch (...) {
+    if (group.size() == 1) {
+      group.front().point->error = std::current_exception();
+      return;
+    }
+    // whose fault it was shows when each runs alone, with state of its own
+    for (const Run& run : group) {
+      run.point->inputs[run.number].emplace(run.point->cases[run.number].inputs());
+      simulate_group({&run, 1}, stop, progress, cache);
+    }
+  }
+}
+
+BatchResult compared(Point& point, Keep keep) {
+  std::vector<CaseOutput> outputs;
+  for (std::size_t k = 0; k < point.cases.size(); ++k) {
+    outputs.push_back(output_of(point.cases[k], std::move(point.results[k])));
+  }
+  std::vector<CaseData> data;
+  std::vector<std::string> stopped;
+  for (const CaseOutput& output : outputs) {
+    data.push_back(output.data());
+    const Outcome& outcome = output.result.outcome;
+    if (outcome.finished) continue;
+    stopped.push_back(fmt::format("case {} stopped: {}", output.name, outcome.reason));
+  }
+  BatchResult result;
+  result.rows = compare(point.scenario->quantities, data);
+  result.status = stopped.empty() ? PointStatus::done : PointStatus::stopped;
+  result.reason = fmt::format("{}", fmt::join(stopped, "; "));
+  if (keep == Keep::series) result.cases = std::move(outputs);
+  return result;
+}
+
+BatchResult result_of(Point& point, Keep keep) {
+  if (point.error) return failure(point.error);
+  try {
+    return compared(point, keep);
+  } catch (...) {
+    return failure(std::current_exception());
+  }
+}
+
+}  // namespace
+
+std::string_view name_of(PointStatus status) {
+  constexpr std::array<std::string_view, kPointStatuses> kNames = {"not_run", "done", "stopped",
+                                                                   "refused", "failed"};
+  return kNames.at(static_cast<std::size_t>(status));
+}
+
+std::string in_one_line(const InputError& error) {
+  std::vector<std::string> lines;
+  for (const Fault& fault : error.faults()) {
+    // of a key of the sweep the message says where it stands
+    const bool swept = fault.message.starts_with("sweep.");
+    const std::string place = swept ? "" : to_string(fault.place) + ": ";
+    lines.push_back(place + fault.message);
+  }
+  return fmt::format("{}", fmt::join(lines, "; "));
+}
+
+double rows_at_once(unsigned threads) {
+  return std::min(kMostRows,
+                  kMemoryShare * memory_of_process() / (kRowBytes * static_cast<double>(threads)));
+}
+
+void run_batch(std::span<const Scenario> points, const StopFlag& stop, std::atomic<float>& progress,
+               const std::function<void(std::vector<EndedPoint>&&)>& ended,
+               const BatchControl& control) {
+  for (std::size_t next = 0; next < points.size() && !stop;) {
+    const std::size_t first = next;
+    std::vector<Point> together;
+    for (double rows = 0.0; next < points.size() && rows < control.rows; ++next) {
+      together.push_back(prepared(points[next], control.cache));
+      rows += together.back().rows();
+    }
+    std::vector<bool> reported(together.size(), false);
+    const auto tell_ended = [&] {
+      std::vector<EndedPoint> now;
+      for (std::size_t k = 0; k < together.size(); ++k) {
+        Point& point = together[k];
+        if (reported[k] || point.left > 0 || point.interrupted) continue;
+        reported[k] = true;
+        now.push_back({first + k, result_of(point, control.keep)});
+      }
+      if (!now.empty()) ended(std::move(now));
+    };
+    tell_ended();  // what cannot be run
+    std::atomic<float> share = 0.0F;
+    const auto groups = groups_of(together);
+    for (std::size_t g = 0; g < groups.size() && !stop; ++g) {
+      simulate_group(groups[g], stop, share, control.cache);
+      for (const Run& run : groups[g]) {
+        --run.point->left;
+        const CaseResult& result = run.point->results[run.number];
+        run.point->interrupted |= result.outcome.interrupted;
+      }
+      tell_ended();
+      progress = (static_cast<float>(first) + static_cast<float>(together.size()) *
+                                                  static_cast<float>(g + 1) /
+                                                  static_cast<float>(groups.size())) /
+                 static_cast<float>(points.size());
+    }
+  }
+}
+
+}  // namespace servomill::sim
