@@ -94,7 +94,20 @@ Words::Words(std::span<const HeidenhainWord> words) {
     }
     words_.push_back(with_parameter_apart(word));
   }
+  drop_skipped_entries();
   taken_.assign(words_.size(), false);
+}
+
+// "L X+10 R F M": the letters of entries that were skipped in the dialog, which stay in force. From
+// memory, as TNC 400 controls show such blocks. An M without a number ends them.
+void Words::drop_skipped_entries() {
+  const auto is_last = [&](std::string_view text) {
+    return words_.size() > 1 && words_.back().text == text;
+  };
+  if (!is_last("M")) return;
+  words_.pop_back();
+  if (is_last("F")) words_.pop_back();
+  if (is_last("R")) words_.pop_back();
 }
 
 const HeidenhainWord* Words::take(std::string_view text) {

@@ -33,6 +33,8 @@ class Words {
   void refuse_rest(std::string_view block) const;
 
  private:
+  void drop_skipped_entries();
+
   std::vector<HeidenhainWord> words_;
   std::vector<bool> taken_;
 };

@@ -16,6 +16,8 @@ std::vector<Example> line_examples() {
        "4 L X +10,5  Y-2.25 F 300 M8\n5 ; remark\n\n6 * - item\n7 L Z+1\n",
        "1 coolant 2\n1 feed 10.5 -2.25 0 F300\n5 feed 10.5 -2.25 1 F300\n"},
       {"without block numbers and signs", "L X10 Y20 F100\n", "1 feed 10 20 0 F100\n"},
+      {"entries that were skipped in the dialog", "L X+10 R0 F200 M\nL Y+5 R F M\nL Z-1 F MAX M\n",
+       "1 feed 10 0 0 F200\n2 feed 10 5 0 F200\n3 rapid 10 5 -1\n"},
       {"feed of TOOL CALL", "TOOL CALL 2 Z S2000 F500\nL Z+10 FAUTO\nL X+5 F100\nL X+6 FAUTO\n",
        "1 tool 2\n1 spindle 0 S2000\n2 feed 0 0 10 F500\n3 feed 5 0 10 F100\n4 feed 6 0 10 F500\n"},
       // M3 and M8 before the motion, M5 and M9 behind it
