@@ -92,6 +92,7 @@ class Interpreter::Machine {
 
  private:
   std::optional<double> macro_position(long number, std::string& why) const;
+  std::optional<double> macro_tool_length(long number, std::string& why) const;
   std::optional<double> macro_mode(long number, std::string& why) const;
 
   struct Text {

@@ -127,7 +127,26 @@ std::optional<double> Interpreter::Machine::macro_mode(long number, std::string&
   return std::nullopt;
 }
 
+// Geometry of the length: Haas #2001 and up, Fanuc with tool memory C #11001 and up. What else
+// there is (wear, radius or diameter, memories A and B) the tool table does not tell.
+std::optional<double> Interpreter::Machine::macro_tool_length(long number, std::string& why) const {
+  constexpr long kHaas = 2001, kFanuc = 11001;
+  const bool is_haas = setup_.reader == Reader::haas && number >= kHaas && number < kHaas + 200;
+  const bool is_fanuc = setup_.reader == Reader::fanuc && number >= kFanuc && number < kFanuc + 999;
+  if (!is_haas && !is_fanuc) return std::nullopt;
+  const int tool = static_cast<int>(number - (is_haas ? kHaas : kFanuc) + 1);
+  const ToolEntry* entry = setup_.tools.entry_of(tool);
+  if (entry == nullptr) {
+    why = fmt::format("the length of tool {} is not known; pass a tool table with --tools", tool);
+    return std::nullopt;
+  }
+  return entry->offset[2] / state_.unit;
+}
+
 std::optional<double> Interpreter::Machine::macro_variable(long number, std::string& why) const {
+  if ((number >= 2001 && number < 3000) || (number >= 10001 && number < 15000)) {
+    return macro_tool_length(number, why);
+  }
   if (number >= kEnd && number < kCurrent + 20) return macro_position(number, why);
   if (number >= 4001 && number < 4200) return macro_mode(number, why);
   const long axis = (number - kExternalOffset) % 20;

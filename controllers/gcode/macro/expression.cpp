@@ -322,10 +322,17 @@ double Expression::angle(double degrees, int column) const {
   return reading == 0 ? degrees + 360.0 : degrees;
 }
 
+// ATAN[y]/[x], of Fanuc also ATAN[y, x] (B-64484EN, arithmetic and logic operation, from memory).
 double Expression::atan(int column) {
-  const double y = argument();
-  if (!cursor_.accept("/")) return std::atan(y) / deg;
-  const double x = argument();
+  const int opened = cursor_.column();
+  if (!cursor_.accept("[")) refuse(opened, "'[' expected behind the name of a function");
+  const double y = expression().number();
+  const bool has_comma = cursor_.accept(",");
+  const double pair_x = has_comma ? expression().number() : 0.0;
+  if (cursor_.at_end()) refuse(opened, "'[' is not closed; ']' is missing");
+  if (!cursor_.accept("]")) refuse(cursor_.column(), "operator or ']' expected");
+  if (!has_comma && !cursor_.accept("/")) return std::atan(y) / deg;
+  const double x = has_comma ? pair_x : argument();
   if (x == 0.0 && y == 0.0) refuse(column, "ATAN[0]/[0] is no angle");
   return angle(std::atan2(y, x) / deg, column);
 }

@@ -113,6 +113,7 @@ MacroValue Variables::read(long number, const Place& place) const {
       control_->system_variable ? control_->system_variable(number, why) : std::nullopt;
   if (value) return value;
   if (why.empty()) why = "a simulation does not know it";
+  why += fmt::format("; or give it with --parameter '#{}=...'", number);
   const std::string_view name = system_variable_name(number);
   reading_.fail(place, fmt::format("#{} is {}: {}", number,
                                    name.empty() ? "a variable of the control" : name, why));

@@ -1,5 +1,6 @@
 // Custom macro B: what is refused, with its place, and what a simulation knows of the control. The
 // moves of programs are in rule_examples_macros.h.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -167,11 +168,14 @@ TEST(Macro, ValuesThatASimulationCannotKnowAreRefusedByName) {
             "1:4: error: #500 keeps its value from earlier programs, and this one has not set it; "
             "give it with --parameter '#500=...'");
   EXPECT_EQ(refusal("IF[#1004EQ1]GOTO9\nN9 M2\n"),
-            "1:4: error: #1004 is an input of the machine: a simulation does not know it");
+            "1:4: error: #1004 is an input of the machine: a simulation does not know it; "
+            "or give it with --parameter '#1004=...'");
   EXPECT_EQ(refusal("#1=#3011\nM2\n"),
-            "1:4: error: #3011 is date and time: a simulation does not know it");
+            "1:4: error: #3011 is date and time: a simulation does not know it; or give it "
+            "with --parameter '#3011=...'");
   EXPECT_EQ(refusal("#1=#5063\nM2\n"),
-            "1:4: error: #5063 is the position of the skip signal: a simulation does not know it");
+            "1:4: error: #5063 is the position of the skip signal: a simulation does not know "
+            "it; or give it with --parameter '#5063=...'");
   EXPECT_EQ(refusal("#2001=5.\nM2\n"),
             "1:1: error: #2001 is a tool offset and is not set from here: give it in the tool "
             "table (--tools), and take the line out");
@@ -179,6 +183,41 @@ TEST(Macro, ValuesThatASimulationCannotKnowAreRefusedByName) {
   setup.parameters["#500"] = 12.5;
   const auto moves = interpret("G0 X#500\nM2\n", "p.nc", setup);
   EXPECT_EQ(moves[0].end_machine[0], 12.5 * mm);
+}
+
+TEST(Macro, LengthsOfToolsAreThoseOfTheToolTable) {
+  const auto first_x = [](Reader reader, const std::string& program) {
+    ProgramSetup setup = setup_of({}, reader);
+    setup.tools = ToolTable::parse("T3 P3 Z+50.8 D6\n", "tool.tbl");
+    return interpret(program, "p.nc", setup).at(0).end_machine[0];
+  };
+  EXPECT_NEAR(first_x(Reader::haas, "#1=#2003\nG0 X#1\nM2\n"), 50.8 * mm, 1e-12);
+  EXPECT_NEAR(first_x(Reader::fanuc, "G20\n#1=#11003\nG0 X#1\nM2\n"), 2.0 * inch, 1e-12);
+  const auto fault = [&](Reader reader, const std::string& program) {
+    try {
+      return fmt::format("X{}", first_x(reader, program));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(
+      fault(Reader::haas, "#1=#2004\nG0 X#1\nM2\n"),
+      "p.nc:1:4: error: #2004 is a tool offset: the length of tool 4 is not known; pass a tool "
+      "table with --tools; or give it with --parameter '#2004=...'");
+  // what #2003 is depends on the tool memory (A, B or C), and wear stands in no table
+  EXPECT_EQ(
+      fault(Reader::fanuc, "#1=#2003\nG0 X#1\nM2\n"),
+      "p.nc:1:4: error: #2003 is a tool offset: a simulation does not know it; or give it with "
+      "--parameter '#2003=...'");
+  EXPECT_EQ(
+      fault(Reader::haas, "#1=#2203\nG0 X#1\nM2\n"),
+      "p.nc:1:4: error: #2203 is a tool offset: a simulation does not know it; or give it with "
+      "--parameter '#2203=...'");
+}
+
+TEST(Macro, ArcTangentOfTwoNumbersHasTwoForms) {
+  EXPECT_EQ(run("#1=ATAN[1.,-1.]+ATAN[1.]/[-1.]\nG0 X#1\nM2\n"), "R 270 0 0");
+  EXPECT_EQ(refusal("#1=ATAN[1.,-1.\nM2\n"), "1:8: error: '[' is not closed; ']' is missing");
 }
 
 // work offset X100 Y200 Z300
