@@ -145,48 +145,31 @@ std::vector<MacroWord> read_words(std::string_view body, std::size_t begin,
   return WordReader(body, begin, context, units).all();
 }
 
-void ExpandedLine::begin(std::string_view text) {
-  text_.clear();
-  runs_.clear();
+void ExpandedLine::set(std::string_view text) {
+  line_.set(text);
   has_words_ = !text.empty();
-}
-
-void ExpandedLine::put(std::string_view text, int column, bool is_copied) {
-  if (text.empty()) return;
-  runs_.push_back({static_cast<int>(text_.size()) + 1, column, is_copied});
-  text_ += text;
 }
 
 void ExpandedLine::set(std::string_view text, const std::vector<MacroWord>& words,
                        const Expression::Context& context, const WordUnits& units) {
-  begin(text);
+  line_.clear();
   has_words_ = false;
   std::size_t at = 0;
   for (const MacroWord& word : words) {
-    put(text.substr(at, word.begin - at), static_cast<int>(at) + 1, true);
+    line_.copy(text.substr(at, word.begin - at), static_cast<int>(at) + 1);
     at = word.end;
     if (word.is_erased || !word.value) {
-      while (!text_.empty() && text_.back() == ' ') text_.pop_back();
+      line_.trim_end(" ");
       continue;
     }
     has_words_ = true;
     if (word.is_literal) {
-      put(text.substr(word.begin, word.end - word.begin), word.column(), true);
+      line_.copy(text.substr(word.begin, word.end - word.begin), word.column());
     } else {
-      put(text_of(word, context, units), word.column(), false);
+      line_.replace(text_of(word, context, units), word.column());
     }
   }
-  put(text.substr(at), static_cast<int>(at) + 1, true);
-}
-
-int ExpandedLine::original_column(int column) const {
-  if (column <= 0) return column;
-  int out = column;
-  for (const Run& run : runs_) {
-    if (run.begin > column) break;
-    out = run.column + (run.is_copied ? column - run.begin : 0);
-  }
-  return out;
+  line_.copy(text.substr(at), static_cast<int>(at) + 1);
 }
 
 }  // namespace servomill::controllers::macro

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "controllers/gcode/macro/expression.h"
+#include "controllers/gcode/rewritten_line.h"
 
 namespace servomill::controllers::macro {
 
@@ -39,25 +40,16 @@ std::vector<MacroWord> read_words(std::string_view body, std::size_t begin,
 class ExpandedLine {
  public:
   /// @param text  as written
-  void set(std::string_view text) { begin(text), text_ = text; }
+  void set(std::string_view text);
   /// @throws InputError for a P that two controls read differently
   void set(std::string_view text, const std::vector<MacroWord>& words,
            const Expression::Context& context, const WordUnits& units);
-  const std::string& text() const { return text_; }
+  const std::string& text() const { return line_.text(); }
   bool has_words() const { return has_words_; }
-  int original_column(int column) const;
+  int original_column(int column) const { return line_.original_column(column); }
 
  private:
-  struct Run {
-    int begin = 0;   // in text_, from 1
-    int column = 0;  // in the line as written
-    bool is_copied = false;
-  };
-  void begin(std::string_view text);
-  void put(std::string_view text, int column, bool is_copied);
-
-  std::string text_;
-  std::vector<Run> runs_;
+  RewrittenLine line_;
   bool has_words_ = false;
 };
 

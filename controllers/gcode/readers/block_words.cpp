@@ -13,7 +13,7 @@ namespace {
 constexpr double kCodeTol = 1e-4;
 constexpr std::string_view kAxisLetters = "XYZABC@^";
 
-bool is_blank_at(char c) { return c == ' ' || c == '\t'; }
+constexpr std::string_view kLineBlanks = " \t";
 
 void describe_number(std::string_view text, BlockWord& word) {
   for (const char c : text.substr(1)) {
@@ -115,19 +115,15 @@ bool BlockWords::is_changed() const {
                      [](const BlockWord& word) { return word.is_changed; });
 }
 
-void BlockWords::put(std::string_view text, int column, bool is_copied) const {
-  runs_.push_back({static_cast<int>(text_.size()) + 1, column, is_copied});
-  text_ += text;
-}
-
 // Unchanged parts of the line with the changed words between them; added words come behind all
 // others, before a comment.
 void BlockWords::write() const {
-  text_.clear();
-  runs_.clear();
+  written_.clear();
   std::size_t at = 0;
   const auto copy_until = [&](std::size_t end) {
-    if (end > at) put(std::string_view(line_).substr(at, end - at), static_cast<int>(at) + 1, true);
+    if (end > at) {
+      written_.copy(std::string_view(line_).substr(at, end - at), static_cast<int>(at) + 1);
+    }
     at = std::max(at, end);
   };
   for (const BlockWord& word : words_) {
@@ -135,34 +131,25 @@ void BlockWords::write() const {
     copy_until(word.begin);
     at = word.end;
     if (word.is_kept_as_comment) {
-      put("(" + line_.substr(word.begin, word.end - word.begin) + ")", word.column);
+      written_.replace("(" + line_.substr(word.begin, word.end - word.begin) + ")", word.column);
       continue;
     }
-    if (!word.is_erased) put(word_text(word.letter, word.value), word.column);
-    while (word.is_erased && !text_.empty() && is_blank_at(text_.back())) text_.pop_back();
+    if (!word.is_erased) written_.replace(word_text(word.letter, word.value), word.column);
+    if (word.is_erased) written_.trim_end(kLineBlanks);
   }
   copy_until(insert_at_);
   for (const BlockWord& word : words_) {
     if (word.is_erased || word.begin != word.end) continue;
-    const bool is_first = text_.empty() || is_blank_at(text_.back());
-    put((is_first ? "" : " ") + word_text(word.letter, word.value), word.column);
+    const std::string& text = written_.text();
+    const bool is_first = text.empty() || kLineBlanks.find(text.back()) != kLineBlanks.npos;
+    written_.replace((is_first ? "" : " ") + word_text(word.letter, word.value), word.column);
   }
   copy_until(line_.size());
 }
 
 std::string BlockWords::text() const {
   write();
-  return text_;
-}
-
-int BlockWords::original_column(int column) const {
-  if (column <= 0) return column;
-  int out = column;
-  for (const Run& run : runs_) {
-    if (run.begin > column) break;
-    out = run.column + (run.is_copied ? column - run.begin : 0);
-  }
-  return out;
+  return written_.text();
 }
 
 }  // namespace servomill::controllers

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "controllers/gcode/block.h"
+#include "controllers/gcode/rewritten_line.h"
 
 namespace servomill::controllers {
 
@@ -59,22 +60,15 @@ class BlockWords {
   /// The line with its changes.
   std::string text() const;
   /// Column in the line as written of one in `text()`.
-  int original_column(int column) const;
+  int original_column(int column) const { return written_.original_column(column); }
 
  private:
-  struct Run {
-    int begin = 0;   // in text(), from 1
-    int column = 0;  // in the line as written
-    bool is_copied = false;
-  };
   void write() const;
-  void put(std::string_view text, int column, bool is_copied = false) const;
 
   std::string line_;
   std::vector<BlockWord> words_;
   std::size_t insert_at_ = 0;  // in the line: behind its last word
-  mutable std::string text_;
-  mutable std::vector<Run> runs_;
+  mutable RewrittenLine written_;
 };
 
 /// Ten times a code, or -1 if there can be none.
