@@ -228,105 +228,125 @@ std::string to_text(const ProgramSurvey& survey) {
 
 namespace {
 
+// A number in the unit of its key, or null.
 std::string number_or_null(const std::optional<double>& value, double unit) {
-  return value ? fmt::format("{:.9g}", *value / unit) : "null";
+  return value ? json_number(*value / unit) : "null";
 }
+
+// null for line 0, which is none.
+std::string line_or_null(int line) { return line > 0 ? std::to_string(line) : "null"; }
 
 // Line 0 in a list means that the control starts with the word.
 std::string uses_json(const std::vector<FirstUse>& uses) {
   std::vector<std::string> out;
   for (const FirstUse& use : uses) {
-    out.push_back(fmt::format(R"({{"word": {}, "line": {}}})", json_text(use.word),
-                              use.line > 0 ? std::to_string(use.line) : "null"));
+    out.push_back(JsonObject().text("word", use.word).raw("line", line_or_null(use.line)).line());
   }
-  return fmt::format("[{}]", fmt::join(out, ", "));
+  return json_list(out);
 }
 
 // Less than a picometre is rounding.
 double rounded(double position) { return std::round(position * 1e9) / 1e9 + 0.0; }
 
 std::string ranges_json(const AxisRanges& ranges) {
-  std::vector<std::string> out;
+  JsonObject out;
   for (const Axis axis : kAllAxes) {
     const AxisRange& range = ranges[static_cast<std::size_t>(index_of(axis))];
     if (!range.is_known()) continue;
-    out.push_back(fmt::format(R"("{}": [{:.9g}, {:.9g}])", letter(axis),
-                              rounded(range.lower / unit_of(axis)),
-                              rounded(range.upper / unit_of(axis))));
+    const std::string ends[] = {json_number(rounded(range.lower / unit_of(axis))),
+                                json_number(rounded(range.upper / unit_of(axis)))};
+    out.raw(std::string(1, letter(axis)), json_list(ends));
   }
-  return fmt::format("{{{}}}", fmt::join(out, ", "));
+  return out.line();
 }
 
 std::string tools_json(const ProgramSurvey& survey) {
   std::vector<std::string> out;
   for (const auto& [number, tool] : survey.tools) {
-    out.push_back(fmt::format(
-        R"({{"number": {}, "line": {}, "in_table": {}, "length_mm": {}, "diameter_mm": {}, )"
-        R"("loaded": {}, "uses_length": {}, "uses_diameter": {}}})",
-        number, tool.first_line, tool.is_in_table, number_or_null(tool.length, mm),
-        number_or_null(tool.diameter, mm), tool.is_loaded, tool.uses_length, tool.uses_diameter));
+    out.push_back(JsonObject()
+                      .integer("number", number)
+                      .integer("line", tool.first_line)
+                      .boolean("in_table", tool.is_in_table)
+                      .raw("length_mm", number_or_null(tool.length, mm))
+                      .raw("diameter_mm", number_or_null(tool.diameter, mm))
+                      .boolean("loaded", tool.is_loaded)
+                      .boolean("uses_length", tool.uses_length)
+                      .boolean("uses_diameter", tool.uses_diameter)
+                      .line());
   }
-  return fmt::format("[{}]", fmt::join(out, ", "));
+  return json_list(out);
 }
 
 std::string extent_json(const ProgramSurvey& survey) {
-  std::vector<std::string> work, unknown;
+  JsonObject work, unknown;
   for (const auto& [system, ranges] : survey.extent.work()) {
-    work.push_back(fmt::format(R"({}: {{"motion": {}, "feed": {}}})",
-                               json_text(kWorkSystems[static_cast<std::size_t>(system - 1)]),
-                               ranges_json(ranges.motion), ranges_json(ranges.feed)));
+    work.raw(kWorkSystems[static_cast<std::size_t>(system - 1)],
+             JsonObject()
+                 .raw("motion", ranges_json(ranges.motion))
+                 .raw("feed", ranges_json(ranges.feed))
+                 .line());
   }
   for (const Axis axis : kAllAxes) {
     const auto i = static_cast<std::size_t>(index_of(axis));
     const int line = survey.extent.unknown_work(i), machine = survey.extent.unknown_machine(i);
     if (line == 0 && machine == 0) continue;
-    unknown.push_back(fmt::format(R"("{}": {{"work": {}, "machine": {}}})", letter(axis),
-                                  line > 0 ? std::to_string(line) : "null",
-                                  machine > 0 ? std::to_string(machine) : "null"));
+    unknown.raw(
+        std::string(1, letter(axis)),
+        JsonObject().raw("work", line_or_null(line)).raw("machine", line_or_null(machine)).line());
   }
-  return fmt::format(R"({{"work": {{{}}}, "machine": {}, "unknown_from_line": {{{}}}}})",
-                     fmt::join(work, ", "), ranges_json(survey.extent.machine()),
-                     fmt::join(unknown, ", "));
+  return JsonObject()
+      .raw("work", work.line())
+      .raw("machine", ranges_json(survey.extent.machine()))
+      .raw("unknown_from_line", unknown.line())
+      .line();
 }
 
 std::string cycle_time_json(const ProgramSurvey& survey) {
   if (!survey.cycle_time) return "null";
   const CycleTime& time = *survey.cycle_time;
   const bool is_known = time.why_unknown.empty();
-  return fmt::format(
-      R"({{"machine": {}, "s": {}, "why_unknown": {}, "left_out_lines": [{}], "unknown_dwells": {}}})",
-      json_text(time.machine), is_known ? fmt::format("{:.9g}", time.duration) : "null",
-      is_known ? "null" : json_text(time.why_unknown), fmt::join(time.left_out, ", "),
-      time.unknown_dwells);
+  return JsonObject()
+      .text("machine", time.machine)
+      .raw("s", is_known ? json_number(time.duration) : "null")
+      .text_or_null("why_unknown", time.why_unknown)
+      .raw("left_out_lines", fmt::format("[{}]", fmt::join(time.left_out, ", ")))
+      .integer("unknown_dwells", time.unknown_dwells)
+      .line();
 }
 
 std::string readers_json(const ProgramSurvey& survey) {
-  std::vector<std::string> out;
+  JsonObject out;
   for (const ReaderVerdict& one : survey.readers) {
-    if (!one.stop) {
-      out.push_back(fmt::format(R"({}: {{"reads": true}})", json_text(one.reader)));
-      continue;
+    JsonObject verdict;
+    verdict.boolean("reads", !one.stop);
+    if (one.stop) {
+      const Place& place = one.stop->place;
+      verdict.text("file", place.file)
+          .integer("line", place.line)
+          .integer("column", place.column)
+          .text("why", one.stop->message);
     }
-    const Place& place = one.stop->place;
-    out.push_back(
-        fmt::format(R"({}: {{"reads": false, "file": {}, "line": {}, "column": {}, "why": {}}})",
-                    json_text(one.reader), json_text(place.file), place.line, place.column,
-                    json_text(one.stop->message)));
+    out.raw(one.reader, verdict.line());
   }
-  return fmt::format("{{{}}}", fmt::join(out, ", "));
+  return out.line();
 }
 
 }  // namespace
 
 std::string to_json(const ProgramSurvey& survey) {
-  return fmt::format(
-      R"({{"file": {}, "units": {}, "work_offsets": {}, "offsets_changed_by": {}, "tools": {}, )"
-      R"("extent": {}, "cycle_time": {}, "tool_changes": {}, "stops": {}, "readers": {}, )"
-      R"("first_fault_line": {}}})",
-      json_text(survey.file), uses_json(survey.units), uses_json(survey.work_systems),
-      uses_json(survey.shifts), tools_json(survey), extent_json(survey), cycle_time_json(survey),
-      survey.tool_changes, survey.stops, readers_json(survey),
-      survey.read_to > 0 ? std::to_string(survey.read_to) : "null");
+  return JsonObject()
+      .text("file", survey.file)
+      .raw("units", uses_json(survey.units))
+      .raw("work_offsets", uses_json(survey.work_systems))
+      .raw("offsets_changed_by", uses_json(survey.shifts))
+      .raw("tools", tools_json(survey))
+      .raw("extent", extent_json(survey))
+      .raw("cycle_time", cycle_time_json(survey))
+      .integer("tool_changes", survey.tool_changes)
+      .integer("stops", survey.stops)
+      .raw("readers", readers_json(survey))
+      .raw("first_fault_line", line_or_null(survey.read_to))
+      .line();
 }
 
 }  // namespace servomill::sim

@@ -23,14 +23,15 @@ std::string json_number(double value) {
   return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null";
 }
 
-std::string json_list(std::span<const std::string> items) {
-  return fmt::format("[{}]", fmt::join(items, ", "));
+std::string json_list(std::span<const std::string> items, JsonSpacing spacing) {
+  return fmt::format("[{}]", fmt::join(items, spacing == JsonSpacing::blank ? ", " : ","));
 }
 
 JsonObject& JsonObject::raw(std::string_view key, std::string_view json) {
-  if (!members_.empty()) members_ += ", ";
+  const bool is_spaced = spacing_ == JsonSpacing::blank;
+  if (!members_.empty()) members_ += is_spaced ? ", " : ",";
   members_ += json_text(key);
-  members_ += ": ";
+  members_ += is_spaced ? ": " : ":";
   members_ += json;
   return *this;
 }
@@ -45,6 +46,10 @@ JsonObject& JsonObject::text_or_null(std::string_view key, std::string_view valu
 
 JsonObject& JsonObject::number(std::string_view key, double value) {
   return raw(key, json_number(value));
+}
+
+JsonObject& JsonObject::fixed(std::string_view key, double value, int decimals) {
+  return raw(key, std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "null");
 }
 
 JsonObject& JsonObject::boolean(std::string_view key, bool value) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,16 +15,23 @@ std::string json_text(std::string_view text);
 /// Nine digits; null for what is not finite.
 std::string json_number(double value);
 
+/// Behind commas and colons.
+enum class JsonSpacing : std::uint8_t { blank, none };
+
 /// A list of what is JSON already.
-std::string json_list(std::span<const std::string> items);
+std::string json_list(std::span<const std::string> items, JsonSpacing spacing = JsonSpacing::blank);
 
 /// JsonObject().text("axis", "X").number("Kv", 33.3).line() is {"axis": "X", "Kv": 33.3}
 class JsonObject {
  public:
+  explicit JsonObject(JsonSpacing spacing = JsonSpacing::blank) : spacing_(spacing) {}
+
   JsonObject& text(std::string_view key, std::string_view value);
   /// null if empty
   JsonObject& text_or_null(std::string_view key, std::string_view value);
   JsonObject& number(std::string_view key, double value);
+  /// With that many decimals; null for what is not finite.
+  JsonObject& fixed(std::string_view key, double value, int decimals);
   JsonObject& integer(std::string_view key, std::integral auto value) {
     return raw(key, std::to_string(value));
   }
@@ -34,6 +42,7 @@ class JsonObject {
   std::string line() const { return "{" + members_ + "}"; }
 
  private:
+  JsonSpacing spacing_;
   std::string members_;
 };
 

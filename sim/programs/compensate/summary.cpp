@@ -1,12 +1,12 @@
 #include "sim/programs/compensate/summary.h"
-#include "sim/system/counted.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
+#include "sim/system/counted.h"
+#include "sim/system/json.h"
 
 namespace servomill::sim {
 namespace {
@@ -66,37 +66,42 @@ std::vector<std::string> Summary::report(const JointLayout& layout) const {
 }
 
 std::string Summary::json(const JointLayout& layout) const {
-  const auto at = [&](const At& one) {
-    return fmt::format("{{\"line\":{},\"machine\":\"{}\"}}", one.line,
-                       position(one.machine, layout));
-  };
-  std::string out = fmt::format(
-      "{{\"blocks_before\":{},\"blocks_after\":{},\"points_added\":{},\"arcs\":{},"
-      "\"arcs_kept\":{},\"arcs_split\":{},\"arcs_to_lines\":{}",
-      blocks_before, blocks_after, points_added, arcs_before, arcs_kept, arcs_split, arcs_to_lines);
-  out += fmt::format(
-      ",\"largest_um\":{:.4f},\"largest_xyz_um\":[{:.4f},{:.4f},{:.4f}],\"largest_at\":{}",
-      largest.correction.head<3>().norm() / um, largest.correction[0] / um,
-      largest.correction[1] / um, largest.correction[2] / um, at(largest));
-  out += fmt::format(
-      ",\"largest_turn_urad\":{:.4f},\"length_mm\":{:.6f},\"corrected_length_mm\":{:.6f},"
-      "\"time_s\":{:.6f},\"corrected_time_s\":{:.6f}",
-      largest_turn / urad, length / mm, corrected_length / mm, time, corrected_time);
-  out += fmt::format(",\"left_tip_um\":{:.4f},\"left_axis_urad\":{:.4f},\"left_line\":{}",
-                     left.tip / um, left.axis / urad, most_left ? most_left->line : 0);
-  out += fmt::format(",\"reversals\":{},\"reversal_um\":{:.4f},\"undirected_um\":{:.4f}", reversals,
-                     reversal_width / um, undirected_width / um);
-  out += fmt::format(",\"ends_outside_travel\":{},\"unrolled\":{},\"assumed\":[", outside_count,
-                     unrolled);
-  for (std::size_t i = 0; i < assumed.size(); ++i) {
-    std::string text;
-    for (const char c : assumed[i]) {
-      if (c == '"' || c == '\\') text += '\\';
-      text += c;
-    }
-    out += fmt::format("{}\"{}\"", i == 0 ? "" : ",", text);
+  const auto object = [] { return JsonObject(JsonSpacing::none); };
+  constexpr int kSmall = 4, kPath = 6;  // decimals of um and urad, of mm and s
+  std::vector<std::string> xyz, assumptions;
+  for (int i = 0; i < 3; ++i) {
+    xyz.push_back(fmt::format("{:.{}f}", largest.correction[i] / um, kSmall));
   }
-  return out + "]}";
+  for (const std::string& one : assumed) assumptions.push_back(json_text(one));
+  return object()
+      .integer("blocks_before", blocks_before)
+      .integer("blocks_after", blocks_after)
+      .integer("points_added", points_added)
+      .integer("arcs", arcs_before)
+      .integer("arcs_kept", arcs_kept)
+      .integer("arcs_split", arcs_split)
+      .integer("arcs_to_lines", arcs_to_lines)
+      .fixed("largest_um", largest.correction.head<3>().norm() / um, kSmall)
+      .raw("largest_xyz_um", json_list(xyz, JsonSpacing::none))
+      .raw("largest_at", object()
+                             .integer("line", largest.line)
+                             .text("machine", position(largest.machine, layout))
+                             .line())
+      .fixed("largest_turn_urad", largest_turn / urad, kSmall)
+      .fixed("length_mm", length / mm, kPath)
+      .fixed("corrected_length_mm", corrected_length / mm, kPath)
+      .fixed("time_s", time, kPath)
+      .fixed("corrected_time_s", corrected_time, kPath)
+      .fixed("left_tip_um", left.tip / um, kSmall)
+      .fixed("left_axis_urad", left.axis / urad, kSmall)
+      .integer("left_line", most_left ? most_left->line : 0)
+      .integer("reversals", reversals)
+      .fixed("reversal_um", reversal_width / um, kSmall)
+      .fixed("undirected_um", undirected_width / um, kSmall)
+      .integer("ends_outside_travel", outside_count)
+      .boolean("unrolled", unrolled)
+      .raw("assumed", json_list(assumptions, JsonSpacing::none))
+      .line();
 }
 
 }  // namespace servomill::sim

@@ -35,5 +35,16 @@ TEST(Json, KeepsTheOrderOfItsMembers) {
   EXPECT_EQ(json_list({}), "[]");
 }
 
+TEST(Json, CanDoWithoutBlanks) {
+  const std::vector<std::string> items = {"1", "2"};
+  EXPECT_EQ(JsonObject(JsonSpacing::none)
+                .integer("a", 1)
+                .fixed("b", -0.00004, 4)
+                .fixed("c", std::numeric_limits<double>::quiet_NaN(), 4)
+                .raw("d", json_list(items, JsonSpacing::none))
+                .line(),
+            R"({"a":1,"b":-0.0000,"c":null,"d":[1,2]})");
+}
+
 }  // namespace
 }  // namespace servomill::sim::json_test
