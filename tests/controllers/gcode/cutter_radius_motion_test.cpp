@@ -3,7 +3,7 @@
 
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers::compensated_motion_test {
+namespace servomill::controllers::cutter_radius_motion_test {
 namespace {
 
 const std::string kEntry = "G21 F600\nG0 X-20 Y0\nG41.1 D4\nG1 X0 Y0\n";
@@ -160,4 +160,4 @@ TEST(CompensatedProgram, Messages) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers::compensated_motion_test
+}  // namespace servomill::controllers::cutter_radius_motion_test
