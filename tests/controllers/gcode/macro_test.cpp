@@ -228,16 +228,18 @@ TEST(Macro, PositionsModesAndOffsetsAreThoseOfTheBlockBefore) {
             "R 101 202 303 | R 103 402 600");
   const std::string unknown =
       "the work offset is not given; --work-offset (other than 0) or --parameter-file names it";
-  EXPECT_EQ(refusal("G0 X1.\n#1=#5221\nM2\n"), "2:4: error: #5221 is a work offset: " + unknown);
+  EXPECT_EQ(refusal("G0 X1.\n#1=#5221\nM2\n"), "2:4: error: #5221 is a work offset: " + unknown +
+                                                   "; or give it with --parameter '#5221=...'");
   EXPECT_EQ(refusal("G0 X1.\n#1=#5021\nM2\n"),
-            "2:4: error: #5021 is the machine position: " + unknown);
+            "2:4: error: #5021 is the machine position: " + unknown +
+                "; or give it with --parameter '#5021=...'");
   EXPECT_EQ(run("G10 L2 P2 X5. Y0. Z0.\nG0 X#5241\nM2\n"), "R 5 0 0");
   EXPECT_EQ(run("G91 G20 G1 X1. F10.\n#1=#4001\n#2=#4003\n#3=#4006\nG21 G0 G90\nG#1 X#2 Y#3 "
                 "F#4109\nM2\n"),
             "F 25.4 0 0 f254 | F 91 20 0");
   EXPECT_EQ(refusal("#1=#4014\nM2\n", Reader::haas),
             "1:4: error: #4014 is a mode in force: the work system is #4014 (Fanuc) or #4012 "
-            "(Haas); choose with --reader");
+            "(Haas); choose with --reader; or give it with --parameter '#4014=...'");
   EXPECT_EQ(run("G55\n#1=#4014\nG54\nG0 X#1\nM2\n"), "R 55 0 0");
 }
 
