@@ -60,9 +60,10 @@ void Translator::call(const HeidenhainBlock& block) {
 }
 
 // REP 5, REP5, REP 5/5: the number after the slash counts the repeats the control has left to do.
+// REP alone is an entry that was skipped in the dialog.
 void Translator::call_label(const std::string& label, std::span<const HeidenhainWord> rest) {
   if (label == "0") fail("LBL 0 cannot be called");
-  if (rest.empty()) {
+  if (rest.empty() || (rest.size() == 1 && rest.front().text == "REP")) {
     if (returns_.size() >= kMostCalls) {
       fail(fmt::format("more than {} calls in each other", kMostCalls));
     }

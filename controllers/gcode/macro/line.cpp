@@ -91,6 +91,7 @@ bool may_be_macro(std::string_view text) {
     case 'P':
     case 'D':
     case 'B':
+    case '#':
       return true;
     case 'G':
       return next == 'O' || next == '6';
@@ -105,6 +106,33 @@ Cursor cursor_at(std::string_view body, std::size_t at) {
   Cursor cursor(body);
   cursor.go_to(at);
   return cursor;
+}
+
+// #1=#2+1, #3=#1 MOD 3: an operator behind a value, outside of brackets. LinuxCNC reads what stands
+// there as the next word.
+bool has_open_operator(std::string_view body) {
+  constexpr std::string_view kSigns = "+-*/";
+  constexpr std::array<std::string_view, 4> kNames = {"MOD", "AND", "OR", "XOR"};
+  if (body.find('<') != std::string_view::npos) return false;  // #<name-2>
+  int depth = 0;
+  char before = '=';
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    const char c = upper(body[i]);
+    if (is_blank(c)) continue;
+    const bool is_behind_value = is_digit(before) || before == '.' || before == ']';
+    if (depth == 0 && is_behind_value) {
+      if (kSigns.find(c) != std::string_view::npos) return true;
+      if (std::any_of(kNames.begin(), kNames.end(), [&](std::string_view name) {
+            Cursor cursor = cursor_at(body, i);
+            return cursor.accept(name);
+          })) {
+        return true;
+      }
+    }
+    depth += c == '[' ? 1 : c == ']' ? -1 : 0;
+    before = c;
+  }
+  return false;
 }
 
 bool has_code(std::string_view body, char letter, std::string_view digits) {
@@ -182,6 +210,8 @@ bool is_macro_only(std::string_view text, Line& line) {
     case Statement::go_to:
     case Statement::output:
       return true;
+    case Statement::assignment:
+      return has_open_operator(line.body);
     case Statement::words:
       return has_code(line.body, 'G', "65") || has_code(line.body, 'G', "66") ||
              (has_code(line.body, 'M', "99") && line.body.find_first_of("Pp") != std::string::npos);

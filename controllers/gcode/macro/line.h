@@ -38,7 +38,7 @@ void read_line(std::string_view text, Line& line);
 Statement statement_at(std::string_view body, std::size_t at);
 
 /// True for a line that only custom macro B has: it begins with IF[, WHILE[, GOTO 10, G65, G66,
-/// M99 P, POPEN and the like.
+/// M99 P, POPEN and the like, or assigns #1=#2+1 without brackets.
 bool is_macro_only(std::string_view text, Line& line);
 
 /// True if words hold M97, M98, M99, G65, G66 or G67.

@@ -26,6 +26,11 @@ inline std::vector<RuleExample> macro_examples() {
        "#1=0\nIF[#1EQ#0]GOTO9\nIF[#1NE#0]THEN #2=1.\nIF[#0GE0]THEN #3=2.\nIF[#0GT0]THEN #3=3.\n"
        "G0 X#2 Y#3\nN9 M2\n",
        "R 1 2 0", "p.nc:1:1", vacant},
+      // arithmetic without brackets, which LinuxCNC refuses; #<a-1> is a name of LinuxCNC's
+      {macro_statement, Reader::any, "#1=2.\n#2=#1+3.\nG0 X#2\nM2\n", "R 5 0 0", "p.nc:1:1",
+       memory},
+      {macro_statement, Reader::fanuc, "#1=7\n#2=#1 MOD 4\nG0 X#2\nM2\n", "R 3 0 0", "p.nc:1:1",
+       memory},
       {macro_statement, Reader::haas,
        "#1=0\nWHILE[#1LT2]DO1\n#2=0\nWHILE [#2 LT 2] DO2\nG0 X#1 Y#2\n#2=#2+1\nEND2\n#1=#1+1\n"
        "END1\nM2\n",
