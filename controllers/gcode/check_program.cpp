@@ -8,6 +8,7 @@
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/line_reader.h"
 #include "controllers/gcode/macro/macro_program.h"
+#include "controllers/gcode/other_language.h"
 #include "controllers/gcode/program_text.h"
 #include "controllers/gcode/request.h"
 
@@ -65,7 +66,8 @@ std::vector<Fault> check_program(ProgramText text, ProgramSetup setup,
                                  std::vector<Fault>* warnings) {
   std::vector<Fault> faults;
   const bool is_gcode = !conversational::is_conversational(text, setup.reader) &&
-                        !macro::is_macro_program(text, setup.reader);
+                        !macro::is_macro_program(text, setup.reader) &&
+                        (setup.reader != Reader::any || siemens_program(text).empty());
   if (is_gcode) faults = syntax_faults(text, setup);
   const std::string file = text.file();
   try {

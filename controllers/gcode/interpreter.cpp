@@ -13,6 +13,7 @@
 #include "controllers/gcode/interpreter_machine.h"
 #include "controllers/gcode/macro/macro_program.h"
 #include "controllers/gcode/message_text.h"
+#include "controllers/gcode/other_language.h"
 #include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/units.h"
 
@@ -286,6 +287,10 @@ void Interpreter::Machine::override_switches() {
 Interpreter::Interpreter(ProgramText text, ProgramSetup setup) {
   if (conversational::is_conversational(text, setup.reader)) {
     text = conversational::as_gcode(std::move(text), setup);
+  }
+  if (setup.reader == Reader::any) {
+    const std::string refusal = siemens_program(text);
+    if (!refusal.empty()) throw InputError({text.file(), 1, 1}, refusal);
   }
   if (!macro::is_macro_program(text, setup.reader)) {
     machine_ = std::make_unique<Machine>(std::move(text), std::move(setup));

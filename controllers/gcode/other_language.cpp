@@ -81,6 +81,28 @@ bool is_report_request(std::string_view line) {
   return std::find(kRequests.begin(), kRequests.end(), request) != kRequests.end();
 }
 
+std::string siemens_program(ProgramText& text) {
+  if (text.is_generated()) return {};
+  constexpr std::size_t kEnding = 4;
+  std::string ending =
+      text.file().substr(text.file().size() - std::min(kEnding, text.file().size()));
+  std::transform(ending.begin(), ending.end(), ending.begin(), upper);
+  bool is_named = ending == ".MPF" || ending == ".SPF";
+  std::string_view first;
+  if (!is_named && text.next(first)) {
+    std::string begin(first.substr(0, std::min<std::size_t>(first.size(), kEnding)));
+    std::transform(begin.begin(), begin.end(), begin.begin(), upper);
+    is_named = begin == "%_N_";
+    text.rewind();
+  }
+  if (!is_named) return {};
+  return "this is a Siemens program; programs in G-code are read here: let the post-processor "
+         "write "
+         "for Fanuc or LinuxCNC, or, where the program has no word of Siemens' own, name the "
+         "control "
+         "whose rules it follows with --reader";
+}
+
 std::string other_language(std::string_view line, int column) {
   if (line.starts_with('$') && !is_report_request(line)) {
     return fmt::format(
