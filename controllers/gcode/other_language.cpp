@@ -52,6 +52,16 @@ std::size_t corner_word(std::string_view line) {
   return is_corner ? comma : std::string_view::npos;
 }
 
+std::string corner_refusal(std::string_view line) {
+  const std::size_t comma = corner_word(line);
+  if (comma == std::string_view::npos) return {};
+  const bool is_round = upper(line[comma + 1]) == 'R';
+  return fmt::format(
+      "',{}' {} the corner to the next move (Fanuc, Haas), which is not read; "
+      "write the {}",
+      is_round ? 'R' : 'C', is_round ? "rounds" : "chamfers", is_round ? "arc" : "line");
+}
+
 std::string siemens_word(std::string_view line) {
   for (const std::string_view word : {"TRAORI", "TRAFOOF", "SUPA", "MCALL", "CYCLE", "POCKET",
                                       "SLOT", "HOLES", "MSG", "DEF", "WORKPIECE", "EXTERN"}) {
@@ -114,6 +124,13 @@ std::string other_language(std::string_view line, int column) {
       return fmt::format("'{}' is Heidenhain conversational; --reader heidenhain reads it", word);
     }
   }
+  // cncjs, wiki, "Macro": %x0=posx assigns, [x0] reads
+  if (const std::string_view name = assigned_name(line); line.starts_with('%') && !name.empty()) {
+    return fmt::format(
+        "'%{}=' is a variable of the sender cncjs, which replaces it while it streams; write its "
+        "value",
+        name);
+  }
   if (const std::string word = siemens_word(line); !word.empty()) {
     return fmt::format("'{}' is a word of Siemens' language; programs in G-code are read here",
                        word);
@@ -133,13 +150,7 @@ std::string other_language(std::string_view line, int column) {
         "are read here",
         name);
   }
-  if (const std::size_t comma = corner_word(line); comma != std::string_view::npos) {
-    const bool is_round = upper(line[comma + 1]) == 'R';
-    return fmt::format(
-        "',{}' {} the corner to the next move (Fanuc, Haas), which is not read; "
-        "write the {}",
-        is_round ? 'R' : 'C', is_round ? "rounds" : "chamfers", is_round ? "arc" : "line");
-  }
+  if (const std::string corner = corner_refusal(line); !corner.empty()) return corner;
   const auto at = static_cast<std::size_t>(column - 1);
   const bool is_smoothness = line.find("G187") != line.npos || line.find("g187") != line.npos;
   if (column > 0 && !is_smoothness && at + 1 < line.size() && upper(line[at]) == 'E' &&

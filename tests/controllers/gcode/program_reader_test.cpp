@@ -383,31 +383,5 @@ TEST(TolerantLine, KeepsEveryColumn) {
   }
 }
 
-// A word may mean something else there (G4 F, G64, D): none is read by the rules of another
-// control unless the user names it.
-TEST(ProgramReader, SiemensProgramsAreRefusedByName) {
-  const auto fault = [](const std::string& text, const std::string& file, Reader reader) {
-    ProgramSetup setup;
-    setup.reader = reader;
-    try {
-      interpret(text, file, setup);
-    } catch (const InputError& error) {
-      return to_string(error.faults().front());
-    }
-    return std::string();
-  };
-  const std::string refusal =
-      ":1:1: error: this is a Siemens program; programs in G-code are read here: let the "
-      "post-processor write for Fanuc or LinuxCNC, or, where the program has no word of Siemens' "
-      "own, name the control whose rules it follows with --reader";
-  for (const std::string file : {"SHAFT.MPF", "shaft.mpf", "hole.spf"}) {
-    EXPECT_EQ(fault("G0 X1\nM2\n", file, Reader::any), file + refusal);
-  }
-  EXPECT_EQ(fault("%_N_SHAFT_MPF\n;$PATH=/_N_MPF_DIR\nG0 X1\nM2\n", "p.nc", Reader::any),
-            "p.nc" + refusal);
-  EXPECT_EQ(fault("G0 X1.\nM2\n", "shaft.mpf", Reader::fanuc), "");
-  EXPECT_EQ(fault("G0 X1\nM2\n", "mpf", Reader::any), "");
-}
-
 }  // namespace
 }  // namespace servomill::controllers::program_reader_test

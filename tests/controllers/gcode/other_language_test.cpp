@@ -1,0 +1,53 @@
+// Programs and lines that are no G-code are refused by the name of their language.
+#include "controllers/gcode/other_language.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "controllers/gcode/interpreter.h"
+#include "plant/vocabulary/input_error.h"
+
+namespace servomill::controllers::other_language_test {
+namespace {
+
+// A word may mean something else there (G4 F, G64, D): none is read by the rules of another
+// control unless the user names it.
+TEST(OtherLanguage, SiemensProgramsAreRefusedByName) {
+  const auto fault = [](const std::string& text, const std::string& file, Reader reader) {
+    ProgramSetup setup;
+    setup.reader = reader;
+    try {
+      interpret(text, file, setup);
+    } catch (const InputError& error) {
+      return to_string(error.faults().front());
+    }
+    return std::string();
+  };
+  const std::string refusal =
+      ":1:1: error: this is a Siemens program; programs in G-code are read here: let the "
+      "post-processor write for Fanuc or LinuxCNC, or, where the program has no word of Siemens' "
+      "own, name the control whose rules it follows with --reader";
+  for (const std::string file : {"SHAFT.MPF", "shaft.mpf", "hole.spf"}) {
+    EXPECT_EQ(fault("G0 X1\nM2\n", file, Reader::any), file + refusal);
+  }
+  EXPECT_EQ(fault("%_N_SHAFT_MPF\n;$PATH=/_N_MPF_DIR\nG0 X1\nM2\n", "p.nc", Reader::any),
+            "p.nc" + refusal);
+  EXPECT_EQ(fault("G0 X1.\nM2\n", "shaft.mpf", Reader::fanuc), "");
+  EXPECT_EQ(fault("G0 X1\nM2\n", "mpf", Reader::any), "");
+}
+
+TEST(OtherLanguage, LinesAreNamedByTheWordsThatGiveThemAway) {
+  EXPECT_EQ(other_language("12 CYCL DEF 200 DRILLING", 1),
+            "'CYCL DEF' is Heidenhain conversational; --reader heidenhain reads it");
+  EXPECT_EQ(other_language("N20 T=\"MILL10\" M6", 6),
+            "'T=' is a word of Siemens' language; programs in G-code are read here");
+  EXPECT_EQ(other_language("%x0=posx", 1),
+            "'%x0=' is a variable of the sender cncjs, which replaces it while it streams; write "
+            "its value");
+  EXPECT_EQ(other_language("%wait", 1), "");
+  EXPECT_EQ(other_language("G1 X10. F100.", 1), "");
+}
+
+}  // namespace
+}  // namespace servomill::controllers::other_language_test
