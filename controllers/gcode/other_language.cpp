@@ -124,7 +124,7 @@ std::string other_language(std::string_view line, int column) {
       return fmt::format("'{}' is Heidenhain conversational; --reader heidenhain reads it", word);
     }
   }
-  // cncjs, wiki, "Macro": %x0=posx assigns, [x0] reads
+  // macros of cncjs: %x0=posx assigns, [x0] reads (its wiki, from memory)
   if (const std::string_view name = assigned_name(line); line.starts_with('%') && !name.empty()) {
     return fmt::format(
         "'%{}=' is a variable of the sender cncjs, which replaces it while it streams; write its "

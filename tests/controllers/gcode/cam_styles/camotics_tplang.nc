@@ -1,0 +1,12 @@
+(TPLang output)
+G21
+F400 S1000
+M3
+T1 M6
+G0 Z5
+G0 X10 Y0
+G1 Z-2
+G2 X10 Y0 I-10 J0
+G0 Z5
+M5
+%

@@ -1,0 +1,21 @@
+(Project sample)
+(Created by Estlcam version 11)
+(Machining time about 00:01:12 hours)
+
+(Required tools:)
+(Milling bit 3mm)
+
+G21
+G90
+G94
+M03 S24000
+G00 Z5.0000
+(No. 1 Hole)
+G00 X10.0000 Y10.0000
+G00 Z0.5000
+G01 Z0.0000 F240 S24000
+G03 X12.0000 Y10.0000 Z-0.2500 I1.0000 J0.0000 F900
+G03 X10.0000 Y10.0000 Z-0.5000 I-1.0000 J0.0000
+G00 Z5.0000
+M05
+M30

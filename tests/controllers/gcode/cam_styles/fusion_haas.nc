@@ -1,0 +1,26 @@
+%
+O02002 (plate)
+(Using high feed G1 F500. instead of G0.)
+(T3 D=6. CR=0. TAPER=118deg - ZMIN=-10. - drill)
+G90 G94 G17
+G21
+G53 G0 Z0.
+(Drill1)
+T3 M6
+S2500 M3
+G54
+M8
+G0 X10. Y10.
+G43 Z15. H3
+G0 Z5.
+G98 G83 X10. Y10. Z-10. R5. Q2. F150.
+X30.
+Y30.
+G80
+M9
+G0 Z15.
+M5
+G53 G0 Z0.
+G53 G0 Y0.
+M30
+%
