@@ -124,7 +124,7 @@ std::string other_language(std::string_view line, int column) {
       return fmt::format("'{}' is Heidenhain conversational; --reader heidenhain reads it", word);
     }
   }
-  // macros of cncjs: %x0=posx assigns, [x0] reads (its wiki, from memory)
+  // %x0=posx assigns, [x0] reads: cncjs, release notes of v1.9.4, "New macro variables"
   if (const std::string_view name = assigned_name(line); line.starts_with('%') && !name.empty()) {
     return fmt::format(
         "'%{}=' is a variable of the sender cncjs, which replaces it while it streams; write its "
