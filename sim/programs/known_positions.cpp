@@ -5,12 +5,12 @@
 
 #include "controllers/gcode/canned_cycles.h"
 #include "controllers/gcode/request.h"
+#include "sim/programs/named_axes.h"
 
 namespace servomill::sim {
 namespace {
 
 using controllers::ExecutedBlock;
-using controllers::Group;
 
 constexpr double kStill = 1e-12;  // m, rad: what rounding leaves of positions
 constexpr std::size_t kZ = 2;
@@ -19,14 +19,7 @@ constexpr std::size_t kZ = 2;
 constexpr int kG10 = 100, kG28 = 280, kG30 = 300, kG52 = 520, kG53 = 530, kG92 = 920, kG92_1 = 921,
               kG92_2 = 922;
 
-int non_modal(const ExecutedBlock& block) {
-  return block.request == nullptr ? -1 : block.request->code(Group::g_non_modal);
-}
-
-bool names(const ExecutedBlock& block, std::size_t i) {
-  if (block.request == nullptr) return false;
-  return block.request->has(letter(kAllAxes[i])) || (i < 2 && block.request->has_polar());
-}
+bool names(const ExecutedBlock& block, std::size_t i) { return names_axis(block, kAllAxes[i]); }
 
 bool names_any(const ExecutedBlock& block) {
   for (std::size_t i = 0; i < kAxisWords; ++i) {
@@ -75,7 +68,7 @@ void KnownPositions::follow_G10(const ExecutedBlock& block) {
 }
 
 void KnownPositions::follow_shift(const ExecutedBlock& block) {
-  const int code = non_modal(block);
+  const int code = non_modal_code(block);
   if (code == kG92_1 || code == kG92_2) shift_.fill(true);
   for (std::size_t i = 0; i < kAxisWords; ++i) {
     if (!names(block, i)) continue;
@@ -87,7 +80,7 @@ void KnownPositions::follow_shift(const ExecutedBlock& block) {
 void KnownPositions::begin_line(const ExecutedBlock& block) {
   const Offsets before = offsets_;
   offsets_ = offsets_of(*block.state);
-  if (non_modal(block) == kG10) follow_G10(block);
+  if (non_modal_code(block) == kG10) follow_G10(block);
   follow_shift(block);
   const bool control_changes = before.controls_tip != offsets_.controls_tip;
   for (std::size_t i = 0; i < kAxisWords; ++i) {
@@ -99,7 +92,7 @@ void KnownPositions::begin_line(const ExecutedBlock& block) {
                          differs(before.tool_offset[k], offsets_.tool_offset[k]) ||
                          (i == kZ && before.tool != offsets_.tool);
     if (changes) work_[i] = machine_[i] && offset_is_known(i);
-    if (non_modal(block) == kG92 && names(block, i)) work_[i] = true;
+    if (non_modal_code(block) == kG92 && names(block, i)) work_[i] = true;
   }
   at_begin_of_line_ = at_;
   work_at_begin_of_line_ = work_;
@@ -107,9 +100,9 @@ void KnownPositions::begin_line(const ExecutedBlock& block) {
 
 // G53 names machine coordinates; G28 and G30 go to places that the control has stored.
 void KnownPositions::learn_place(const ExecutedBlock& block) {
-  const bool is_given = non_modal(block) == kG53 || given_.has_stored_places;
+  const bool is_given = non_modal_code(block) == kG53 || given_.has_stored_places;
   for (std::size_t i = 0; i < kAxisWords; ++i) {
-    if (!names(block, i) && (non_modal(block) == kG53 || names_any(block))) continue;
+    if (!names(block, i) && (non_modal_code(block) == kG53 || names_any(block))) continue;
     machine_[i] = is_given;
     work_[i] = is_given && offset_is_known(i);
   }

@@ -12,6 +12,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/programs/compensate/edited_line.h"
 #include "sim/programs/compensate/line_tokens.h"
+#include "sim/programs/named_axes.h"
 
 namespace servomill::sim {
 namespace {
@@ -192,7 +193,7 @@ void DialectWriter::write_moves(const Block& block) {
       block.request->code(Group::m_tool) < 0) {
     printer_->preselect(block.state->selected_tool);
   }
-  const int code = block.request == nullptr ? -1 : block.request->code(Group::g_non_modal);
+  const int code = non_modal_code(block);
   std::size_t last = 0;
   for (std::size_t i = 0; i < block.moves.size(); ++i) {
     if (is_motion(block.moves[i].kind)) last = i;

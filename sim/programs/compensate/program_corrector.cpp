@@ -10,12 +10,12 @@
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/input_error.h"
+#include "sim/programs/named_axes.h"
 
 namespace servomill::sim {
 namespace {
 
 using controllers::ExecutedBlock;
-using controllers::Group;
 
 // By how much of the tolerance the output may stand beside the corrected begin of a move.
 constexpr double kBeside = 0.25;
@@ -33,10 +33,6 @@ bool names_any(const ExecutedBlock& block) {
   return false;
 }
 
-int non_modal(const ExecutedBlock& block) {
-  return block.request == nullptr ? -1 : block.request->code(Group::g_non_modal);
-}
-
 }  // namespace
 
 bool is_skipped(const controllers::ExecutedBlock& block) {
@@ -44,7 +40,7 @@ bool is_skipped(const controllers::ExecutedBlock& block) {
 }
 
 bool is_place_of_machine(const ExecutedBlock& block) {
-  const int code = non_modal(block);
+  const int code = non_modal_code(block);
   return code == 530 || code == 280 || code == 300;
 }
 
@@ -95,12 +91,12 @@ bool ProgramCorrector::knows_all() const {
 // Which axes have a position that the program names. @return those of the move
 AxisFlags ProgramCorrector::learn(const Move& move, const ExecutedBlock& block) {
   const bool is_absolute = !block.state->is_incremental || is_place_of_machine(block);
-  const bool goes_home = (non_modal(block) == 280 || non_modal(block) == 300) && !names_any(block);
+  const bool goes_home =
+      (non_modal_code(block) == 280 || non_modal_code(block) == 300) && !names_any(block);
   AxisFlags commanded{};
   for (int i = 0; i < kAxisWords; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const bool is_polar = i < 2 && block.request != nullptr && block.request->has_polar();
-    const bool names = is_named(block, i) || is_polar;
+    const bool names = names_axis(block, kAllAxes[k]);
     commanded[k] = goes_home || names || std::abs(move.end_machine[i] - programmed_[i]) > kStill;
     if (goes_home || (is_absolute && names)) known_[k] = named_[k] = true;
     const Axis axis = kAllAxes[k];

@@ -10,6 +10,7 @@
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/input_error.h"
 #include "sim/programs/compensate/dialect_writer.h"
+#include "sim/programs/named_axes.h"
 
 namespace servomill::sim {
 namespace {
@@ -30,10 +31,7 @@ std::vector<Axis> DialectWriter::unnamed_lost(const AxisFlags& is_lost, const Bl
   for (const bool is_of_linear : {false, true}) {
     for (const Axis axis : kAllAxes) {
       if (axis == Axis::Z || is_linear(axis) != is_of_linear || !corrector_.has(axis)) continue;
-      const bool is_polar = is_of_linear && block.request != nullptr && block.request->has_polar();
-      const bool is_named =
-          is_polar || (block.request != nullptr && block.request->has(letter(axis)));
-      const bool is_given = is_named && !block.state->is_incremental;
+      const bool is_given = names_axis(block, axis) && !block.state->is_incremental;
       if (is_lost[static_cast<std::size_t>(index_of(axis))] && !is_given) out.push_back(axis);
     }
   }

@@ -6,6 +6,7 @@
 #include "controllers/gcode/canned_cycles.h"
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/request.h"
+#include "sim/programs/named_axes.h"
 
 namespace servomill::sim {
 namespace {
@@ -14,16 +15,6 @@ using controllers::ExecutedBlock;
 using controllers::Group;
 
 constexpr double kStill = 1e-12;  // m, rad: what rounding leaves of positions
-
-int one_shot(const ExecutedBlock& block) {
-  return block.request == nullptr ? -1 : block.request->code(Group::g_non_modal);
-}
-
-bool names(const ExecutedBlock& block, int i) {
-  if (block.request == nullptr) return false;
-  return block.request->has(letter(kAllAxes[static_cast<std::size_t>(i)])) ||
-         (i < 2 && block.request->has_polar());
-}
 
 // One with '/'; it counts as such if it is run, too.
 bool is_optional(const ExecutedBlock& block) {
@@ -129,15 +120,15 @@ void Original::take_motion(const Move& move, const ExecutedBlock& block, bool is
       block.request != nullptr && controllers::is_canned_cycle(block.request->motion_code());
   action.is_of_cycle = is_cycle;
   action.has_path_mode = has_path_mode_ || (is_cycle && move.path_mode == PathMode::exact_path);
-  const int code = one_shot(block);
+  const int code = non_modal_code(block);
   action.is_machine_position = code == 530 || code == 280 || code == 300;
   action.is_reference_return = code == 280 || code == 300;
   action.is_to_reference = action.is_reference_return && is_last;
   action.p_ST = working_tool(*block.state, setup_.tools);
   // moves that cutter compensation held back and those of cycles are not what the block names
   if (move.line == block.line && !is_cycle) {
-    for (int i = 0; i < kAxisWords; ++i) {
-      action.is_named[static_cast<std::size_t>(i)] = names(block, i);
+    for (std::size_t k = 0; k < kAxisWords; ++k) {
+      action.is_named[k] = names_axis(block, kAllAxes[k]);
     }
   }
   learn(action, block);
@@ -149,11 +140,11 @@ void Original::learn(OriginalAction& action, const ExecutedBlock& block) {
   const bool is_absolute = !block.state->is_incremental || action.is_machine_position;
   const AxisFlags6 changed = action.changed();
   bool is_any_named = false;
-  for (int i = 0; i < kAxisWords; ++i) is_any_named |= names(block, i);
+  for (const Axis axis : kAllAxes) is_any_named |= names_axis(block, axis);
   for (int i = 0; i < kAxisWords; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (!options_.layout.joint_of(kAllAxes[k])) known_[k] = true;
-    if (is_absolute && names(block, i)) known_[k] = ever_known_[k] = true;
+    if (is_absolute && names_axis(block, kAllAxes[k])) known_[k] = ever_known_[k] = true;
     if (!action.is_to_reference) continue;
     if (!is_any_named) action.is_named[k] = options_.layout.joint_of(kAllAxes[k]).has_value();
     // another control's reference position is another place
