@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plant/geometry/travelling_errors.h"
 #include "strategies/axis_displacement.h"
 
 namespace servomill::sim {
@@ -26,15 +27,6 @@ bool has_reversals(const plant::ErrorModel& errors, Axis axis) {
   });
 }
 
-// The errors while one axis travels on in one direction; those of the others keep their mean.
-plant::ErrorModel travelling(plant::ErrorModel errors, Axis axis, int direction) {
-  for (const Axis a : kAllAxes) {
-    plant::ErrorFunction& error = errors.component({a, axis, false});
-    error = plant::travelling(error, direction);
-  }
-  return errors;
-}
-
 }  // namespace
 
 LineCorrection::LineCorrection(const TableSource& source)
@@ -47,8 +39,8 @@ LineCorrection::LineCorrection(const TableSource& source)
     } else if (depends_on_direction(j)) {
       const Axis axis = *source.chain.layout.axis[static_cast<std::size_t>(j)];
       auto& [down, up] = directed_[static_cast<std::size_t>(j)];
-      down = identified_of(travelling(source.errors, axis, -1));
-      up = identified_of(travelling(source.errors, axis, 1));
+      down = identified_of(plant::travelling(source.errors, axis, -1));
+      up = identified_of(plant::travelling(source.errors, axis, 1));
     }
   }
 }

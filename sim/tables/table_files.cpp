@@ -122,14 +122,20 @@ std::string com_listing(const TableExport& e, const std::vector<const Compensati
   return text;
 }
 
+// All tables over the positions of one axis.
+std::vector<const CompensationTable*> tables_over(const TableExport& e, int joint) {
+  std::vector<const CompensationTable*> tables;
+  for (const CompensationTable& table : e.tables) {
+    if (table.line.joint == joint) tables.push_back(&table);
+  }
+  return tables;
+}
+
 std::vector<TextFile> heidenhain_files(const TableExport& e) {
   std::vector<TextFile> files;
   std::string head = fmt::format("{:>6}", "ACTIVE"), names = fmt::format("{:>6}", "*");
   for (const TableLine& line : e.lines) {
-    std::vector<const CompensationTable*> tables;
-    for (const CompensationTable& table : e.tables) {
-      if (table.line.joint == line.joint) tables.push_back(&table);
-    }
+    const std::vector<const CompensationTable*> tables = tables_over(e, line.joint);
     if (tables.empty()) continue;
     const std::string name = fmt::format("{}.COM", e.letter(line.joint));
     files.push_back({name + ".txt", com_listing(e, tables)});
@@ -291,10 +297,7 @@ std::string location_csv(const TableExport& e) {
 std::vector<TextFile> csv_files(const TableExport& e) {
   std::vector<TextFile> files;
   for (const TableLine& line : e.lines) {
-    std::vector<const CompensationTable*> tables;
-    for (const CompensationTable& table : e.tables) {
-      if (table.line.joint == line.joint) tables.push_back(&table);
-    }
+    const std::vector<const CompensationTable*> tables = tables_over(e, line.joint);
     if (tables.empty()) continue;
     files.push_back({lower_case(e.letter(line.joint)) + ".csv", component_csv(e, tables)});
   }

@@ -11,6 +11,7 @@
 #include "controllers/tables/heidenhain_table.h"
 #include "controllers/tables/linuxcnc_table.h"
 #include "controllers/tables/siemens_table.h"
+#include "plant/geometry/travelling_errors.h"
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
@@ -27,14 +28,6 @@ constexpr double kDigitSlack = 1e-6;  // of a digit, for binary fractions
 
 Axis axis_at(const TableExport& e, int joint) {
   return *e.source.chain.layout.axis[static_cast<std::size_t>(joint)];
-}
-
-plant::ErrorModel directed(plant::ErrorModel errors, Axis axis, int direction) {
-  for (const Axis a : kAllAxes) {
-    plant::ErrorFunction& error = errors.component({a, axis, false});
-    error = plant::travelling(error, direction);
-  }
-  return errors;
 }
 
 // Displacement that one machine with errors needs, from its kinematics alone.
@@ -247,9 +240,9 @@ class Displacements {
  private:
   void run(const TableLine& line) {
     const Axis base = axis_at(e_, line.joint);
-    const std::array<Needed, 3> needed = {Needed(e_, directed(e_.source.errors, base, -1)),
+    const std::array<Needed, 3> needed = {Needed(e_, plant::travelling(e_.source.errors, base, -1)),
                                           Needed(e_, e_.source.errors),
-                                          Needed(e_, directed(e_.source.errors, base, 1))};
+                                          Needed(e_, plant::travelling(e_.source.errors, base, 1))};
     for (int output = 0; output < kJoints; ++output) {
       if (!e_.source.chain.layout.has(output)) continue;
       const bool own = output == line.joint;
