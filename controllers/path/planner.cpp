@@ -40,6 +40,15 @@ bool is_same_circle(const ArcSweep& one, const ArcSweep& next, const Joints& ste
          near(one.r_begin, one.r_end);
 }
 
+// The leg of a move, but for its length and its tangents.
+Leg leg_of(const Move& move) {
+  Leg leg;
+  leg.rapid = move.kind == MoveKind::rapid;
+  leg.stop_after = move.path_mode == PathMode::exact_stop;
+  leg.exact_corners = move.path_mode == PathMode::exact_path;
+  return leg;
+}
+
 }  // namespace
 
 // Collects moves into chains and plans each when it ends.
@@ -113,10 +122,7 @@ class Planner {
       if (move.path_mode == PathMode::exact_stop) finish_chain();
       return;
     }
-    Leg leg;
-    leg.rapid = move.kind == MoveKind::rapid;
-    leg.stop_after = move.path_mode == PathMode::exact_stop;
-    leg.exact_corners = move.path_mode == PathMode::exact_path;
+    Leg leg = leg_of(move);
     std::optional<ArcSweep> arc;
     if (move.kind == MoveKind::arc) {
       arc = arc_sweep(move, words_.head<3>());
@@ -213,10 +219,7 @@ class Planner {
 
   // Tangents where it begins and ends to move; length 0 if it does not.
   Leg tip_leg(const Move& move, const TcpMotion& motion, std::span<const JointChord> chords) const {
-    Leg leg;
-    leg.rapid = move.kind == MoveKind::rapid;
-    leg.stop_after = move.path_mode == PathMode::exact_stop;
-    leg.exact_corners = move.path_mode == PathMode::exact_path;
+    Leg leg = leg_of(move);
     leg.tolerance = chords.empty() ? 0.0 : chords.front().tolerance_linear;
     Joints at = u_;
     for (const JointChord& chord : chords) {
