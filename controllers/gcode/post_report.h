@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "controllers/gcode/cl_data.h"
 #include "controllers/path/feed_reduction.h"
 #include "plant/vocabulary/input_error.h"
 

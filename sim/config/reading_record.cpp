@@ -28,7 +28,7 @@ std::string nearest_of(std::string_view word, const Value& table,
   for (const std::string& name : known) {
     (table.find(name) == nullptr ? absent : given).emplace_back(name);
   }
-  const std::string missing = did_you_mean(word, absent);
+  std::string missing = did_you_mean(word, absent);
   if (!missing.empty()) return missing;
   const std::string_view near = nearest_name(word, given);
   const bool is_a_letter = near.size() == 1;  // of another axis

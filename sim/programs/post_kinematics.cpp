@@ -42,7 +42,7 @@ PostBlock PostKinematics::block_of(const Move& move, const PostState& now) const
 
 ToolPose PostKinematics::pose_at(const PostBlock& block, double t) const {
   const Joints Q = block.from.Q + t * (block.to.Q - block.from.Q);
-  const ToolPose pose = plant::forward(chain_, Q, p_ST(block.from.tool));
+  ToolPose pose = plant::forward(chain_, Q, p_ST(block.from.tool));
   if (!block.to.controls_tip) return pose;
   return {block.from.P.p_WT + t * (block.to.P.p_WT - block.from.P.p_WT), pose.k_W};
 }

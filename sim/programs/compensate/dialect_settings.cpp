@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "controllers/gcode/parameters.h"
+#include "controllers/gcode/modal_state.h"
 #include "plant/vocabulary/units.h"
 #include "sim/programs/compensate/work_knowledge.h"
 
