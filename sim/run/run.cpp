@@ -104,6 +104,7 @@ RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
     }
   };
   const unsigned threads = thread_count(control.threads);
+  const strategies::PluginRescue rescue;  // before a plug-in can fail
   std::vector<std::jthread> pool;
   for (unsigned t = 0; t < std::min<std::size_t>(threads, count); ++t) pool.emplace_back(work);
 
@@ -114,7 +115,6 @@ RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
     ~NoMore() { next = count; }
   };
   const NoMore no_more{next, count};
-  const strategies::PluginRescue rescue;
   for (std::size_t i = 0; i < count;) {
     if (!done[i]) {
       if (strategies::PluginRescue::is_wanted()) keep_others(control, outputs, done, failures, i);
