@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstddef>
-#include <cstring>
 #include <exception>
 #include <string_view>
 #include <utility>
@@ -13,6 +11,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "strategies/axis_displacement.h"
+#include "strategies/c_declaration.h"
 #include "strategies/c_program.h"
 #include "strategies/plugin_child.h"
 #include "strategies/plugin_watch.h"
@@ -34,6 +33,7 @@ servomill_reading reading_of(const Reading& now) {
   copy(now.dQ_ref, out.dQ_ref);
   copy(now.ddQ_ref, out.ddQ_ref);
   copy(now.Q_fb, out.Q_fb);
+  copy(now.Q_cmd, out.Q_cmd);
   return out;
 }
 
@@ -150,16 +150,54 @@ struct CFeedback {
   }
 };
 
+// Calls for one run. What they throw, and values that are not finite, are the end of the run.
+class GuardedCalls {
+ public:
+  explicit GuardedCalls(std::shared_ptr<const Made> made) : made_(std::move(made)) {}
+
+  std::string_view failure() const { return failure_; }
+  void* state(double period) { return state_.of(made_, period); }
+
+  template <class Function>
+  Joints value(Function function, void* state, const servomill_reading& reading) const {
+    Joints out = Joints::Zero();
+    const PluginCall call(made_->label);
+    throw_if_refused(function(state, &reading, out.data()));
+    return out;
+  }
+
+  /// @param is_found  false: the value is not finite
+  template <class Find>
+  void find(const char* function, Find is_found) {
+    if (!failure_.empty()) return;
+    const auto fail = [&](std::string_view why) {
+      failure_ = fmt::format("strategy {}: {}{}", made_->declared->name, function, why);
+    };
+    try {
+      if (!is_found()) fail(" returned what is not finite");
+    } catch (const std::exception& error) {
+      fail(std::string(": ") + error.what());
+    } catch (...) {
+      fail(": an exception of unknown type");
+    }
+  }
+
+ private:
+  std::shared_ptr<const Made> made_;
+  CState state_;
+  std::string failure_;
+};
+
 class COffset final : public SetpointPart {
  public:
-  explicit COffset(std::shared_ptr<const Made> made) : made_(std::move(made)) {}
+  explicit COffset(std::shared_ptr<const Made> made) : made_(std::move(made)), calls_(made_) {}
 
   SetpointEntry entry() const override { return {}; }
-  std::string_view failure() const override { return failure_; }
+  std::string_view failure() const override { return calls_.failure(); }
 
   Joints offset(const Joints& Q_ref) const override {
     Reading now;
-    now.Q_ref = now.Q_fb = Q_ref;
+    now.Q_ref = now.Q_fb = now.Q_cmd = Q_ref;
     find([&](void* state) {
       const servomill_reading reading = reading_of(now);
       settled(*made_, state, reading);
@@ -173,36 +211,49 @@ class COffset final : public SetpointPart {
   }
 
  private:
-  Joints found(void* state, const servomill_reading& reading) const {
-    Joints out = Joints::Zero();
-    const PluginCall call(made_->label);
-    throw_if_refused(made_->declared->offset(state, &reading, out.data()));
-    return out;
-  }
   template <class Find>
   void find(Find find_it) const {
-    if (!failure_.empty()) return;
-    try {
-      const Joints out = find_it(state_.of(made_, 0.0));
-      if (out.allFinite()) {
-        offset_ = out;
-      } else {
-        failure_ =
-            fmt::format("strategy {}: offset returned what is not finite", made_->declared->name);
-      }
-    } catch (const std::exception& error) {
-      failure_ = fmt::format("strategy {}: offset: {}", made_->declared->name, error.what());
-    } catch (...) {
-      failure_ =
-          fmt::format("strategy {}: offset: an exception of unknown type", made_->declared->name);
-    }
+    calls_.find("offset", [&] {
+      const Joints out = find_it(calls_.state(0.0));
+      if (out.allFinite()) offset_ = out;
+      return out.allFinite();
+    });
+  }
+  Joints found(void* state, const servomill_reading& reading) const {
+    return calls_.value(made_->declared->offset, state, reading);
   }
 
   std::shared_ptr<const Made> made_;
   // settling begins a run anew, and is const in SetpointPart
-  mutable CState state_;
+  mutable GuardedCalls calls_;
   mutable Joints offset_ = Joints::Zero();
-  mutable std::string failure_;
+};
+
+class CPositionLoop final : public PositionLoopPart {
+ public:
+  CPositionLoop(std::shared_ptr<const Made> made, double period)
+      : made_(std::move(made)), calls_(made_), period_(period) {}
+
+  void settle(const Reading& now) override {
+    calls_.find("settle", [&] {
+      settled(*made_, calls_.state(period_), reading_of(now));
+      return true;
+    });
+  }
+  Joints velocity(const Reading& now) override {
+    Joints out = Joints::Zero();
+    calls_.find("position_loop", [&] {
+      out = calls_.value(made_->declared->position_loop, calls_.state(period_), reading_of(now));
+      return out.allFinite();
+    });
+    return out;
+  }
+  std::string_view failure() const override { return calls_.failure(); }
+
+ private:
+  std::shared_ptr<const Made> made_;
+  GuardedCalls calls_;
+  double period_;  // s
 };
 
 // Blocks that `rewrite` makes of a program.
@@ -242,6 +293,10 @@ class CStrategy final : public Strategy {
     if (made_->declared->offset == nullptr) return nullptr;
     return std::make_unique<COffset>(made_);
   }
+  std::unique_ptr<PositionLoopPart> position_loop(double period) const override {
+    if (made_->declared->position_loop == nullptr) return nullptr;
+    return std::make_unique<CPositionLoop>(made_, period);
+  }
   bool rewrites() const override { return made_->declared->rewrite != nullptr; }
   std::vector<Move> rewrite(const std::vector<Move>& moves) const override;
   bool displaces_feedback() const override { return made_->declared->displacement != nullptr; }
@@ -279,74 +334,7 @@ std::vector<Move> CStrategy::rewrite(const std::vector<Move>& moves) const {
   throw PluginFailed(fmt::format("strategy {}: rewrite: {}", made_->declared->name, wrong));
 }
 
-bool is_name(std::string_view name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
-    return ('a' <= c && c <= 'z') || ('0' <= c && c <= '9') || c == '_';
-  });
-}
-
-bool is_number(std::string_view text) {
-  try {
-    std::size_t end = 0;
-    std::stod(std::string(text), &end);
-    return end == text.size();
-  } catch (const std::exception&) {
-    return false;
-  }
-}
-
-// Bytes of the struct as the first headers of this ABI version had it; what follows was appended.
-constexpr std::size_t kFirstSize = offsetof(servomill_strategy, rewrite);
-constexpr std::size_t kMostSize = 1024;
-
-// A struct of a library that was built with other headers: as far as both know it.
-servomill_strategy completed(const servomill_strategy& declared) {
-  servomill_strategy out{};
-  std::memcpy(&out, &declared, std::min(declared.size, sizeof out));
-  return out;
-}
-
-bool has_unknown_parts(const servomill_strategy& declared) {
-  const char* const bytes = reinterpret_cast<const char*>(&declared);
-  return declared.size > sizeof declared &&
-         std::any_of(bytes + sizeof declared, bytes + declared.size, [](char c) { return c != 0; });
-}
-
-std::string wrong_with(const servomill_parameter* one) {
-  if (one == nullptr || one->size < sizeof(servomill_parameter)) return "is not declared";
-  if (one->name == nullptr || *one->name == '\0') return "has no name";
-  if (!text(one->default_text).empty() && !is_number(text(one->default_text))) {
-    return fmt::format("has the default '{}', which is no number", one->default_text);
-  }
-  if (!(one->min <= one->max)) return "has a minimum above its maximum";
-  return "";
-}
-
 }  // namespace
-
-std::string wrong_with(const servomill_strategy& declared) {
-  if (declared.size < kFirstSize || declared.size > kMostSize) {
-    return fmt::format("its struct has {} bytes, expected {} to {}", declared.size, kFirstSize,
-                       kMostSize);
-  }
-  if (has_unknown_parts(declared)) {
-    return "has functions that this program does not know: it was built for a later one";
-  }
-  const servomill_strategy full = completed(declared);
-  if (!is_name(text(declared.name))) {
-    return fmt::format("'{}' is no name: lower case, digits and '_'", text(declared.name));
-  }
-  if (declared.create == nullptr) return "lacks the function create";
-  if (full.displacement == nullptr && full.offset == nullptr && full.rewrite == nullptr) {
-    return "has none of the functions displacement, offset and rewrite";
-  }
-  for (std::size_t n = 0; n < declared.parameter_count; ++n) {
-    if (const std::string wrong = wrong_with(declared.parameters[n]); !wrong.empty()) {
-      return fmt::format("parameter {} {}", n, wrong);
-    }
-  }
-  return "";
-}
 
 std::unique_ptr<OwnedEntry> entry_of(const servomill_strategy& declared, const std::string& file) {
   auto out = std::make_unique<OwnedEntry>();

@@ -18,12 +18,9 @@ struct OwnedEntry {
   Entry entry;
 };
 
-/// Why a strategy cannot be used as it is declared; empty if it can.
-std::string wrong_with(const servomill_strategy& declared);
-
 /// @param file  of the plug-in
-/// @pre wrong_with(declared) is empty; what it points to outlives the entry, as does the entry all
-/// runs
+/// @pre wrong_with(declared) is empty (strategies/c_declaration.h); what it points to outlives the
+/// entry, as does the entry all runs
 std::unique_ptr<OwnedEntry> entry_of(const servomill_strategy& declared, const std::string& file);
 
 }  // namespace servomill::strategies

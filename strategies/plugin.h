@@ -6,6 +6,7 @@
 ///       void settle(const servomill_reading&);                  // may be left out
 ///       servomill::plugin::Joints displacement(const servomill_reading&);   // one of these two,
 ///       servomill::plugin::Joints offset(const servomill_reading&);         // or several
+///       servomill::plugin::Joints position_loop(const servomill_reading&);
 ///       void rewrite(servomill::plugin::Program&);
 ///     };
 ///     constexpr auto kRamp = servomill::plugin::strategy<Ramp>("ramp", "displaces Y over X");
@@ -106,6 +107,9 @@ struct Functions {
   static const char* offset(void* state, const servomill_reading* now, double* out) {
     return guarded([&] { write(static_cast<Run*>(state)->offset(*now), out); });
   }
+  static const char* position_loop(void* state, const servomill_reading* now, double* velocity) {
+    return guarded([&] { write(static_cast<Run*>(state)->position_loop(*now), velocity); });
+  }
   static const char* rewrite(void* state, const servomill_program* given) {
     return guarded([&] {
       Program program(*given);
@@ -135,6 +139,9 @@ constexpr servomill_strategy strategy(const char* name, const char* summary) {
   }
   if constexpr (requires(Run run, servomill_reading now) { run.offset(now); }) {
     out.offset = Functions<Run>::offset;
+  }
+  if constexpr (requires(Run run, servomill_reading now) { run.position_loop(now); }) {
+    out.position_loop = Functions<Run>::position_loop;
   }
   if constexpr (requires(Run run, Program program) { run.rewrite(program); }) {
     out.rewrite = Functions<Run>::rewrite;

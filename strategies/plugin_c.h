@@ -28,9 +28,10 @@ typedef struct servomill_reading {
   double Q_ref[SERVOMILL_JOINTS];   /* as the NC interpolated it last */
   double dQ_ref[SERVOMILL_JOINTS];  /* per s */
   double ddQ_ref[SERVOMILL_JOINTS]; /* per s^2 */
-  double Q_fb[SERVOMILL_JOINTS];    /* `displacement`: the scales; `offset`: what the loops read */
+  double Q_fb[SERVOMILL_JOINTS];    /* `displacement`: the scales; else what the loops read */
   const double* sensors;            /* further readings; none so far */
   size_t sensor_count;
+  double Q_cmd[SERVOMILL_JOINTS]; /* what the position loops followed last, with all offsets */
 } servomill_reading;
 
 /* A key of [[case.strategy]]. */
@@ -123,6 +124,11 @@ typedef struct servomill_strategy {
   /* Rewrites the program before the run, by a state of its own, whose setup has the period 0. Or
    * NULL. X, Y and Z of a motion of rotary axes alone stay where the block before has ended. */
   const char* (*rewrite)(void* state, const servomill_program* program);
+  /* Adds to the velocity commands (m/s, rad/s) in the position loops, once per position period,
+   * with Q_cmd and Q_fb of this one: v_cmd = Kv (Q_cmd - Q_fb) + kvf dQ_ref + velocity. Or NULL.
+   * Ten times the v_max of an axis ends the case. */
+  const char* (*position_loop)(void* state, const servomill_reading* reading,
+                               double velocity[SERVOMILL_JOINTS]);
 } servomill_strategy;
 
 typedef struct servomill_plugin_c {

@@ -11,6 +11,7 @@
 
 #include "plant/vocabulary/checksum.h"
 #include "plant/vocabulary/user_file.h"
+#include "strategies/c_declaration.h"
 #include "strategies/c_strategy.h"
 #include "strategies/plugin_watch.h"
 #include "strategies/registry.h"

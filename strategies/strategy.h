@@ -44,6 +44,8 @@ struct Reading {
   Joints ddQ_ref = Joints::Zero();  // per s^2
   Joints Q_fb = Joints::Zero();     // m, rad; of a feedback strategy the scales, without its own
                                     // displacement; of others what the position loops read last
+  Joints Q_cmd = Joints::Zero();    // m, rad; what the position loops followed last, the offsets of
+                                    // all strategies in it
 };
 
 /// Offset of the setpoints, added in the NC where `entry` says.
@@ -56,6 +58,24 @@ class SetpointPart {
   virtual Joints offset(const Joints& Q_ref) const = 0;
   /// The same in a run, once per position period, with a state of its own if it has one.
   virtual Joints advance(const Reading& now) { return offset(now.Q_ref); }
+  /// Why it cannot go on, which ends the case; empty while it can.
+  virtual std::string_view failure() const { return {}; }
+};
+
+/// Addition to the velocity commands in the position loops,
+///
+///     v_cmd = Kv (Q_cmd - Q_fb) + kvf dQ_ref + velocity(),   limited to +-v_max
+///
+/// Ideal axes have no such loop: there it does nothing.
+class PositionLoopPart {
+ public:
+  virtual ~PositionLoopPart() = default;
+  /// Has stood for long where `now` says: begins anew.
+  virtual void settle(const Reading& now) = 0;
+  /// Once per position period, with Q_cmd and Q_fb of this one.
+  /// @return for all joints (5; m/s, rad/s). What is not finite, or beyond ten times the v_max
+  ///         of an axis, ends the case
+  virtual Joints velocity(const Reading& now) = 0;
   /// Why it cannot go on, which ends the case; empty while it can.
   virtual std::string_view failure() const { return {}; }
 };
@@ -128,7 +148,7 @@ struct BeyondTable {
   double end = 0.0;  // m, its first or last point
 };
 
-/// Up to three parts, each optional. A strategy is constant and may be shared by runs; the parts
+/// Up to four parts, each optional. A strategy is constant and may be shared by runs; the parts
 /// that it makes have the state of one run.
 class Strategy {
  public:
@@ -141,6 +161,11 @@ class Strategy {
   virtual bool rewrites_tip_moves() const { return false; }
 
   virtual std::unique_ptr<SetpointPart> setpoint() const { return nullptr; }
+  /// @param position_period  s, time between two calls of PositionLoopPart::velocity
+  virtual std::unique_ptr<PositionLoopPart> position_loop(double position_period) const {
+    (void)position_period;
+    return nullptr;
+  }
   /// The ends of tables beyond which Q (5; m, rad) lies: they hold their last value there.
   virtual std::vector<BeyondTable> beyond_tables(const Joints& Q) const {
     (void)Q;

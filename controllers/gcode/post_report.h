@@ -8,7 +8,6 @@
 
 #include "controllers/gcode/cl_data.h"
 #include "controllers/path/feed_reduction.h"
-#include "plant/vocabulary/input_error.h"
 
 namespace servomill::controllers {
 

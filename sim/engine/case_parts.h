@@ -21,6 +21,11 @@ Outcome interrupted(double time);
 /// Outcome of a case whose strategy cannot go on.
 Outcome failed(std::string_view why, double time, int line);
 
+/// Why a strategy cannot add these velocities (5; m/s, rad/s): one is not finite, or beyond ten
+/// times the v_max of its axis; empty if it can.
+std::string why_implausible(const PositionLoopTerm& term, const Joints& velocity,
+                            const MachineSettings& machine);
+
 /// Outcome of a case whose strategy has failed before it began.
 Outcome stopped_at_begin(const std::string& why);
 

@@ -42,9 +42,23 @@ bool CaseRun::command_axes(Tick n) {
   if (cut_) apply_cutting_force(n);
   std::string_view failure = setpoint_.failure();
   if (failure.empty() && in_.feedback) failure = feedback_.failure(run_);
-  if (!failure.empty())
-    result_.outcome = failed(failure, t, in_.path.line(in_.pieces[reference.move]));
-  return result_.outcome.finished;
+  return failure.empty() || stop_with(failure, t);
+}
+
+bool CaseRun::add_velocity(Tick n) {
+  if (!adds_velocity() || !result_.outcome.finished) return result_.outcome.finished;
+  const double t = nc_.periods.seconds(n);
+  const strategies::Reading now = reading_at(t);
+  Joints sum = Joints::Zero();
+  for (const PositionLoopTerm& term : in_.position_loop_terms) {
+    const Joints velocity = term.part->velocity(now);
+    if (const auto failure = term.part->failure(); !failure.empty()) return stop_with(failure, t);
+    const std::string why = why_implausible(term, velocity, in_.machine);
+    if (!why.empty()) return stop_with(why, t);
+    sum += velocity;
+  }
+  axes_.add_velocity(sum, run_);
+  return true;
 }
 
 bool CaseRun::supervise(Tick n) {
@@ -83,6 +97,17 @@ void CaseRun::record(Tick n) {
 
 void CaseRun::interrupt(Tick n) { result_.outcome = interrupted(nc_.periods.seconds(n)); }
 
+// Reading of a position period, for strategies.
+strategies::Reading CaseRun::reading_at(double t) {
+  return {t, reference_.at(t).s, set_.Q_ref, set_.dQ_ff, set_.ddQ_ff, axes_.Q_fb(run_), set_.Q_cmd};
+}
+
+bool CaseRun::stop_with(std::string_view why, double t) {
+  const int line = in_.path.line(in_.pieces[reference_.at(t).move]);
+  result_.outcome = failed(why, t, line);
+  return false;
+}
+
 CaseResult CaseRun::finish(Tick n) {
   if (in_.feedback) result_.saturations = feedback_.drop(run_);
   axes_.end(run_);
@@ -107,6 +132,7 @@ void CaseRun::initialise_at_rest() {
     rest = at_standstill(set_.Q_cmd, [&](const Joints& Q) { return feedback_.settle(run_, Q); });
   }
   axes_.settle(rest.Q, rest.d, run_);
+  for (const PositionLoopTerm& term : in_.position_loop_terms) term.part->settle(reading_at(0.0));
   if (in_.cutting != nullptr) cut_.emplace(in_).start(recorded_.at(0.0));
   travel_ = {in_.machine_errors, axes_.Q_true(run_)};
 }

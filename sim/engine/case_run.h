@@ -27,6 +27,10 @@ class CaseRun {
   /// Interpolates the setpoint of this position period and commands the axes. False if a strategy
   /// cannot go on.
   bool command_axes(Tick n);
+  bool adds_velocity() const { return !in_.position_loop_terms.empty(); }
+  /// Adds to the velocity commands of this position period what strategies compute. False if one
+  /// cannot go on.
+  bool add_velocity(Tick n);
   /// False if the machine stops: an axis is beyond one of its limits.
   bool supervise(Tick n);
   void record(Tick n);
@@ -41,6 +45,8 @@ class CaseRun {
  private:
   void apply_cutting_force(Tick n);
   void initialise_at_rest();
+  strategies::Reading reading_at(double t);
+  bool stop_with(std::string_view why, double t);
 
   CaseInputs& in_;
   const NcSettings& nc_;

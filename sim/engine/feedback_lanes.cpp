@@ -41,6 +41,7 @@ void FeedbackLanes::set_reference(std::size_t run, const AxisSetpoint& set, doub
   reading.Q_ref = set.Q_ref;
   reading.dQ_ref = set.dQ_ff;
   reading.ddQ_ref = set.ddQ_ff;
+  reading.Q_cmd = set.Q_cmd;
 }
 
 Joints FeedbackLanes::settle(std::size_t run, const Joints& Q_meas) {

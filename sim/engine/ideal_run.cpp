@@ -38,7 +38,7 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
     const double t = periods_.seconds(n);
     const auto sample = in_.reference.at(t, cursor_);
     set = setpoint_.advance(sample, t, set.Q_cmd);
-    now_ = {t, sample.s, set.Q_ref, set.dQ_ff, set.ddQ_ff};
+    now_ = {t, sample.s, set.Q_ref, set.dQ_ff, set.ddQ_ff, Joints::Zero(), set.Q_cmd};
     if (!goes_on(in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
     if (cut_) cut_->advance(reference_at(n));
     const bool is_recorded = n % in_.record_period == 0;

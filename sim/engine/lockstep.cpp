@@ -32,6 +32,7 @@ Lockstep::Lockstep(std::span<CaseInputs* const> together, plant::PreparedDrives*
         std::make_unique<CaseRun>(in, axes_, feedbacks_[run / kLaneWidth], run, references_));
     longest_ = std::max(longest_, runs_.back()->end());
     any_remembers_travel_ |= runs_.back()->remembers_travel();
+    any_adds_velocity_ |= runs_.back()->adds_velocity();
   }
 }
 
@@ -63,6 +64,8 @@ void Lockstep::tick(std::uint8_t due, Tick n) {
   }
   if (due & kPositionLoop) {  // interpolator, setpoint corrections, position loop
     command_axes(n);
+    axes_.compensate_backlash();
+    add_velocities(n);  // of strategies, to the velocity commands
     axes_.close_position_loops();
     if (!axes_.within_limits()) stop_faulty_axes(n);
   }
@@ -85,6 +88,13 @@ void Lockstep::apply_virtual_displacements() {
 void Lockstep::command_axes(Tick n) {
   each([&](CaseRun& run) {
     if (!run.command_axes(n)) next_end_ = n;
+  });
+}
+
+void Lockstep::add_velocities(Tick n) {
+  if (!any_adds_velocity_) return;
+  each([&](CaseRun& run) {
+    if (!run.add_velocity(n)) next_end_ = n;
   });
 }
 

@@ -34,6 +34,7 @@ class Lockstep {
   void evaluate_error_models();
   void apply_virtual_displacements();
   void command_axes(Tick n);
+  void add_velocities(Tick n);
   void stop_faulty_axes(Tick n);
   void track_axis_reversals();
   void record(Tick n);
@@ -52,6 +53,7 @@ class Lockstep {
   std::vector<std::unique_ptr<CaseRun>> runs_;
   std::vector<FeedbackLanes> feedbacks_;  // of eight runs each
   bool any_remembers_travel_ = false;
+  bool any_adds_velocity_ = false;
   Tick longest_ = 0;
   Tick next_end_ = 0;  // no run ends before it
 };

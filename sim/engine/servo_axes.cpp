@@ -298,7 +298,7 @@ void ServoAxes::sample_position_feedback() {
   }
 }
 
-void ServoAxes::close_position_loops() {
+void ServoAxes::compensate_backlash() {
   for (const std::size_t l : with_backlash_) {
     const AxisFunctions& functions =
         machine_of(l).nc.functions[static_cast<std::size_t>(axes_[l].joint)];
@@ -309,9 +309,19 @@ void ServoAxes::close_position_loops() {
     if (functions.position_feedback.kind == controllers::PositionFeedback::motor) {
       at(&ServoBlock::Q_fb, l) -= ramp.offset;
     } else {
-      at(&ServoBlock::v_add, l) = ramp.rate;
+      functions_[l].backlash_velocity = at(&ServoBlock::v_add, l) = ramp.rate;
     }
   }
+}
+
+void ServoAxes::add_velocity(const Joints& velocity, std::size_t run) {
+  for (const int j : joints_) {
+    const std::size_t l = lane(run, j);
+    at(&ServoBlock::v_add, l) = functions_[l].backlash_velocity + velocity[j];
+  }
+}
+
+void ServoAxes::close_position_loops() {
   beyond_limits_ = kernel_.position_loops(servos_.data(), state_.blocks.data(), blocks_);
 }
 

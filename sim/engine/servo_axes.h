@@ -68,6 +68,9 @@ class ServoAxes {
                 std::size_t first = 0);
   /// Sets the setpoints that the position loops follow, from now on.
   void follow(const AxisSetpoint& set, std::size_t run = 0);
+  /// Sets what is added to the velocity commands (5; m/s, rad/s), from now on; to be called in each
+  /// position period once it was called.
+  void add_velocity(const Joints& velocity, std::size_t run = 0);
   /// Sets what is added to a joint, from now on.
   void inject(int joint, const Injection& injection, std::size_t run = 0);
   /// External forces on the slides from now on (5; N, N m), towards +, in place of an injected one.
@@ -79,7 +82,8 @@ class ServoAxes {
   void read_scales();
   /// kFeedbackSample: the reading that the next position period will use.
   void sample_position_feedback();
-  /// kPositionLoop
+  /// kPositionLoop, in this order. Between the two, add_velocity may be called.
+  void compensate_backlash();
   void close_position_loops();
   /// kCurrentLoop
   void latch_current_commands();
@@ -151,6 +155,7 @@ class ServoAxes {
   struct Functions {
     controllers::FrictionCompensationState friction;
     controllers::BacklashCompensationState backlash;
+    double backlash_velocity = 0.0;  // m/s or rad/s, that it adds in this position period
     controllers::SupervisionState supervision;
     std::optional<plant::MarkMonitor> marks;
     std::optional<plant::MarkFault> mark_fault;

@@ -56,6 +56,7 @@ const AxisSetpoint& Setpoint::settle() {
 
 const AxisSetpoint& Setpoint::advance(const controllers::Trajectory::Sample& sample, double t,
                                       const Joints& Q_fb) {
+  const Joints followed = out_.Q_cmd;
   out_ = {sample.Q_ref, sample.Q_ref, sample.dQ_ref, sample.ddQ_ref};
   if (filters_) {
     out_.Q_ref = filters_->Q(sample.Q_ref);
@@ -66,7 +67,7 @@ const AxisSetpoint& Setpoint::advance(const controllers::Trajectory::Sample& sam
   if (corrections_.empty()) return out_;
 
   Offsets offsets =
-      corrections_at({t, sample.s, sample.Q_ref, sample.dQ_ref, sample.ddQ_ref, Q_fb});
+      corrections_at({t, sample.s, sample.Q_ref, sample.dQ_ref, sample.ddQ_ref, Q_fb, followed});
   if (filters_) {
     offsets.before_filter = filters_->offset(offsets.before_filter);
   }

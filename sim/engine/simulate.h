@@ -22,6 +22,12 @@
 
 namespace servomill::sim {
 
+/// Part of a strategy in the position loops of one run.
+struct PositionLoopTerm {
+  std::string strategy;  // its name, for messages
+  std::unique_ptr<strategies::PositionLoopPart> part;
+};
+
 /// Inputs of one case. References are shared with other cases; parts belong to this run.
 struct CaseInputs {
   const MachineSettings& machine;
@@ -34,6 +40,7 @@ struct CaseInputs {
   FeedbackHardware hardware;
   std::vector<std::unique_ptr<strategies::SetpointPart>> setpoints;
   const strategies::Strategy* feedback = nullptr;  // the one that displaces it, if any
+  std::vector<PositionLoopTerm> position_loop_terms = {};
   Tick record_period = 100;
   double settle_time = 0.1;  // s, recorded after the program's end
   RecordFormat format = {};

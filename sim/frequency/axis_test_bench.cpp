@@ -77,6 +77,7 @@ void AxisTestBench::run_loops(std::uint8_t due, const StandInput& in) {
     set_.dQ_ff[joint_] = in.dq;
     set_.ddQ_ff[joint_] = in.ddq;
     axes_.follow(set_);
+    axes_.compensate_backlash();
     axes_.close_position_loops();
   }
   if (due & kCurrentLoop) axes_.latch_current_commands();

@@ -46,7 +46,10 @@ double spectral_radius(const MachineSettings& machine, int joint, Tick reading_d
     axes.each_state(joint, [&](double& x) { x = k++ == column ? 1.0 : 0.0; });
     for (const Instant& instant : schedule) {
       if (instant.due & kFeedbackSample) axes.sample_position_feedback();
-      if (instant.due & kPositionLoop) axes.close_position_loops();
+      if (instant.due & kPositionLoop) {
+        axes.compensate_backlash();
+        axes.close_position_loops();
+      }
       if (instant.due & kCurrentLoop) axes.latch_current_commands();
       if (instant.due & kVelocityLoop) axes.close_velocity_loops();
       axes.advance(instant.step);

@@ -112,6 +112,7 @@ CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const {
                     hardware,
                     {},
                     nullptr,
+                    {},
                     p.scenario.record_period,
                     p.scenario.settle_time,
                     p.scenario.record.format,
@@ -125,8 +126,14 @@ CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const {
   }
   inputs.stops_with = p.stops_with;
   if (!p.stops_with.empty()) return inputs;
-  for (const auto& strategy : p.strategies) {
+  const LoopPeriods& periods = p.machine().nc.periods;
+  for (std::size_t k = 0; k < p.strategies.size(); ++k) {
+    const auto& strategy = p.strategies[k];
     if (auto part = strategy->setpoint()) inputs.setpoints.push_back(std::move(part));
+    if (auto part = strategy->position_loop(periods.seconds(periods.position))) {
+      inputs.position_loop_terms.push_back(
+          {std::string(p.spec.strategies[k].entry->name), std::move(part)});
+    }
     if (strategy->displaces_feedback()) inputs.feedback = strategy.get();
     if (strategy->rewrites()) inputs.program_displaces_rotary |= strategy->displaces_rotary();
     if (p.scenario.record.uncorrectable && strategy->uncorrectable(p.machine_start)) {

@@ -93,6 +93,7 @@ CaseResult IsolatedCase::stopped(std::string why) const {
   CaseInputs inputs = prepared_.inputs(scratch_folder_);
   inputs.setpoints.clear();
   inputs.feedback = nullptr;
+  inputs.position_loop_terms.clear();
   inputs.stops_with = std::move(why);
   return sim::simulate(inputs, kNever, progress);
 }

@@ -26,7 +26,7 @@ SLOPE = 5000.0  # um/m
 # Of tests/cli/plugins/wrong.cpp.
 WHERE = ("create", "settle", "step", "destroy")
 HOW = ("throws", "throws_number", "returns_text", "nan", "segmentation_fault", "abort", "overflow", "exit", "quick_exit",
-       "ends_at_once", "loops")
+       "ends_at_once", "loops", "absurd")
 SAID = {"throws": "thrown on purpose", "throws_number": "an exception of unknown type",
         "returns_text": "returned on purpose"}  # the case ends
 FAILED = {"segmentation_fault": "crashed (signal 11)", "abort": "crashed (signal 6)", "overflow": "crashed (signal 11)",
@@ -69,6 +69,9 @@ def is_running(process):
     except FileNotFoundError:
         return False
 LOOPING = {("wrong_offset", where) for where in WHERE} | {("wrong_rewrite", "step")}  # 10 s each
+
+
+PARTS = ("wrong_displacement", "wrong_offset", "wrong_position_loop")  # of a run
 
 
 class Plugins(unittest.TestCase):
@@ -128,6 +131,18 @@ class Plugins(unittest.TestCase):
             self.assertEqual(*texts)
             for signal, data in tree["servo"].items():
                 self.assertEqual(data[:].tobytes(), plugin["servo/" + signal][:].tobytes(), signal)
+
+    def test_a_proportional_term_in_the_position_loop_is_a_larger_gain(self):
+        """In lag mode, and with powers of two, for which there is no rounding: the same bits."""
+        lag = "\nvelocity_feed_forward = 0.0\nacceleration_feed_forward = 0.0\n"
+        signals = {}
+        for name, kind, keys, gain in (("term", "larger_gain", "gain = 32", 32), ("gain", "none", "", 64)):
+            self.write(scenario_text(("one", kind, keys)).replace('Kv = "60 1/s"\n', f'Kv = "{gain} 1/s"' + lag))
+            self.servomill("run", "s.toml", "-o", name + ".h5", "--plugin", library("gain"))
+            with self.open(name + ".h5") as file:
+                signals[name] = {signal: data[:].tobytes() for signal, data in file["cases/one/servo"].items()}
+                self.assertGreater(np.abs(file["cases/one/servo/following_error_linear"][:]).max(), 0.3)  # mm
+        self.assertEqual(signals["term"], signals["gain"])
 
     def test_the_scenario_can_name_it(self):
         by_option = self.run_ramp("option.h5", "--plugin", library("ramp"))
@@ -244,27 +259,27 @@ class Plugins(unittest.TestCase):
         self.servomill("compare", "out.h5", "--plugin", library("wrong"))
 
     def test_what_is_thrown_or_not_finite_ends_its_case(self):
-        kinds = [(name, where, how) for name in ("wrong_displacement", "wrong_offset")
-                 for where in ("create", "settle", "step") for how in SAID]
+        kinds = [(name, where, how) for name in PARTS for where in ("create", "settle", "step") for how in SAID]
         kinds += [("wrong_rewrite", where, how) for where in ("create", "step") for how in SAID]
-        kinds += [(name, "step", "nan") for name in ("wrong_displacement", "wrong_offset", "wrong_rewrite")]
+        kinds += [(name, "step", "nan") for name in (*PARTS, "wrong_rewrite")] + [("wrong_position_loop", "step", "absurd")]
         reasons = {}
         for options in ((), ("--isolate",)):
             cases, done = self.run_wrong(kinds, *options, status=1)
             for case, (name, where, how) in zip(cases, kinds):
                 function = name.removeprefix("wrong_")
-                if function == "displacement" and where != "step":
+                if function in ("displacement", "position_loop") and where != "step":
                     function = "settle"
-                said = " returned what is not finite" if how == "nan" else ": " + SAID[how]
+                said = {"nan": " returned what is not finite", "absurd": " adds -1e+12 m/s to axis Y, beyond 10 times its v_max",
+                        **{one: ": " + text for one, text in SAID.items()}}[how]
                 if function == "rewrite":
                     said = ": block 2 (line 8) ends at Y = nan, which is not finite" if how == "nan" else said
                     reasons[case] = re.escape(f"strategy {name}: rewrite{said}") + "$"
                     continue
-                reasons[case] = rf"strategy {name}: {function}{said} at 0\.\d{{4}} s, line \d of the program"
+                reasons[case] = re.escape(f"strategy {name}: {function}{said}") + r" at 0\.\d{4} s, line \d of the program"
             self.check_stopped(done, reasons)
 
     def test_one_that_ends_the_process_ends_the_command_with_status_3(self):
-        for name in ("wrong_displacement", "wrong_offset"):
+        for name in PARTS:
             for where, how in (("create", "segmentation_fault"), ("settle", "exit"), ("step", "abort"), ("step", "exit"),
                                ("step", "quick_exit"), ("step", "overflow"), ("destroy", "abort"), ("destroy", "throws")):
                 _, done = self.run_wrong([(name, where, how)], "-j", "1", status=3)
@@ -290,7 +305,7 @@ class Plugins(unittest.TestCase):
                                                     "rewrite: returned on purpose")
 
     def test_isolated_it_ends_only_its_case(self):
-        kinds = [(name, where, how) for name in ("wrong_displacement", "wrong_offset", "wrong_rewrite")
+        kinds = [(name, where, how) for name in (*PARTS, "wrong_rewrite")
                  for where in WHERE for how in FAILED
                  if (how != "loops" or (name, where) in LOOPING) and (name, where) != ("wrong_rewrite", "settle")]
         cases, done = self.run_wrong(kinds, "--isolate", "-j", "8", status=1)

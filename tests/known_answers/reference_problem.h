@@ -219,6 +219,7 @@ class Problem {
       for (std::size_t run = 0; run < axes_.runs(); ++run) axes_.follow(set_, run);
       for (sim::FeedbackLanes& feedback : feedbacks_) feedback.apply_virtual_displacements();
       axes_.sample_position_feedback();
+      axes_.compensate_backlash();
       axes_.close_position_loops();
     }
     if (due & sim::kVelocityLoop) axes_.close_velocity_loops();

@@ -24,6 +24,7 @@ enum How {
   kQuickExit,
   kEndAtOnce,
   kLoop,
+  kAbsurd,
 };
 
 struct Run {
@@ -95,6 +96,7 @@ const char* step(void* state, const servomill_reading* now, double out[SERVOMILL
   out[1] = 1e-6;
   if (run.where != kStep || now->Q_ref[0] < 5e-3) return nullptr;
   if (run.how == kNan) out[1] = std::numeric_limits<double>::quiet_NaN();
+  if (run.how == kAbsurd) out[1] = -1e12;
   return go_wrong(run.how);
 }
 
@@ -119,7 +121,7 @@ const char* rewrite(void* state, const servomill_program* program) {
 constexpr servomill_parameter kWhere = {
     sizeof(servomill_parameter), "where", "function that goes wrong", "", "0", 0.0, kDestroy};
 constexpr servomill_parameter kHow = {
-    sizeof(servomill_parameter), "how", "manner in which it does", "", "0", 0.0, kLoop};
+    sizeof(servomill_parameter), "how", "manner in which it does", "", "0", 0.0, kAbsurd};
 const servomill_parameter* const kParameters[] = {&kWhere, &kHow};
 
 constexpr servomill_strategy strategy(const char* name) {
@@ -150,11 +152,17 @@ constexpr servomill_strategy rewriting() {
   return out;
 }
 
+constexpr servomill_strategy in_position_loop() {
+  servomill_strategy out = strategy("wrong_position_loop");
+  out.position_loop = step;
+  return out;
+}
+
 constexpr servomill_strategy kDisplacing = displacing(), kOffsetting = offsetting(),
-                             kRewriting = rewriting();
-const servomill_strategy* const kStrategies[] = {&kDisplacing, &kOffsetting, &kRewriting};
+                             kRewriting = rewriting(), kInLoop = in_position_loop();
+const servomill_strategy* const kStrategies[] = {&kDisplacing, &kOffsetting, &kRewriting, &kInLoop};
 constexpr servomill_plugin_c kPlugin = {
-    SERVOMILL_PLUGIN_ABI, 0, sizeof(servomill_plugin_c), "wrong", "0", kStrategies, 3};
+    SERVOMILL_PLUGIN_ABI, 0, sizeof(servomill_plugin_c), "wrong", "0", kStrategies, 4};
 
 }  // namespace
 

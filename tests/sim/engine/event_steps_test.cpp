@@ -61,7 +61,7 @@ struct FiveAxisCase {
   CaseInputs inputs() {
     CaseInputs out = {
         machine, identified.model, nullptr, trajectory, path, tips, ServoModel::cascade, hardware,
-        {},      strategy.get(),   100,     0.02};
+        {},      strategy.get(),   {},      100,        0.02};
     out.pieces = path.pieces_of(moves);
     return out;
   }
