@@ -4,9 +4,14 @@
  * All lengths are in m, angles in rad, times in s. Joints are X, Y, Z and the (at most two) rotary
  * axes in alphabetical order; the place of an axis that the machine lacks holds 0.
  *
- * Every struct begins with its size in bytes, as the side knows it that has filled it in. Members
- * are only ever appended, so that a library that was built for an earlier program of the same ABI
- * version is read as far as it goes. */
+ * Every struct begins with its size in bytes, as the side knows it that has filled it in. While
+ * SERVOMILL_PLUGIN_ABI stays the same, members are only ever appended:
+ * - a library that was built with earlier headers is read as far as it goes; functions that it
+ *   lacks are NULL;
+ * - one of later headers is taken if it uses nothing that this program lacks;
+ * - a member of a reading or setup that was appended after the first headers may be read only if
+ *   `size` reaches beyond it: SERVOMILL_HAS(reading, Q_cmd).
+ * A library of another SERVOMILL_PLUGIN_ABI is refused. */
 #ifndef SERVOMILL_STRATEGIES_PLUGIN_C_H
 #define SERVOMILL_STRATEGIES_PLUGIN_C_H
 
@@ -19,6 +24,10 @@ extern "C" {
 
 #define SERVOMILL_PLUGIN_ABI 1u
 #define SERVOMILL_JOINTS 5
+
+/* Whether the struct behind a pointer goes as far as a member. */
+#define SERVOMILL_HAS(pointer, member) \
+  ((pointer)->size >= (size_t)((const char*)(&(pointer)->member + 1) - (const char*)(pointer)))
 
 /* What a strategy may see of a run at one instant. */
 typedef struct servomill_reading {

@@ -194,7 +194,8 @@ class Plugins(unittest.TestCase):
                                   "again with the headers of this program"),
                 ("no_function", "is no plug-in: it does not export the function servomill_plugin_c_entry"),
                 ("taken_name", "its strategy 'feedback' has the name of another one"),
-                ("small_struct", "strategy 1: its struct has 8 bytes, expected 88 to 1024")):
+                ("small_struct", "strategy 1: its struct has 8 bytes, expected 88 to 1024"),
+                ("later_part", "strategy 1: has functions that this program does not know: it was built for a later one")):
             done = self.servomill("list", "strategies", "--plugin", library(name), status=2)
             self.assertEqual(done.stderr, f"{library(name)}: error: {why}\n")
         self.assertEqual(self.servomill("list", "strategies", "--plugin", "no.so", status=2).stderr,
@@ -204,6 +205,22 @@ class Plugins(unittest.TestCase):
         self.write('plugins = ["no.so"]\n' + scenario_text())
         self.assertEqual(self.servomill("check", "s.toml", status=2).stderr,
                          "s.toml:1:11: error: no.so: No such file or directory\n")
+
+    def test_one_that_was_built_with_earlier_headers_still_works(self):
+        with open(os.path.join(HERE, "plugins", "plugin_c_first.h"), encoding="ascii") as first, \
+                open(os.path.join(HERE, "..", "..", "strategies", "plugin_c.h"), encoding="ascii") as now:
+            versions = [re.search(r"#define SERVOMILL_PLUGIN_ABI (\d+)u", file.read())[1] for file in (first, now)]
+        self.assertEqual(*versions)  # else that header has to be replaced
+        self.write(scenario_text(("earlier", ""), ("earlier_guarded", "")))
+        self.servomill("run", "s.toml", "-o", "out.h5", "--plugin", library("earlier"))
+        with self.open("out.h5") as file:
+            for name in ("earlier", "earlier_guarded"):
+                x, y = file[f"cases/{name}/servo/meas_linear"][-1, :2]
+                self.assertAlmostEqual(y, 5.0 - 0.005 * x, delta=1e-4)
+
+    def test_one_of_a_later_program_works_as_far_as_it_is_known(self):
+        self.write(scenario_text(("refused", "")))
+        self.servomill("run", "s.toml", "-o", "out.h5", "--plugin", library("later"))
 
     def test_one_that_goes_wrong_ends_its_case_alone(self):
         for name, why in (("refusing", "displacement: X is beyond 10 mm"),

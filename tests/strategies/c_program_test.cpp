@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 
@@ -164,6 +165,15 @@ TEST(CProgram, RefusesBlocksThatAreNone) {
             "block 2 names motion 0 behind motion 1, or one that the program lacks");
   EXPECT_EQ(wrong_with({block(0, 1.0, {10 * mm, 1 * um, 0, 0, 0})}),
             "the arc of line 5 has no blocks, and the blocks before it end elsewhere");
+}
+
+TEST(PluginStructs, TellWhichMembersTheyHave) {
+  servomill_reading reading{};
+  reading.size = offsetof(servomill_reading, Q_cmd);  // of a program that was built before
+  EXPECT_TRUE(SERVOMILL_HAS(&reading, sensor_count));
+  EXPECT_FALSE(SERVOMILL_HAS(&reading, Q_cmd));
+  reading.size = sizeof reading;
+  EXPECT_TRUE(SERVOMILL_HAS(&reading, Q_cmd));
 }
 
 TEST(CProgram, TakesNoMoreBlocksThanMemoryHolds) {

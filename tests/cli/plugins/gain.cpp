@@ -1,4 +1,6 @@
 // The example of strategies/README.md, "Act in the position loop": a larger position gain.
+#include <stdexcept>
+
 #include "strategies/plugin.h"
 
 namespace {
@@ -13,6 +15,7 @@ struct Gain {
   explicit Gain(const servomill_setup& setup) : gain(setup.parameters[0]) {}
 
   Joints position_loop(const servomill_reading& now) const {
+    if (!SERVOMILL_HAS(&now, Q_cmd)) throw std::runtime_error("needs a later servomill");
     Joints v{};
     for (std::size_t j = 0; j < v.size(); ++j) v[j] = gain * (now.Q_cmd[j] - now.Q_fb[j]);
     return v;

@@ -7,6 +7,7 @@
 #define NO_FUNCTION 2
 #define TAKEN_NAME 3
 #define SMALL_STRUCT 4
+#define LATER_PART 5
 
 static const char* create(const servomill_setup* setup, void** state) {
   (void)setup;
@@ -20,13 +21,19 @@ static const char* nothing(void* state, const servomill_reading* now, double d[S
   return NULL;
 }
 
-static const servomill_strategy kStrategy = {
-    .size = REFUSED == SMALL_STRUCT ? 8 : sizeof(servomill_strategy),
-    .name = REFUSED == TAKEN_NAME ? "feedback" : "refused",
-    .create = create,
-    .displacement = nothing};
+/* The struct of a later program, with a function more. */
+static const struct {
+  servomill_strategy known;
+  const char* (*later)(const servomill_setup* setup, void** state);
+} kStrategy = {{.size = REFUSED == SMALL_STRUCT ? 8
+                        : REFUSED >= LATER_PART ? sizeof kStrategy
+                                                : sizeof(servomill_strategy),
+                .name = REFUSED == TAKEN_NAME ? "feedback" : "refused",
+                .create = create,
+                .displacement = nothing},
+               REFUSED == LATER_PART ? create : NULL};
 
-static const servomill_strategy* const kStrategies[] = {&kStrategy};
+static const servomill_strategy* const kStrategies[] = {&kStrategy.known};
 static const servomill_plugin_c kPlugin = {
     .abi = REFUSED == OTHER_VERSION ? 999 : SERVOMILL_PLUGIN_ABI,
     .size = sizeof(servomill_plugin_c),

@@ -1,0 +1,112 @@
+/* strategies/plugin_c.h as it was first, for a plug-in that was built then (earlier.c). It stays as
+ * it is until SERVOMILL_PLUGIN_ABI changes.
+ *
+ * Strategies out of the tree, in C: what a shared library exports that `servomill --plugin FILE`
+ * or `plugins = ["FILE"]` loads. strategies/README.md, "Strategies out of the tree".
+ *
+ * All lengths are in m, angles in rad, times in s. Joints are X, Y, Z and the (at most two) rotary
+ * axes in alphabetical order; the place of an axis that the machine lacks holds 0.
+ *
+ * Every struct begins with its size in bytes, as the side knows it that has filled it in. Members
+ * are only ever appended, so that a library that was built for an earlier program of the same ABI
+ * version is read as far as it goes. */
+#ifndef SERVOMILL_TESTS_PLUGIN_C_FIRST_H
+#define SERVOMILL_TESTS_PLUGIN_C_FIRST_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SERVOMILL_PLUGIN_ABI 1u
+#define SERVOMILL_JOINTS 5
+
+/* What a strategy may see of a run at one instant. */
+typedef struct servomill_reading {
+  size_t size;
+  double t;                         /* s, since the start of the program */
+  double s;                         /* m, arc length on the path of the original program */
+  double Q_ref[SERVOMILL_JOINTS];   /* as the NC interpolated it last */
+  double dQ_ref[SERVOMILL_JOINTS];  /* per s */
+  double ddQ_ref[SERVOMILL_JOINTS]; /* per s^2 */
+  double Q_fb[SERVOMILL_JOINTS];    /* `displacement`: the scales; `offset`: what the loops read */
+  const double* sensors;            /* further readings; none so far */
+  size_t sensor_count;
+} servomill_reading;
+
+/* A key of [[case.strategy]]. */
+typedef struct servomill_parameter {
+  size_t size;
+  const char* name;         /* with its unit suffix: "time_constant_ms" */
+  const char* help;         /* one line */
+  const char* unit;         /* of a bare number: "ms"; "" is dimensionless */
+  const char* default_text; /* as the user would write it; "": required */
+  double min, max;          /* inclusive, in `unit` */
+} servomill_parameter;
+
+/* What one run of a strategy is made from. */
+typedef struct servomill_setup {
+  size_t size;
+  const double* parameters; /* in SI, in the order of servomill_strategy.parameters */
+  size_t parameter_count;
+  double period;                  /* s, between two calls; 0: not known (`offset` alone) */
+  double lower[SERVOMILL_JOINTS]; /* travel of the machine */
+  double upper[SERVOMILL_JOINTS];
+  char axes[SERVOMILL_JOINTS]; /* letter of each joint; 0: the machine has none there */
+  double sign;                 /* knows_errors: +1 imposes the errors, -1 compensates them */
+  /* knows_errors: displacement (3) of the tool centre point along X, Y and Z that the identified
+   * errors cause at Q; else both are NULL. For any thread, as long as the run. */
+  const void* model;
+  void (*error_at)(const void* model, const double Q[SERVOMILL_JOINTS], double error[3]);
+} servomill_setup;
+
+/* One strategy. Functions that return text return NULL where all is well, else why not: the case
+ * ends with that message. The text is copied before the next call. What they write must be finite;
+ * a case whose strategy writes anything else ends. Runs go on in several threads at once; those of
+ * one state never do. */
+typedef struct servomill_strategy {
+  size_t size;
+  const char* name;    /* lower case and '_' */
+  const char* summary; /* one line */
+  const servomill_parameter* const* parameters;
+  size_t parameter_count;
+  int knows_errors;     /* takes the keys model and sign */
+  int displaces_rotary; /* `displacement` may write to the places of rotary axes */
+
+  /* State of one run. */
+  const char* (*create)(const servomill_setup* setup, void** state);
+  void (*destroy)(void* state); /* may be NULL */
+
+  /* Has stood for long at reading->Q_fb (or Q_ref): to begin anew. May be NULL. */
+  const char* (*settle)(void* state, const servomill_reading* reading);
+  /* Virtual displacement: what is added to the reading of the scales, so that the axis moves by its
+   * negative; once per model period of the feedback hardware, acts one period later. Or NULL. */
+  const char* (*displacement)(void* state, const servomill_reading* reading,
+                              double d[SERVOMILL_JOINTS]);
+  /* Offset of the setpoint behind the feed-forward tap; once per position period. Or NULL. */
+  const char* (*offset)(void* state, const servomill_reading* reading,
+                        double offset[SERVOMILL_JOINTS]);
+} servomill_strategy;
+
+typedef struct servomill_plugin_c {
+  uint32_t abi; /* SERVOMILL_PLUGIN_ABI */
+  uint32_t reserved;
+  size_t size;
+  const char* name;
+  const char* version;
+  const servomill_strategy* const* strategies;
+  size_t strategy_count;
+} servomill_plugin_c;
+
+/* The one symbol that a library in C exports:
+ *   const servomill_plugin_c* servomill_plugin_c_entry(void);                                    */
+typedef const servomill_plugin_c* (*servomill_plugin_c_function)(void);
+#define SERVOMILL_PLUGIN_C_ENTRY "servomill_plugin_c_entry"
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
