@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim/run/batch.h"
+#include "sim/run/point_batch.h"
 #include "strategies/none.h"
 #include "tests/counting_new.h"
 #include "tests/sim/small_scenario.h"
