@@ -132,7 +132,7 @@ name = "table"
 [[case.strategy]]
 type = "table"
 model = "measured"
-axis = "X"
+base_axis = "X"
 from_mm = -200.0
 to_mm = 200.0
 spacing_mm = 6.5536
